@@ -1,0 +1,95 @@
+// Arguments of a style, read one after the other.  Every error names the style, the keyword, the
+// value and the remedy.
+
+#ifndef SPHCLOTH_ARG_READER_H
+#define SPHCLOTH_ARG_READER_H
+
+#include "error.h"
+#include "pointers.h"
+#include "utils.h"
+
+#include <cmath>
+#include <string>
+
+namespace LAMMPS_NS {
+
+class ArgReader : protected Pointers {
+ public:
+  // style: as the user typed it, for example "fix sph/emit"; first: index of the next argument
+
+  ArgReader(LAMMPS *lmp, std::string style, int narg, char **arg, int first = 0) :
+      Pointers(lmp), style(std::move(style)), narg(narg), arg(arg), next(first)
+  {
+  }
+
+  bool more() const { return next < narg; }
+  int position() const { return next; }
+  const char *peek() const { return arg[next]; }
+
+  std::string word(const std::string &what)
+  {
+    if (next >= narg)
+      error->all(FLERR, "{}: {} is missing at the end of the command; see its doc page for the syntax",
+                 style, what);
+    return arg[next++];
+  }
+
+  double number(const std::string &what)
+  {
+    const std::string text = word(what);
+    if (!utils::is_double(text) || !std::isfinite(std::stod(text)))
+      fail(what, text, "give a finite number");
+    return std::stod(text);
+  }
+
+  double at_least(const std::string &what, double low)
+  {
+    const double value = number(what);
+    if (value < low) fail(what, arg[next - 1], fmt::format("give a number >= {}", low));
+    return value;
+  }
+
+  double positive(const std::string &what)
+  {
+    const double value = number(what);
+    if (!(value > 0.0)) fail(what, arg[next - 1], "give a number > 0");
+    return value;
+  }
+
+  double fraction(const std::string &what)
+  {
+    const double value = number(what);
+    if (value < 0.0 || value > 1.0) fail(what, arg[next - 1], "give a number from 0 to 1");
+    return value;
+  }
+
+  int integer(const std::string &what, int low, int high)
+  {
+    const std::string text = word(what);
+    if (!utils::is_integer(text) || text.size() > 10 || std::stoll(text) < low ||
+        std::stoll(text) > high)
+      fail(what, text, fmt::format("give a whole number from {} to {}", low, high));
+    return std::stoi(text);
+  }
+
+  [[noreturn]] void fail(const std::string &what, const std::string &value,
+                         const std::string &remedy)
+  {
+    error->all(FLERR, "{}: {} is '{}': {}", style, what, value, remedy);
+  }
+
+  [[noreturn]] void unknown(const std::string &keyword, const std::string &known)
+  {
+    error->all(FLERR, "{}: unknown keyword '{}': use one of {}", style, keyword, known);
+  }
+
+ private:
+  std::string style;
+  int narg;
+  char **arg;
+  int next;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,84 @@
+// Bonds of cloth.  They exert no force: fix pbd/cloth projects their constraints.
+
+#include "bond_pbd.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "memory.h"
+#include "modify.h"
+
+using namespace LAMMPS_NS;
+
+static const std::string COEFF = "bond_coeff (pbd)";
+
+BondPBD::BondPBD(LAMMPS *lmp) : Bond(lmp)
+{
+  writedata = 1;
+  reinitflag = 0;
+}
+
+BondPBD::~BondPBD()
+{
+  if (allocated && !copymode) memory->destroy(setflag);
+}
+
+void BondPBD::allocate()
+{
+  allocated = 1;
+  const int n = atom->nbondtypes + 1;
+  memory->create(setflag, n, "bond:setflag");
+  for (int i = 1; i < n; i++) setflag[i] = 0;
+  k.assign(n, 0.0);
+}
+
+// bond_coeff N k
+
+void BondPBD::coeff(int narg, char **arg)
+{
+  if (narg < 1) utils::missing_cmd_args(FLERR, COEFF, error);
+  if (!allocated) allocate();
+  int ilo, ihi;
+  utils::bounds(FLERR, arg[0], 1, atom->nbondtypes, ilo, ihi, error);
+  ArgReader args(lmp, COEFF, narg, arg, 1);
+  const double stiffness = args.fraction("stiffness k");
+  if (args.more()) args.unknown(args.peek(), "no keyword: the only argument is the stiffness k");
+  for (int i = ilo; i <= ihi; i++) {
+    k[i] = stiffness;
+    setflag[i] = 1;
+  }
+}
+
+void BondPBD::init_style()
+{
+  if (comm->me == 0 && modify->get_fix_by_style("^pbd/cloth$").empty())
+    error->warning(FLERR, "bond_style pbd does nothing without 'fix ID group pbd/cloth'");
+}
+
+void BondPBD::compute(int eflag, int vflag) { ev_init(eflag, vflag); }
+
+double BondPBD::single(int, double, int, int, double &fforce)
+{
+  fforce = 0.0;
+  return 0.0;
+}
+
+void BondPBD::write_restart(FILE *fp)
+{
+  fwrite(&k[1], sizeof(double), atom->nbondtypes, fp);
+}
+
+void BondPBD::read_restart(FILE *fp)
+{
+  allocate();
+  if (comm->me == 0)
+    utils::sfread(FLERR, &k[1], sizeof(double), atom->nbondtypes, fp, nullptr, error);
+  MPI_Bcast(&k[1], atom->nbondtypes, MPI_DOUBLE, 0, world);
+  for (int i = 1; i <= atom->nbondtypes; i++) setflag[i] = 1;
+}
+
+void BondPBD::write_data(FILE *fp)
+{
+  for (int i = 1; i <= atom->nbondtypes; i++) fprintf(fp, "%d %.16g\n", i, k[i]);
+}

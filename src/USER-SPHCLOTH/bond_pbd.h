@@ -1,0 +1,43 @@
+// bond_style pbd: stiffness of the distance constraint (4), per bond type.
+
+#ifdef BOND_CLASS
+// clang-format off
+BondStyle(pbd,BondPBD);
+// clang-format on
+#else
+
+#ifndef LMP_BOND_PBD_H
+#define LMP_BOND_PBD_H
+
+#include "bond.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class BondPBD : public Bond {
+ public:
+  BondPBD(class LAMMPS *);
+  ~BondPBD() override;
+  void compute(int, int) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double equilibrium_distance(int) override { return 0.0; }
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_data(FILE *) override;
+  double single(int, double, int, int, double &) override;
+
+  bool owns(int type) const { return setflag && setflag[type]; }
+  double stiffness(int type) const { return k[type]; }    // k of (9), 0 to 1
+
+ private:
+  std::vector<double> k;
+
+  void allocate();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,41 @@
+// dihedral_style pbd: stiffness of the hinge constraint (5), per dihedral type.
+
+#ifdef DIHEDRAL_CLASS
+// clang-format off
+DihedralStyle(pbd,DihedralPBD);
+// clang-format on
+#else
+
+#ifndef LMP_DIHEDRAL_PBD_H
+#define LMP_DIHEDRAL_PBD_H
+
+#include "dihedral.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class DihedralPBD : public Dihedral {
+ public:
+  DihedralPBD(class LAMMPS *);
+  ~DihedralPBD() override;
+  void compute(int, int) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_data(FILE *) override;
+
+  bool owns(int type) const { return setflag && setflag[type]; }
+  double stiffness(int type) const { return k[type]; }    // k of (9), 0 to 1
+
+ private:
+  std::vector<double> k;
+
+  void allocate();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

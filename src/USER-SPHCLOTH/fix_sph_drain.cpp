@@ -1,0 +1,126 @@
+// An outflow.  It works at list builds, just before LAMMPS would lose what left the box.
+
+#include "fix_sph_drain.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "group.h"
+#include "region.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+/* ----------------------------------------------------------------------
+   fix ID group sph/drain keyword value ...
+------------------------------------------------------------------------- */
+
+FixSPHDrain::FixSPHDrain(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/drain", id)), region(nullptr), drained(0),
+    taken{}
+{
+  restart_global = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 4;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  dynamic_group_allow = 1;
+
+  ArgReader args(lmp, label, narg, arg, 3);
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword != "region") args.unknown(keyword, "region");
+    region_name = args.word("region");
+    if (!domain->get_region_by_id(region_name))
+      args.fail("region", region_name, "define it with the region command first");
+  }
+}
+
+int FixSPHDrain::setmask() { return PRE_EXCHANGE; }
+
+void FixSPHDrain::init()
+{
+  region = nullptr;
+  if (!region_name.empty()) {
+    region = domain->get_region_by_id(region_name);
+    if (!region)
+      error->all(FLERR, "{}: region {} is gone: define it again or delete the fix", label, region_name);
+    region->init();
+  }
+  if (!atom->num_bond) return;
+  int mine = 0, any = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && atom->num_bond[i] > 0) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any)
+    error->all(FLERR, "{}: group {} holds bonded atoms: cloth cannot be drained, give the group of the fluid",
+               label, group->names[igroup]);
+}
+
+// out of the box where it is not periodic, or inside the region
+
+bool FixSPHDrain::leaves(int i) const
+{
+  const double *x = atom->x[i];
+  double lamda[3];
+  const double *place = x, *lo = domain->boxlo, *hi = domain->boxhi;
+  if (domain->triclinic) {
+    domain->x2lamda(atom->x[i], lamda);
+    place = lamda;
+    lo = domain->boxlo_lamda;
+    hi = domain->boxhi_lamda;
+  }
+  for (int d = 0; d < 3; d++)
+    if (!domain->periodicity[d] && (place[d] < lo[d] || place[d] >= hi[d])) return true;
+  return region && region->match(x[0], x[1], x[2]);
+}
+
+void FixSPHDrain::pre_exchange()
+{
+  if (region) region->prematch();
+  double mine[5] = {}, all[5];    // count, mass, momentum
+  for (int i = 0; i < atom->nlocal;) {
+    if (!(atom->mask[i] & groupbit) || !leaves(i)) {
+      i++;
+      continue;
+    }
+    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    mine[0] += 1.0;
+    mine[1] += mass;
+    for (int d = 0; d < 3; d++) mine[2 + d] += mass * atom->v[i][d];
+    atom->avec->copy(atom->nlocal - 1, i, 1);
+    atom->nlocal--;
+  }
+  MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
+  if (all[0] == 0.0) return;
+  const auto gone = static_cast<bigint>(all[0]);
+  drained += gone;
+  atom->natoms -= gone;
+  for (int k = 0; k < 4; k++) taken[k] += all[1 + k];
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->nghost = 0;
+    atom->map_init();
+    atom->map_set();
+  }
+}
+
+void FixSPHDrain::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const double list[5] = {static_cast<double>(drained), taken[0], taken[1], taken[2], taken[3]};
+  const int bytes = sizeof(list);
+  fwrite(&bytes, sizeof(int), 1, fp);
+  fwrite(list, sizeof(list), 1, fp);
+}
+
+void FixSPHDrain::restart(char *buf)
+{
+  const auto *list = reinterpret_cast<const double *>(buf);
+  drained = static_cast<bigint>(list[0]);
+  std::copy(list + 1, list + 5, taken);
+}

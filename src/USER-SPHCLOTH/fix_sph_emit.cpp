@@ -1,0 +1,219 @@
+// A source of fluid: layers of a square lattice, one behind the other at the spacing, so that the
+// jet has the density of water at rest.  Layers follow physical time and not steps; every rank
+// computes the same layer and makes the particles that it owns.
+
+#include "fix_sph_emit.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+/* ----------------------------------------------------------------------
+   fix ID group sph/emit N type spacing keyword values ...
+------------------------------------------------------------------------- */
+
+FixSPHEmit::FixSPHEmit(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
+    spacing(0.0), mass(0.0), centre(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
+    disc(false), start(0.0), layer_time(0.0), layers(0), momentum{}
+{
+  restart_global = 1;
+  force_reneighbor = 1;
+  next_reneighbor = -1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 4;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  time_depend = 1;
+
+  ArgReader args(lmp, label, narg, arg, 3);
+  total = args.integer("number of particles", 1, MAXSMALLINT);
+  itype = args.integer("atom type", 1, atom->ntypes);
+  spacing = args.positive("spacing");
+  read_options(args);
+  make_pattern();
+}
+
+void FixSPHEmit::read_options(ArgReader &args)
+{
+  const auto vector = [&](const std::string &what) {
+    Vec3 v;
+    for (int d = 0; d < 3; d++) v[d] = args.number(what + (d == 0 ? " x" : d == 1 ? " y" : " z"));
+    return v;
+  };
+  start = now();
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "disc") {
+      disc = true;
+      centre = vector("disc centre");
+      extent[0] = args.positive("disc radius");
+    } else if (keyword == "rectangle") {
+      disc = false;
+      centre = vector("rectangle centre");
+      extent[0] = args.positive("rectangle first side");
+      extent[1] = args.positive("rectangle second side");
+    } else if (keyword == "velocity")
+      velocity = vector("velocity");
+    else if (keyword == "start")
+      start = args.at_least("start time", 0.0);
+    else if (keyword == "mass")
+      mass = args.positive("mass");
+    else
+      args.unknown(keyword, "disc, rectangle, velocity, start, mass");
+  }
+  if (extent[0] == 0.0)
+    error->all(FLERR, "{}: the opening is missing: add 'disc X Y Z R' or 'rectangle X Y Z A B'", label);
+  if (velocity.norm() == 0.0)
+    error->all(FLERR, "{}: the velocity is missing: add 'velocity VX VY VZ'", label);
+  layer_time = spacing / velocity.norm();
+}
+
+// Square lattice in the plane across the velocity, symmetric about the centre.  The first side of
+// a rectangle lies along x, or along y for a jet along x.
+
+void FixSPHEmit::make_pattern()
+{
+  const Vec3 normal = velocity.normalized();
+  Vec3 first = std::fabs(normal[0]) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  first = (first - first.dot(normal) * normal).normalized();
+  const Vec3 second = normal.cross(first);
+  const double reach_a = disc ? 2.0 * extent[0] : extent[0];
+  const double reach_b = disc ? 2.0 * extent[0] : extent[1];
+  const int na = std::max(1, static_cast<int>(std::lround(reach_a / spacing)));
+  const int nb = std::max(1, static_cast<int>(std::lround(reach_b / spacing)));
+  for (int b = 0; b < nb; b++)
+    for (int a = 0; a < na; a++) {
+      const Vec3 x = spacing * ((a - 0.5 * (na - 1)) * first + (b - 0.5 * (nb - 1)) * second);
+      if (!disc || x.squaredNorm() <= extent[0] * extent[0]) pattern.push_back(x);
+    }
+}
+
+int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE; }
+
+void FixSPHEmit::init()
+{
+  const auto *pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  if (!pair || !pair->is_fluid(itype))
+    error->all(FLERR, "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
+               label, itype, itype, itype);
+  if (atom->rmass && mass == 0.0)
+    mass = pair->equation_of_state(itype).rho0 * std::pow(spacing, domain->dimension);
+  if (!atom->rmass && mass != 0.0)
+    error->all(FLERR, "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
+               label, itype, mass);
+  for (const Vec3 &x : pattern) {
+    Vec3 place = centre + x;
+    if (!domain->inside(place.data()))
+      error->all(FLERR, "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
+                 label, place[0], place[1], place[2]);
+  }
+}
+
+double FixSPHEmit::now() const
+{
+  return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   a layer that is due asks for a list build in this very step
+------------------------------------------------------------------------- */
+
+void FixSPHEmit::setup_pre_exchange()
+{
+  while (more() && due() <= now()) emit_layer(now() - due());
+}
+
+void FixSPHEmit::post_integrate()
+{
+  if (more() && due() <= now()) next_reneighbor = update->ntimestep;
+}
+
+void FixSPHEmit::pre_exchange()
+{
+  while (more() && due() <= now()) emit_layer(now() - due());
+}
+
+// age: how long ago the layer left the opening
+
+void FixSPHEmit::emit_layer(double age)
+{
+  const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
+  tagint mine = 0, last = 0;
+  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &last, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+
+  const int before = atom->nlocal;
+  for (bigint k = 0; k < wanted; k++)
+    add_particle(centre + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
+  for (int i = before; i < atom->nlocal; i++) modify->create_attribute(i);
+
+  bigint made = atom->nlocal - before, all = 0;
+  MPI_Allreduce(&made, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all != wanted)
+    error->all(FLERR, "{}: {} of {} particles of a layer fell out of the box: move the opening inwards",
+               label, wanted - all, wanted);
+  atom->natoms += all;
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->nghost = 0;
+    atom->map_init();
+    atom->map_set();
+  }
+  const double each = atom->rmass ? mass : atom->mass[itype];
+  for (int d = 0; d < 3; d++) momentum[d] += static_cast<double>(all) * each * velocity[d];
+  emitted += all;
+  layers++;
+}
+
+void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)
+{
+  double x[3] = {place[0], place[1], place[2]};
+  imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
+  if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) return;
+  atom->avec->create_atom(itype, x);
+  const int i = atom->nlocal - 1;
+  atom->tag[i] = tag;
+  atom->mask[i] = 1 | groupbit;
+  atom->image[i] = image;
+  for (int d = 0; d < 3; d++) atom->v[i][d] = velocity[d];
+  if (atom->rmass) atom->rmass[i] = mass;
+}
+
+// particles that are still to come, then the momentum that came in
+
+double FixSPHEmit::compute_vector(int n)
+{
+  return n == 0 ? static_cast<double>(total - emitted) : momentum[n - 1];
+}
+
+void FixSPHEmit::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const double list[6] = {static_cast<double>(emitted), static_cast<double>(layers), start,
+                          momentum[0], momentum[1], momentum[2]};
+  const int bytes = sizeof(list);
+  fwrite(&bytes, sizeof(int), 1, fp);
+  fwrite(list, sizeof(list), 1, fp);
+}
+
+void FixSPHEmit::restart(char *buf)
+{
+  const auto *list = reinterpret_cast<const double *>(buf);
+  emitted = static_cast<bigint>(list[0]);
+  layers = static_cast<bigint>(list[1]);
+  start = list[2];
+  std::copy(list + 3, list + 6, momentum);
+}

@@ -1,0 +1,65 @@
+// fix sph/emit: pours fluid particles through a disc or a rectangle.
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(sph/emit,FixSPHEmit);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_SPH_EMIT_H
+#define LMP_FIX_SPH_EMIT_H
+
+#include "fix.h"
+
+#include <Eigen/Geometry>
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+
+class FixSPHEmit : public Fix {
+ public:
+  FixSPHEmit(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup_pre_exchange() override;
+  void post_integrate() override;
+  void pre_exchange() override;
+  double compute_scalar() override { return static_cast<double>(emitted); }
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+ private:
+  using Vec3 = Eigen::Vector3d;
+
+  std::string label;
+  bigint total, emitted;
+  int itype;
+  double spacing;
+  double mass;    // of a particle, 0: rho0 spacing^3
+  Vec3 centre, velocity;
+  double extent[2];    // radius of the disc, or the two sides of the rectangle
+  bool disc;
+  double start;                 // physical time of the first layer
+  double layer_time;            // between layers: spacing / speed
+  bigint layers;                // poured so far
+  double momentum[3];           // that came in with the particles
+  std::vector<Vec3> pattern;    // one layer, relative to the centre
+
+  void read_options(ArgReader &);
+  void make_pattern();
+  double now() const;
+  double due() const { return start + static_cast<double>(layers) * layer_time; }
+  bool more() const { return emitted < total; }
+  void emit_layer(double);
+  void add_particle(const Vec3 &, tagint);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,364 @@
+// Semi-implicit Euler (lines 30 to 33 of Algorithm 1) with a constant or a global time step,
+// equations (10) to (12) and the limits in core/criteria.h.
+
+#include "fix_sph_integrate.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "integrate.h"
+#include "memory.h"
+#include "modify.h"
+#include "output.h"
+#include "pair_sph_tait.h"
+#include "sph_adaptive.h"
+#include "update.h"
+
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace sphcloth;
+
+/* ----------------------------------------------------------------------
+   fix ID group sph/integrate constant|global keyword value ...
+------------------------------------------------------------------------- */
+
+FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
+    said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
+    ceiling(update->dt), growth(2.0), clamp_at_floor(false), state(nullptr), active(nullptr),
+    previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
+{
+  time_integrate = 1;
+  nevery = 1;
+  restart_global = 1;
+  create_attribute = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 5 + N_LIMITS - 1;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  peratom_flag = 1;
+  size_peratom_cols = 2;
+  peratom_freq = 1;
+  dynamic_group_allow = 1;
+
+  ArgReader args(lmp, label, narg, arg, 3);
+  const std::string name = args.word("scheme");
+  if (name == "constant")
+    said = SteppingScheme::CONSTANT;
+  else if (name == "global")
+    said = SteppingScheme::GLOBAL;
+  else
+    args.fail("scheme", name, "use constant or global");
+  read_options(args);
+
+  grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+}
+
+void FixSPHIntegrate::read_options(ArgReader &args)
+{
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "velocity")
+      lambda.velocity = args.at_least(keyword, 0.0);
+    else if (keyword == "force")
+      lambda.force = args.at_least(keyword, 0.0);
+    else if (keyword == "acoustic")
+      lambda.acoustic = args.at_least(keyword, 0.0);
+    else if (keyword == "viscous")
+      lambda.viscous = args.at_least(keyword, 0.0);
+    else if (keyword == "density")
+      lambda.density = args.at_least(keyword, 0.0);
+    else if (keyword == "min")
+      floor = args.positive(keyword);
+    else if (keyword == "max")
+      ceiling = args.positive(keyword);
+    else if (keyword == "growth") {
+      growth = args.number(keyword);
+      if (growth <= 1.0 || growth > 2.0)
+        args.fail(keyword, std::to_string(growth), "give a factor above 1, at most 2");
+    } else if (keyword == "below") {
+      const std::string choice = args.word(keyword);
+      if (choice != "stop" && choice != "clamp") args.fail(keyword, choice, "use stop or clamp");
+      clamp_at_floor = choice == "clamp";
+    } else
+      args.unknown(keyword,
+                   "velocity, force, acoustic, viscous, density, min, max, growth, below");
+  }
+  if (floor > ceiling)
+    error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
+               label, floor, ceiling);
+}
+
+FixSPHIntegrate::~FixSPHIntegrate()
+{
+  atom->delete_callback(id, Atom::GROW);
+  if (pair && force->pair_match("sph/tait", 1) == pair) pair->set_active(nullptr);
+  memory->destroy(state);
+  memory->destroy(active);
+}
+
+int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_RUN; }
+
+void FixSPHIntegrate::init()
+{
+  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  if (!pair)
+    error->all(FLERR, "{}: pair_style {} knows no density: use 'pair_style sph/tait'", label,
+               force->pair_style ? force->pair_style : "none");
+  if (modify->get_fix_by_style("^sph/integrate$").size() > 1)
+    error->all(FLERR, "{}: there is another fix sph/integrate: keep one, with a group of all fluid",
+               label);
+
+  const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
+  run_style_drives = adaptive != nullptr;
+  scheme = adaptive ? adaptive->scheme() : said;
+  pair->set_active(active);
+
+  int wrong = 0, any_wrong = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && !pair->is_fluid(atom->type[i])) wrong = atom->type[i];
+  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
+  if (any_wrong)
+    error->all(FLERR,
+               "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
+               "walls out",
+               label, group->names[igroup], any_wrong);
+}
+
+void FixSPHIntegrate::setup(int)
+{
+  if (scheme == SteppingScheme::GLOBAL) choose_step();
+}
+
+/* ----------------------------------------------------------------------
+   lines 30 to 33: velocity first, then position with the new velocity
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::initial_integrate(int)
+{
+  const double dt = update->dt, dtf = dt * force->ftm2v;
+  double **x = atom->x, **v = atom->v, **f = atom->f;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !active[i]) continue;
+    const double kick = dtf / (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]);
+    for (int d = 0; d < 3; d++) {
+      v[i][d] += kick * f[i][d];
+      x[i][d] += dt * v[i][d];
+    }
+    updates++;
+  }
+}
+
+void FixSPHIntegrate::end_of_step()
+{
+  if (!run_style_drives) finish_step();
+}
+
+void FixSPHIntegrate::finish_step()
+{
+  previous = update->dt;
+  steps_limited[static_cast<int>(limited_by)]++;
+  if (scheme == SteppingScheme::GLOBAL) choose_step();
+}
+
+/* ----------------------------------------------------------------------
+   the next step
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::choose_step()
+{
+  const StepLimit mine = tightest_particle();
+  struct {
+    double dt;
+    int by;
+  } in = {mine.dt, static_cast<int>(mine.by)}, out;
+  MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  const StepLimit wanted = {out.dt, static_cast<Limit>(out.by)};
+  const StepLimit step = bounded_step(wanted, previous, growth, floor, ceiling);
+  if (step.by == Limit::FLOOR && !clamp_at_floor)
+    error->all(FLERR,
+               "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
+               "to go on with min and count",
+               label, limit_name(wanted.by), wanted.dt, floor);
+  limited_by = step.by;
+  if (step.dt != update->dt) apply(step.dt);
+}
+
+StepLimit FixSPHIntegrate::tightest_particle()
+{
+  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  StepLimit tightest;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const StepLimit own = particle_limit(lambda, step_state(i));
+    state[i][OWN_STEP] = std::min(own.dt, ceiling);
+    state[i][LAST_UPDATE] = now;
+    tightest.tighten(own.dt, own.by);
+  }
+  return tightest;
+}
+
+StepState FixSPHIntegrate::step_state(int i) const
+{
+  const int itype = atom->type[i];
+  const double *v = atom->v[i], *f = atom->f[i];
+  const double to_accel = force->ftm2v / (atom->rmass ? atom->rmass[i] : atom->mass[itype]);
+  StepState s;
+  s.support = pair->support(itype);
+  s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  s.accel_sq = to_accel * to_accel * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  s.rho = atom->rho[i];
+  // a particle in free flight carries no sound; a pulled one does
+  s.sound = pair->pressure_term()[i] != 0.0 ? pair->equation_of_state(itype).sound_speed(s.rho) : 0.0;
+  s.nu = pair->viscosity(itype);
+  s.drho = s.sound > 0.0 ? atom->drho[i] : 0.0;
+  return s;
+}
+
+// Everybody who keeps a copy of dt is told, and the time reached so far is booked first.
+
+void FixSPHIntegrate::apply(double dt)
+{
+  update->update_time();
+  update->dt = dt;
+  update->dt_default = 0;
+  update->integrate->reset_dt();
+  if (force->pair) force->pair->reset_dt();
+  for (Fix *other : modify->get_fix_list()) other->reset_dt();
+  output->reset_dt();
+}
+
+/* ----------------------------------------------------------------------
+   output
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::post_run()
+{
+  if (comm->me || scheme != SteppingScheme::GLOBAL) return;
+  std::string line;
+  for (int k = 1; k < N_LIMITS; k++)
+    if (steps_limited[k] > 0.0)
+      line += fmt::format(" {} {:.0f}", limit_name(static_cast<Limit>(k)), steps_limited[k]);
+  utils::logmesg(lmp, "{}: steps by limit:{}\n", label, line);
+}
+
+double FixSPHIntegrate::compute_scalar() { return update->dt; }
+
+// limit in force, active fraction, particle updates, largest compression, steps clamped at min,
+// then steps by limit
+
+double FixSPHIntegrate::compute_vector(int n)
+{
+  if (n >= 5) return steps_limited[n - 4];
+  switch (n) {
+    case 0: return static_cast<double>(limited_by);
+    case 1: {
+      double mine[2] = {0.0, 0.0}, all[2];
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & groupbit) {
+          mine[0] += active[i];
+          mine[1] += 1.0;
+        }
+      MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+      return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+    }
+    case 2: {
+      double all;
+      MPI_Allreduce(&updates, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+      return all;
+    }
+    case 3: {
+      double mine = largest_compression(), all;
+      MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+      return all;
+    }
+    default: return steps_limited[static_cast<int>(Limit::FLOOR)];
+  }
+}
+
+double FixSPHIntegrate::largest_compression() const
+{
+  double largest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest,
+                         atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0);
+  return largest;
+}
+
+/* ----------------------------------------------------------------------
+   restart: the step before, the counters
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::write_restart(FILE *fp)
+{
+  double all_updates = 0.0;
+  MPI_Reduce(&updates, &all_updates, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me) return;
+  std::array<double, 4 + N_LIMITS> list{previous, update->dt, static_cast<double>(limited_by),
+                                        all_updates};
+  std::copy(steps_limited.begin(), steps_limited.end(), list.begin() + 4);
+  const int bytes = static_cast<int>(sizeof(list));
+  fwrite(&bytes, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(list), 1, fp);
+}
+
+void FixSPHIntegrate::restart(char *buf)
+{
+  const auto *list = reinterpret_cast<const double *>(buf);
+  previous = list[0];
+  update->dt = list[1];
+  limited_by = static_cast<Limit>(static_cast<int>(list[2]));
+  updates = comm->me == 0 ? list[3] : 0.0;
+  std::copy(list + 4, list + 4 + N_LIMITS, steps_limited.begin());
+}
+
+/* ----------------------------------------------------------------------
+   per-particle state
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::grow_arrays(int nmax)
+{
+  memory->grow(state, nmax, 2, "sph/integrate:state");
+  memory->grow(active, nmax, "sph/integrate:active");
+  array_atom = state;
+  if (pair) pair->set_active(active);
+}
+
+void FixSPHIntegrate::copy_arrays(int i, int j, int)
+{
+  state[j][OWN_STEP] = state[i][OWN_STEP];
+  state[j][LAST_UPDATE] = state[i][LAST_UPDATE];
+  active[j] = active[i];
+}
+
+void FixSPHIntegrate::set_arrays(int i)
+{
+  state[i][OWN_STEP] = state[i][LAST_UPDATE] = 0.0;
+  active[i] = 1;
+}
+
+int FixSPHIntegrate::pack_exchange(int i, double *buf)
+{
+  buf[0] = state[i][OWN_STEP];
+  buf[1] = state[i][LAST_UPDATE];
+  buf[2] = active[i];
+  return 3;
+}
+
+int FixSPHIntegrate::unpack_exchange(int i, double *buf)
+{
+  state[i][OWN_STEP] = buf[0];
+  state[i][LAST_UPDATE] = buf[1];
+  active[i] = static_cast<int>(buf[2]);
+  return 3;
+}
+
+double FixSPHIntegrate::memory_usage() { return atom->nmax * (2.0 * sizeof(double) + sizeof(int)); }

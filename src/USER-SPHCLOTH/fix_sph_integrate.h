@@ -1,0 +1,81 @@
+// fix sph/integrate: who is integrated, by which limits of the time step, and their state.
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(sph/integrate,FixSPHIntegrate);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_SPH_INTEGRATE_H
+#define LMP_FIX_SPH_INTEGRATE_H
+
+#include "fix.h"
+
+#include "core/criteria.h"
+
+#include <array>
+#include <string>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+class PairSPHTait;
+
+enum class SteppingScheme : int { CONSTANT, GLOBAL };
+
+class FixSPHIntegrate : public Fix {
+ public:
+  FixSPHIntegrate(class LAMMPS *, int, char **);
+  ~FixSPHIntegrate() override;
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void end_of_step() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  double memory_usage() override;
+
+  // ends a step: counts it and, unless the step is constant, chooses the next one
+  void finish_step();
+
+ private:
+  enum Column { OWN_STEP, LAST_UPDATE };    // of the per-particle state
+
+  std::string label;
+  PairSPHTait *pair;
+  SteppingScheme said, scheme;    // of this fix; in force, after the run style was asked
+  bool run_style_drives;
+  sphcloth::StepCoefficients lambda;
+  double floor, ceiling, growth;
+  bool clamp_at_floor;
+
+  double **state;    // per particle: its own allowed step, time of its last update
+  int *active;       // per particle: 1 if it takes part in this step
+
+  double previous;      // the last step that was taken, 0 before the first
+  sphcloth::Limit limited_by;
+  double updates;       // particle updates of this rank
+  std::array<double, sphcloth::N_LIMITS> steps_limited;
+
+  void read_options(ArgReader &);
+  void choose_step();
+  sphcloth::StepLimit tightest_particle();
+  sphcloth::StepState step_state(int) const;
+  void apply(double);
+  double largest_compression() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,125 @@
+// pair_style sph/tait: weakly compressible SPH, equations (1) to (3), with boundary particles.
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(sph/tait,PairSPHTait);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_SPH_TAIT_H
+#define LMP_PAIR_SPH_TAIT_H
+
+#include "pair.h"
+
+#include "core/sph_loops.h"
+#include "core/tait.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+
+class PairSPHTait : public Pair {
+ public:
+  PairSPHTait(class LAMMPS *);
+  ~PairSPHTait() override;
+
+  void compute(int, int) override;
+  void settings(int, char **) override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  double memory_usage() override;
+
+  // what the stepping and the source need to know of a type
+
+  bool is_fluid(int itype) const { return types[itype].role == Role::FLUID; }
+  const sphcloth::Tait &equation_of_state(int itype) const { return types[itype].eos; }
+  double support(int itype) const;
+  double viscosity(int itype) const;    // laminar and artificial together
+
+  // per-atom pressure over density squared, owned and ghost, of the last evaluation
+  const double *pressure_term() const { return pressure.data(); }
+
+  // 0 for a particle whose density and forces need no update; a null pointer: all are active
+  void set_active(const int *flags) { active = flags; }
+
+ private:
+  enum class Role : int { NONE, FLUID, BOUNDARY };
+  enum class Kernel : int { WENDLAND_C2, CUBIC };
+  enum class Stage { AMOUNT, DENSITY };
+
+  struct TypeData {
+    Role role = Role::NONE;
+    sphcloth::Tait eos;
+    double nu = 0.0, alpha = 0.0;
+    double volume = 0.0;    // of a boundary particle; 0: from the particles around it
+  };
+  struct PairData {    // what the user said of a pair of types; < 0: not said
+    double support = -1.0, nu = -1.0, alpha = -1.0, stiffness = -1.0;
+  };
+
+  Kernel kernel;
+  double support_global;
+  int keep_tension;    // 1: negative pressure acts, 0: it counts as zero
+  std::vector<TypeData> types;
+  std::vector<PairData> pairs;                  // (ntypes+1)^2
+  std::vector<sphcloth::PairTerms> terms;       // (ntypes+1)^2, of the run
+  bool viscous, several_fluids, measure_volume;
+
+  // scratch, kept from step to step
+  const int *active;
+  int single_fluid;                        // the type of all fluid, unless several_fluids
+  std::vector<int> fluid, boundary;        // owned particles by role, since the last list build
+  std::vector<int> near;                   // neighbours inside the support, stretch per particle
+  std::vector<std::int64_t> near_start;    // by local index
+  std::vector<int> near_fluid, near_boundary;
+  std::vector<double> near_rsq;            // of one particle
+  std::vector<double> amount, pressure;    // per atom, owned and ghost
+  Stage stage;
+
+  using ComputeFn = void (PairSPHTait::*)();
+  ComputeFn densities_fn, forces_fn, forces_virial_fn, volumes_fn;
+
+  void allocate();
+  TypeData read_fluid(ArgReader &, PairData &) const;
+  TypeData read_boundary(ArgReader &) const;
+  PairData read_pair(ArgReader &) const;
+  double read_stiffness(ArgReader &, const std::string &) const;
+  void store_fluid_and_boundary(int, int, int, int, const TypeData &, const PairData &);
+  void mix(int, int, sphcloth::PairTerms &) const;
+  double pair_support(int, int) const;
+  template <class K> void bind_kernel();
+
+  bool is_active(int i) const { return !active || active[i]; }
+  sphcloth::ParticleView view() const;
+  sphcloth::Neighbourhood neighbourhood(int) const;
+  const sphcloth::PairTerms *fluid_terms(const sphcloth::PairTerms *row) const
+  {
+    return several_fluids ? row : row + single_fluid;
+  }
+
+  void sort_by_role();
+  void gather_near(int, bool, bool);
+  template <class K> void volumes();
+  template <class K> void densities();
+  void equation_of_state_all();
+  template <class K, bool VIRIAL> void forces();
+  template <class K, bool VISCOUS, bool VIRIAL> void fluid_forces();
+  template <class K, bool VISCOUS, bool VIRIAL> void boundary_forces();
+  void add_force(int, double, const sphcloth::Acceleration &, bool);
+  void tally_energy();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

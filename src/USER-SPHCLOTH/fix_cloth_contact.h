@@ -66,15 +66,16 @@ class FixClothContact : public Fix {
 
   void add_triangles(const FixPBDCloth &, const std::vector<int> &);
   void load_vertices();
-  void store_vertices();
+  void move_vertices();
   sphcloth::Sweep particle_sweep(int) const;
   std::array<sphcloth::Sweep, 3> triangle_sweep(int) const;
-  void find_contacts();
-  bool any_contact() const;
+  bool find_contacts(double);
   double particle_inverse_mass(int) const;
   void count_shares();
   void resolve();
   void stop_particles();
+  void push_vertices(const Contact &, const Vec3 &);
+  void change_velocities();
 };
 
 }    // namespace LAMMPS_NS

@@ -297,13 +297,13 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
 
 int FixPBDCloth::slot_of_vertex(int i, int vertex)
 {
-  const int j = atom->map(mesh.ids[vertex]);
+  const int j = mesh.image_near(vertex, i);
   if (j < 0)
     error->one(FLERR,
                "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
                "'comm_modify cutoff' to the size of two edges",
                label, mesh.ids[vertex], atom->tag[i]);
-  return halo.slot_of(domain->closest_image(i, j));
+  return halo.slot_of(j);
 }
 
 void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)

@@ -7,6 +7,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
 #include "integrate.h"
@@ -120,6 +121,9 @@ void FixSPHIntegrate::init()
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
   pair->set_active(active);
+  cloths.clear();
+  for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
+    cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
 
   int wrong = 0, any_wrong = 0;
   for (int i = 0; i < atom->nlocal; i++)
@@ -197,28 +201,55 @@ StepLimit FixSPHIntegrate::tightest_particle()
   StepLimit tightest;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const StepLimit own = particle_limit(lambda, step_state(i));
+    const StepLimit own = particle_limit(lambda, particle_state(i));
     state[i][OWN_STEP] = std::min(own.dt, ceiling);
     state[i][LAST_UPDATE] = now;
     tightest.tighten(own.dt, own.by);
   }
+  for (const FixPBDCloth *cloth : cloths)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & cloth->groupbit) || cloth->inverse_mass(i) == 0.0) continue;
+      const StepLimit own = particle_limit(lambda, vertex_state(i));
+      tightest.tighten(own.dt, own.by);
+    }
   return tightest;
 }
 
-StepState FixSPHIntegrate::step_state(int i) const
+// what every kind of particle has; returns its mass
+
+double FixSPHIntegrate::speed_and_force(int i, StepState &s) const
 {
-  const int itype = atom->type[i];
+  const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
   const double *v = atom->v[i], *f = atom->f[i];
-  const double to_accel = force->ftm2v / (atom->rmass ? atom->rmass[i] : atom->mass[itype]);
-  StepState s;
-  s.support = pair->support(itype);
+  const double to_accel = force->ftm2v / mass;
+  s.support = pair->support(atom->type[i]);
   s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   s.accel_sq = to_accel * to_accel * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  return mass;
+}
+
+StepState FixSPHIntegrate::particle_state(int i) const
+{
+  StepState s{};
+  speed_and_force(i, s);
   s.rho = atom->rho[i];
-  // a particle in free flight carries no sound; a pulled one does
-  s.sound = pair->pressure_term()[i] != 0.0 ? pair->equation_of_state(itype).sound_speed(s.rho) : 0.0;
-  s.nu = pair->viscosity(itype);
-  s.drho = s.sound > 0.0 ? atom->drho[i] : 0.0;
+  s.nu = pair->viscosity(atom->type[i]);
+  // a particle in free flight carries no sound and compresses nothing
+  if (pair->pressure_term()[i] == 0.0) return s;
+  s.sound = pair->equation_of_state(atom->type[i]).sound_speed(s.rho);
+  s.drho = atom->drho[i];
+  return s;
+}
+
+// Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is
+// faster by the root of the ratio of the masses (added mass).
+
+StepState FixSPHIntegrate::vertex_state(int i) const
+{
+  StepState s{};
+  const double mass = speed_and_force(i, s);
+  const PairSPHTait::Wetting wet = pair->wetting(i);
+  s.sound = wet.sound * std::sqrt(std::max(1.0, wet.fluid_mass / mass));
   return s;
 }
 

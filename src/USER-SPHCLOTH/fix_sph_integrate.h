@@ -15,10 +15,12 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 class ArgReader;
+class FixPBDCloth;
 class PairSPHTait;
 
 enum class SteppingScheme : int { CONSTANT, GLOBAL };
@@ -53,6 +55,7 @@ class FixSPHIntegrate : public Fix {
 
   std::string label;
   PairSPHTait *pair;
+  std::vector<FixPBDCloth *> cloths;
   SteppingScheme said, scheme;    // of this fix; in force, after the run style was asked
   bool run_style_drives;
   sphcloth::StepCoefficients lambda;
@@ -70,7 +73,9 @@ class FixSPHIntegrate : public Fix {
   void read_options(ArgReader &);
   void choose_step();
   sphcloth::StepLimit tightest_particle();
-  sphcloth::StepState step_state(int) const;
+  double speed_and_force(int, sphcloth::StepState &) const;
+  sphcloth::StepState particle_state(int) const;
+  sphcloth::StepState vertex_state(int) const;
   void apply(double);
   double largest_compression() const;
 };

@@ -279,6 +279,18 @@ double PairSPHTait::viscosity(int itype) const
   return t.nu + artificial;
 }
 
+PairSPHTait::Wetting PairSPHTait::wetting(int i) const
+{
+  Wetting w;
+  const Neighbourhood near_i = neighbourhood(i);
+  for (int k = 0; k < near_i.n_fluid; k++) {
+    const Tait &eos = types[atom->type[near_i.fluid[k]]].eos;
+    w.fluid_mass = std::max(w.fluid_mass, eos.rho0 * amount[i]);
+    w.sound = std::max(w.sound, eos.sound_speed());
+  }
+  return w;
+}
+
 double PairSPHTait::init_one(int i, int j)
 {
   const int n = atom->ntypes + 1;

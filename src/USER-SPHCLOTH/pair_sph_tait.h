@@ -46,6 +46,13 @@ class PairSPHTait : public Pair {
   double support(int itype) const;
   double viscosity(int itype) const;    // laminar and artificial together
 
+  // A boundary particle that fluid touched in the last evaluation: the mass that fluid in its
+  // volume would have, and the sound speed of that fluid.  Both 0 if it is dry.
+  struct Wetting {
+    double fluid_mass = 0.0, sound = 0.0;
+  };
+  Wetting wetting(int boundary_atom) const;
+
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
 

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -95,6 +96,11 @@ inline double angle_difference(double angle, double rest)
   return std::remainder(angle - rest, 2.0 * PI);
 }
 
+// If only vertices can move that hardly turn the hinge (an edge vertex below a right angle, the
+// others pinned), a projection would throw them far away: below this share of the lever that a
+// wing has, squared, the hinge is left to its neighbours.
+inline constexpr double LEAST_LEVER = 1e-3;
+
 // Moves the four vertices; returns C before the projection, 0 for a degenerate hinge.
 
 inline double project_hinge(Vec3 &a, Vec3 &e1, Vec3 &e2, Vec3 &b, const std::array<double, 4> &w,
@@ -103,9 +109,14 @@ inline double project_hinge(Vec3 &a, Vec3 &e1, Vec3 &e2, Vec3 &b, const std::arr
   const Hinge h = hinge(a, e1, e2, b);
   if (!h.valid) return 0.0;
   const double error = angle_difference(h.angle, rest);
-  double denominator = 0.0;
-  for (int i = 0; i < 4; i++) denominator += w[i] * h.grad[i].squaredNorm();
-  if (denominator == 0.0) return error;
+  double denominator = 0.0, w_sum = 0.0, steepest = 0.0;
+  for (int i = 0; i < 4; i++) {
+    const double slope = h.grad[i].squaredNorm();
+    denominator += w[i] * slope;
+    w_sum += w[i];
+    steepest = std::max(steepest, slope);
+  }
+  if (denominator <= LEAST_LEVER * w_sum * steepest) return error;
   const double step = -k * error / denominator;
   a += step * w[0] * h.grad[0];
   e1 += step * w[1] * h.grad[1];

@@ -88,9 +88,11 @@ inline Roots cubic_roots(double c0, double c1, double c2, double c3)
 
 // Does point p pass through the triangle within the step, or end nearer to it than `thickness`
 // on its own side?  A point that starts nearer than that keeps the gap it has: contact takes
-// approaching motion away and never pushes, so it cannot add energy.
+// approaching motion away and never pushes, so it cannot add energy.  `slack` is the share of the
+// gap that an iterative solver may leave open; passing through always counts.
 
-inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness)
+inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness,
+                   double slack = SEAM)
 {
   Touch result;
   const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
@@ -131,7 +133,7 @@ inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thick
   }
 
   // ends too near
-  if (gap_end >= 0.0 && gap_end < result.kept * (1.0 - SEAM)) {
+  if (gap_end >= 0.0 && gap_end < result.kept * (1.0 - slack)) {
     const Vec3 weight = barycentric(p.end, tri[0].end, tri[1].end, tri[2].end);
     if (inside(weight)) touch_at(weight);
   }

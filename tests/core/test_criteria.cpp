@@ -19,7 +19,7 @@ CASE("limits: each formula on its own")
   CHECK(particle_limit(lambda, s).by == Limit::FORCE);
   s = rest;
   s.sound = 20.0;
-  CHECK_NEAR(particle_limit(lambda, s).dt, 0.7 * 0.05 / 20.0, 1e-17);
+  CHECK_NEAR(particle_limit(lambda, s).dt, 0.5 * 0.05 / 20.0, 1e-17);
   s = rest;
   s.nu = 0.5;
   CHECK_NEAR(particle_limit(lambda, s).dt, 0.2 * 0.0025 / 0.5, 1e-17);

@@ -37,7 +37,7 @@ inline const char *limit_name(Limit limit)
 struct StepCoefficients {
   double velocity = 0.1;     // lambda_v of (10)
   double force = 0.05;       // lambda_f of (11)
-  double acoustic = 0.7;     // of h_s/c; symplectic stepping is stable up to 1.6
+  double acoustic = 0.5;     // of h_s/c; symplectic stepping is stable up to 1.6
   double viscous = 0.2;      // of h_s^2/nu; stable up to 0.3 in 3-D
   double density = 0.1;      // largest relative change of density in one step
 };

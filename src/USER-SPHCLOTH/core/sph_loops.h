@@ -141,15 +141,17 @@ SPHCLOTH_MULTIVERSION void fluid_on_fluid(const ParticleView &p, const PairTerms
 }
 
 // One fluid particle f and one boundary particle b: the force between them over m_f V_b.
-// The boundary mirrors the fluid's pressure and density, so that the two halves of the usual
-// pressure term are equal; which of the two is asked does not matter but for the sign of r and v.
+// The pressure term is the gradient of the fluid's energy with the density sum that the boundary
+// takes part in.  A boundary that mirrors the fluid's pressure, twice this term, holds the first
+// layer further off, but is not a gradient and heats resting water.
+// Which of the two is asked does not matter but for the sign of r and v.
 
 template <class Kernel, bool VISCOUS>
 inline void boundary_terms(const PairTerms &t, double rho_f, double pressure_f, double r_sq,
                            double v_dot_r, double &push, double &friction, double &weight)
 {
   weight = t.rho0 * t.kernel.f * Kernel::slope_over_q(std::sqrt(r_sq) * t.kernel.inv_support);
-  double along = 2.0 * t.stiffness * pressure_f;
+  double along = t.stiffness * pressure_f;
   friction = 0.0;
   if (VISCOUS) {
     along += artificial_viscosity(t, v_dot_r, r_sq, 1.0 / rho_f);

@@ -1,0 +1,39 @@
+# Two commands for a fresh machine: `make demo` and `make test`.  Both work in .venv.
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(abspath $(VENV))/bin
+RANKS  ?= 2
+SIZE   ?= small
+SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
+
+.PHONY: demo test lint clean
+
+demo: $(VENV)/installed
+	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
+
+test: $(VENV)/installed build/core/test_core
+	build/core/test_core
+	$(BIN)/python -m pytest
+	$(BIN)/ruff check python tests
+	$(BIN)/ruff format --check python tests
+
+lint: $(VENV)/installed
+	$(BIN)/ruff check python tests
+	$(BIN)/ruff format --check python tests
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --upgrade pip
+
+$(VENV)/installed: $(VENV)/bin/python $(SOURCES)
+	$(BIN)/pip install --quiet '.[test]'
+	touch $@
+
+# the tests of core/, which need neither LAMMPS nor MPI
+build/core/test_core: $(VENV)/installed $(wildcard tests/core/*)
+	$(BIN)/cmake -S tests/core -B build/core -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
+	$(BIN)/cmake --build build/core
+
+clean:
+	rm -rf build dist demo $(VENV)

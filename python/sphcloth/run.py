@@ -1,0 +1,210 @@
+"""Run a packaged example through LAMMPS, with a progress bar."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from sphcloth.errors import UserError
+from sphcloth.examples import find_example
+from sphcloth.log import error_lines
+from sphcloth.programs import program
+from sphcloth.summary import summarise
+
+LOG, SCREEN = "log.lammps", "screen.txt"
+POLL_SECONDS = 0.2
+GRACE_SECONDS = 10.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How LAMMPS ended: its exit status, and whether the user stopped it."""
+
+    status: int
+    interrupted: bool
+
+
+def run_example(
+    name: str,
+    size: str,
+    ranks: int,
+    out: Path,
+    settings: Mapping[str, str],
+    frames: int | None,
+    console: Console,
+) -> int:
+    """Run an example, draw it and print its summary.
+
+    Args:
+        name: the example's name.
+        size: one of the sizes in its ``sizes.toml``.
+        ranks: number of MPI ranks.
+        out: folder for all that the run writes; made if need be, files of an earlier run go.
+        settings: script variables that differ from the size's.
+        frames: number of pictures; None draws nothing.
+        console: where progress and summary appear.
+
+    Returns:
+        Exit code: 0 if LAMMPS ended well, nothing crossed the sheet and the mass balance is
+        exact, otherwise 1.
+
+    Raises:
+        UserError: an unknown name, size or variable, or a missing program.
+    """
+    example = find_example(name)
+    variables = example.variables(size, settings)
+    t_end = _end_time(example.defaults() | variables)
+    out.mkdir(parents=True, exist_ok=True)
+    _remove_old_results(out, name)
+    command = _command(example.script.resolve(), ranks, variables)
+    outcome = _run_lammps(command, out, t_end, console)
+    if outcome.interrupted:
+        console.print("[yellow]stopped: the summary is of what was reached[/]")
+    elif outcome.status != 0:
+        _show_failure(out, outcome.status, console)
+        return 1
+    with console.status("measuring and drawing"):
+        summary = summarise(out, name, frames)
+    summary.write(out / "summary.json")
+    summary.show(console)
+    return 0 if summary.passed and not outcome.interrupted else 1
+
+
+def _end_time(variables: Mapping[str, str]) -> float:
+    """Return the physical time at which the run ends."""
+    try:
+        return float(variables["t_end"])
+    except KeyError:
+        raise UserError("the script has no 'variable t_end index': no end to wait for") from None
+    except ValueError:
+        raise UserError(f"t_end = {variables['t_end']} is not a number") from None
+
+
+def _remove_old_results(out: Path, name: str) -> None:
+    """Remove what an earlier run left, lest a run that fails early shows its numbers."""
+    stale = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", "summary.json"]
+    pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
+    for path in [*(out / file for file in stale), *pictures]:
+        path.unlink(missing_ok=True)
+
+
+def _command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
+    """Return the command line that runs a script with these variables."""
+    launch = [str(program("mpiexec")), "-n", str(ranks), str(program("lmp"))]
+    values = [text for name, value in variables.items() for text in ("-var", name, value)]
+    return [*launch, "-in", str(script), "-log", LOG, *values]
+
+
+def _run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:
+    """Run LAMMPS in ``out`` and show how far it is until it ends or the user stops it."""
+    with _started(command, out) as process, _progress(console) as progress:
+        task = progress.add_task("starting", total=t_end)
+        try:
+            for row in _follow(out / LOG, process):
+                progress.update(task, completed=row["Time"], description=_describe(row, t_end))
+        except KeyboardInterrupt:
+            _stop(process)
+            return Outcome(process.returncode, interrupted=True)
+        progress.update(task, completed=t_end if process.returncode == 0 else None)
+    return Outcome(process.returncode, interrupted=False)
+
+
+@contextmanager
+def _started(command: list[str], out: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """Start LAMMPS in a session of its own: a Ctrl-C reaches it through us alone, and once.
+
+    Whatever else asks us to end must count as a Ctrl-C then: LAMMPS would run on unseen.
+    """
+    endings = (signal.SIGTERM, signal.SIGHUP)
+    handlers = {ending: signal.signal(ending, signal.default_int_handler) for ending in endings}
+    with (out / SCREEN).open("wb") as screen:
+        process = subprocess.Popen(
+            command,
+            cwd=out,
+            stdin=subprocess.DEVNULL,
+            stdout=screen,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                _kill(process)
+            for ending, handler in handlers.items():
+                signal.signal(ending, handler)
+
+
+def _follow(log: Path, process: subprocess.Popen[bytes]) -> Iterator[dict[str, float]]:
+    """Yield the newest thermo row whenever the log has grown, until the process has ended."""
+    offset, names, rest = 0, [], ""
+    while process.poll() is None:
+        time.sleep(POLL_SECONDS)
+        if not log.is_file():
+            continue
+        with log.open(encoding="utf-8", errors="replace") as file:
+            file.seek(offset)
+            *lines, rest = (rest + file.read()).split("\n")
+            offset = file.tell()
+        row = None
+        for line in lines:
+            if line.startswith("keywords: ["):
+                names = yaml.safe_load(line)["keywords"]
+            elif line.startswith("  - [") and names:
+                row = dict(zip(names, map(float, yaml.safe_load(line)[0]), strict=True))
+        if row and "Time" in row:
+            yield row
+
+
+def _progress(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=20),
+        TextColumn("{task.percentage:3.0f} %"),
+        TimeRemainingColumn(compact=True),
+        console=console,
+    )
+
+
+def _describe(row: Mapping[str, float], t_end: float) -> str:
+    """Return the progress line's text for a thermo row."""
+    parts = [f"t {row['Time']:.3g}/{t_end:g}", f"step {row['Step']:,.0f}"]
+    if "Dt" in row:
+        parts.append(f"dt {row['Dt']:.1e}")
+    if "v_fluid" in row:
+        parts.append(f"{row['v_fluid']:,.0f} particles")
+    return "  ".join(parts)
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """Pass an interrupt on to LAMMPS; kill it if it has not ended when the grace is over."""
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(GRACE_SECONDS)
+    except (subprocess.TimeoutExpired, KeyboardInterrupt):
+        _kill(process)
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """Kill the launcher and all that it started."""
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def _show_failure(out: Path, status: int, console: Console) -> None:
+    """Print what LAMMPS, or else the launcher, said last."""
+    said = error_lines(out / LOG) or (out / SCREEN).read_text(errors="replace").splitlines()[-5:]
+    console.print(f"[red]LAMMPS ended with status {status}[/]")
+    for line in said:
+        console.print(f"  {line}", markup=False, soft_wrap=True)
+    console.print(f"  log: {out / LOG}", markup=False, soft_wrap=True)

@@ -1,0 +1,50 @@
+"""The triangles of a data file that LAMMPS wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import make_frame, square_sheet
+
+from sphcloth.errors import UserError
+from sphcloth.mesh import ClothMesh
+
+
+def test_triangles_are_the_angles_of_the_data_file(cloth_data: Path) -> None:
+    mesh = ClothMesh.read(cloth_data)
+    assert mesh.ids.tolist() == [2, 3, 4, 5]
+    assert mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+def test_positions_follow_the_ids() -> None:
+    mesh, sheet = square_sheet(2)
+    moved = sheet + np.array([0, 0, 3])
+    frame = make_frame(0, [[9, 9, 9]], moved)
+    np.testing.assert_array_equal(mesh.positions(frame), moved)
+    np.testing.assert_array_equal(mesh.corners(frame)[0], moved[mesh.triangles[0]])
+
+
+def test_a_lost_vertex_is_named() -> None:
+    mesh, sheet = square_sheet(2)
+    with pytest.raises(UserError, match="cloth vertex 9 is not in the dump at step 4"):
+        mesh.positions(make_frame(4, [], sheet[:-1]))
+
+
+def test_a_data_file_of_another_form_says_how_to_write_it(cloth_data: Path) -> None:
+    cloth_data.write_text("not a data file\n")
+    with pytest.raises(UserError, match="write_data FILE nofix"):
+        ClothMesh.read(cloth_data)
+
+
+def test_a_scene_without_triangles_is_refused(cloth_data: Path) -> None:
+    text = cloth_data.read_text()
+    cloth_data.write_text(text[: text.index("Angles\n")])
+    with pytest.raises(UserError, match="holds no cloth"):
+        ClothMesh.read(cloth_data)
+
+
+def test_triangles_wound_in_opposite_senses_are_refused() -> None:
+    with pytest.raises(UserError, match="wound in opposite senses"):
+        ClothMesh(np.arange(4), np.array([[0, 1, 2], [0, 3, 2]]))

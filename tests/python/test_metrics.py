@@ -1,0 +1,143 @@
+"""What goes through a moving sheet, and what only goes past it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import make_frame, square_sheet
+
+from sphcloth import metrics
+from sphcloth.errors import UserError
+from sphcloth.log import ThermoTable
+from sphcloth.trajectory import Frame
+
+MESH, SHEET = square_sheet(4)
+RNG = np.random.default_rng(1)
+
+
+def path(*places: list[float]) -> list[Frame]:
+    """Return one frame for each place of a single particle over the resting sheet."""
+    return [make_frame(step, [place], SHEET) for step, place in enumerate(places)]
+
+
+# inside a triangle, on an inner edge, on a diagonal, on a vertex
+@pytest.mark.parametrize("where", [(0.3, 0.27), (0.25, 0.3), (0.4, 0.4), (0.5, 0.5)])
+def test_a_particle_that_falls_through_is_found(where: tuple[float, float]) -> None:
+    found = metrics.crossings(MESH, path([*where, 0.2], [*where, 0.1], [*where, -0.3]))
+    assert found.count == 1
+    assert found.ids.tolist() == [1001]
+    assert found.steps.tolist() == [2]
+    np.testing.assert_allclose(found.points, [[*where, 0]], atol=1e-12)
+
+
+def test_a_particle_that_rounds_the_border_is_not_counted() -> None:
+    around = path([0.9, 0.5, 0.1], [1.1, 0.5, 0.1], [1.1, 0.5, -0.1], [0.9, 0.5, -0.1])
+    assert metrics.crossings(MESH, around).count == 0
+
+
+def test_a_moving_sheet_sweeps_over_a_resting_particle() -> None:
+    frames = [
+        make_frame(0, [[0.3, 0.4, 0.5]], SHEET),
+        make_frame(1, [[0.3, 0.4, 0.5]], SHEET + 0.9),
+    ]
+    assert metrics.crossings(MESH, frames).count == 0  # it moves aside by 0.9 as well
+    frames[1] = make_frame(1, [[0.3, 0.4, 0.5]], SHEET + np.array([0.2, 0, 0.9]))
+    assert metrics.crossings(MESH, frames).count == 1
+
+
+def test_particle_and_sheet_that_move_together_do_not_cross() -> None:
+    fluid = RNG.random((200, 3)) * [1, 1, 0.1] + [0, 0, 1e-3]
+    shift = np.array([0.3, 0.2, -2.0])
+    frames = [make_frame(0, fluid, SHEET), make_frame(1, fluid + shift, SHEET + shift)]
+    assert metrics.crossings(MESH, frames).count == 0
+
+
+def test_a_turning_sheet_meets_what_stands_in_its_way() -> None:
+    upright = SHEET[:, [2, 1, 0]]  # turned by a right angle about the y axis
+    fluid = [[0.4, 0.5, 0.4], [0.9, 0.5, 0.9], [0.4, 0.5, -0.4]]
+    frames = [make_frame(0, fluid, SHEET), make_frame(1, fluid, upright)]
+    # straight paths of the vertices: the border moves along x + z = 1, inside of the second one
+    assert metrics.crossings(MESH, frames).ids.tolist() == [1001]
+
+
+def test_a_line_through_a_fold_and_out_again_is_no_crossing() -> None:
+    roof = SHEET.copy()
+    roof[:, 2] = 0.5 - np.abs(roof[:, 0] - 0.5)
+    frames = [make_frame(0, [[0.1, 0.5, 0.3]], roof), make_frame(1, [[0.9, 0.5, 0.3]], roof)]
+    assert metrics.crossings(MESH, frames).count == 0
+    frames[1] = make_frame(1, [[0.5, 0.5, 0.3]], roof)
+    assert metrics.crossings(MESH, frames).count == 1
+
+
+def test_a_particle_that_goes_through_and_back_is_counted_once() -> None:
+    found = metrics.crossings(MESH, path([0.3, 0.3, 0.1], [0.3, 0.3, -0.1], [0.3, 0.3, 0.1]))
+    assert (found.count, len(found.ids)) == (1, 2)
+
+
+def test_many_particles_agree_with_counting_by_height() -> None:
+    before = RNG.random((3000, 3)) * [1.6, 1.6, 1] - [0.3, 0.3, 0.5]
+    after = RNG.random((3000, 3)) * [1.6, 1.6, 1] - [0.3, 0.3, 0.5]
+    moment = before[:, 2] / (before[:, 2] - after[:, 2])
+    met = before + moment[:, None] * (after - before)
+    inside = np.all((met[:, :2] > 0) & (met[:, :2] < 1), axis=1)
+    expected = np.flatnonzero((before[:, 2] * after[:, 2] < 0) & inside) + 1001
+    frames = [make_frame(0, before, SHEET), make_frame(1, after, SHEET)]
+    assert sorted(metrics.crossings(MESH, frames).ids) == expected.tolist()
+
+
+def test_particles_that_come_or_go_between_frames_are_left_out() -> None:
+    frames = [
+        make_frame(0, [[0.3, 0.3, 0.1]], SHEET, first_fluid_id=2000),
+        make_frame(1, [[0.3, 0.3, -0.1]], SHEET, first_fluid_id=3000),
+    ]
+    assert metrics.crossings(MESH, frames).count == 0
+
+
+def test_a_wrap_around_the_periodic_box_is_no_flight_through_the_sheet() -> None:
+    assert metrics.crossings(MESH, path([0.3, 0.3, -49.9], [0.3, 0.3, 49.9])).count == 0
+
+
+def test_one_frame_is_too_few() -> None:
+    with pytest.raises(UserError, match="only one"):
+        metrics.crossings(MESH, path([0, 0, 0]))
+
+
+def test_above_the_sheet_is_over_it_and_within_its_footprint() -> None:
+    bowl = SHEET.copy()
+    bowl[:, 2] = (bowl[:, 0] - 0.5) ** 2
+    fluid = [[0.5, 0.5, 0.01], [0.5, 0.5, -0.01], [0.97, 0.5, 0.1], [1.2, 0.5, 1], [0.3, 0.3, 5]]
+    above = metrics.above_sheet(MESH, make_frame(0, fluid, bowl))
+    assert above.tolist() == [True, False, False, False, True]
+
+
+def test_density_deviation_counts_both_signs() -> None:
+    frame = make_frame(0, [[0, 0, 0], [0, 0, 1]], SHEET)
+    frame.columns["rho"] = np.concatenate([np.zeros(len(SHEET)), [1010.0, 980.0]])
+    assert metrics.density_deviation(frame, 1000.0) == pytest.approx(0.02)
+
+
+def test_balances_come_from_the_thermo_columns() -> None:
+    counts = {"Step": [0, 10, 20], "v_poured": [0, 8, 8], "v_drained": [0, 1, 2]}
+    columns = {name: np.array(values, float) for name, values in counts.items()}
+    exact = ThermoTable(columns | {"v_fluid": np.array([0.0, 7, 6])}, 1.0)
+    lossy = ThermoTable(columns | {"v_fluid": np.array([0.0, 9, 6])}, 1.0)
+    assert (metrics.mass_balance(exact), metrics.mass_balance(lossy)) == (0, 2)
+    assert metrics.particle_updates(exact) == 100
+    counted = ThermoTable(columns | {"v_updates": np.array([5.0, 20, 45])}, 1.0)
+    assert metrics.particle_updates(counted) == 40
+
+
+@pytest.mark.parametrize(
+    ("step", "drops", "right"),
+    [(0, 0, True), (10, 7, True), (10, 0, False), (15, 6, True), (15, 8, False), (15, 5, False)],
+)
+def test_a_dump_must_hold_the_water_that_the_log_counts(step: int, drops: int, right: bool) -> None:
+    counts = {"Step": [0, 10, 20], "v_poured": [0, 8, 8], "v_drained": [0, 1, 2]}
+    columns = {name: np.array(values, float) for name, values in counts.items()}
+    table = ThermoTable(columns | {"v_fluid": np.array([0.0, 7, 6])}, 1.0)
+    frame = make_frame(step, [[0, 0, 1]] * drops, SHEET)
+    if right:
+        metrics.check_fluid_count(table, frame)
+    else:
+        with pytest.raises(UserError, match=f"holds {drops} particles of type 1 at step {step}"):
+            metrics.check_fluid_count(table, frame)

@@ -1,0 +1,111 @@
+"""Running an example, with a scene of stock LAMMPS: drops that fall on, or through, a square."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import pytest
+from conftest import CLOTH_SCRIPT
+from rich.console import Console
+
+from sphcloth import examples
+from sphcloth.errors import UserError
+from sphcloth.run import run_example
+
+SCRIPT = f"""\
+variable        t_end index 0.5
+variable        floor index 0.55   # drops bounce here: above the sheet at 0.5 or not
+variable        source index 1     # particles claimed to have been poured
+boundary        p p f
+{CLOTH_SCRIPT}
+write_data      drop.data nofix
+group           fluid type 1
+fix             1 fluid nve
+fix             2 fluid gravity 9.81 vector 0 0 -1
+fix             3 fluid wall/reflect zlo ${{floor}}
+variable        fluid equal count(fluid)
+variable        poured equal ${{source}}
+variable        drained equal 0
+dump            1 all custom 10 drop.lammpstrj id type x y z vx vy vz
+timestep        0.001
+thermo          10
+thermo_style    custom step time dt v_fluid v_poured v_drained
+thermo_modify   line yaml flush yes
+variable        n equal round(${{t_end}}/dt)
+run             ${{n}}
+"""
+
+
+@pytest.fixture
+def drop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Make the example 'drop' the only one there is; return a folder for its output."""
+    folder = tmp_path / "examples" / "drop"
+    folder.mkdir(parents=True)
+    (folder / "in.drop").write_text(SCRIPT)
+    (folder / "sizes.toml").write_text("[tiny]\nt_end = 0.1\n[small]\nt_end = 0.3\n")
+    monkeypatch.setattr(examples, "_examples_folder", lambda: folder.parent)
+    return tmp_path / "out"
+
+
+def run(out: Path, size: str = "small", ranks: int = 1, **settings: str) -> tuple[int, str]:
+    """Run the example; return the exit code and what it printed."""
+    text = io.StringIO()
+    code = run_example("drop", size, ranks, out, settings, None, Console(file=text, width=100))
+    return code, text.getvalue()
+
+
+def test_a_sheet_that_holds_is_success(drop: Path) -> None:
+    code, text = run(drop, ranks=2)
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 0, text
+    assert summary["passed"]
+    assert (summary["poured"], summary["on_sheet"], summary["crossed"]) == (1, 1, 0)
+    assert summary["time"] == pytest.approx(0.3)
+    assert summary["particle_updates"] == 300
+    assert summary["deviation"] is None
+    assert "n/a" in text
+
+
+def test_a_particle_through_the_sheet_is_failure(drop: Path) -> None:
+    code, _ = run(drop, floor="0.1")
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 1
+    assert (summary["crossed"], summary["spilled"], summary["mass_defect"]) == (1, 1, 0)
+
+
+def test_a_particle_unaccounted_for_is_failure(drop: Path) -> None:
+    code, _ = run(drop, source="2")
+    assert code == 1
+    assert json.loads((drop / "summary.json").read_text())["mass_defect"] == 1
+
+
+def test_size_and_settings_reach_the_script(drop: Path) -> None:
+    run(drop, "tiny")
+    assert json.loads((drop / "summary.json").read_text())["steps"] == 100
+    run(drop, "tiny", t_end="0.05")
+    assert json.loads((drop / "summary.json").read_text())["steps"] == 50
+
+
+def test_an_error_of_lammps_is_shown_and_leaves_no_old_summary(drop: Path) -> None:
+    run(drop, "tiny")
+    code, text = run(drop, "tiny", floor="high")
+    assert code == 1
+    assert "ERROR" in text
+    assert "log.lammps" in text
+    assert not (drop / "summary.json").exists()
+
+
+def test_unknown_names_say_what_there_is(drop: Path) -> None:
+    with pytest.raises(UserError, match="no size 'huge' of example drop: choose from tiny, small"):
+        run(drop, "huge")
+    with pytest.raises(UserError, match=r"no variable 'flor' .*: choose from t_end, floor, source"):
+        run(drop, flor="1")
+
+
+@pytest.mark.parametrize("setting", ["t_end", "=1", "t_end=", "1a=2"])
+def test_settings_are_name_and_value(setting: str) -> None:
+    with pytest.raises(UserError, match="expected name=value"):
+        examples.parse_settings([setting])
+    assert examples.parse_settings(["a=1", "b=x=y"]) == {"a": "1", "b": "x=y"}

@@ -1,0 +1,92 @@
+"""Dumps whose number of atoms varies, and dumps that are not as they should be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import dump_frame
+
+from sphcloth.errors import UserError
+from sphcloth.trajectory import Trajectory
+
+COLUMNS = "id type x y z vx vy vz rho"
+FEW = [[1, 2, 0.5, 0.25, 0.125, 0, 0, 0, 1000], [7, 1, 3.0000001, 1, 2, 4, 5, 6, 999.5]]
+MANY = [[9, 1, -0.5, -1.5, -2.5, 1, 1, 1, 1], *FEW, [8, 1, 0, 0, 0, 2, 2, 2, 2]]
+WriteDump = Callable[[str], Path]
+
+
+def test_frames_differ_in_their_number_of_atoms(write_dump: WriteDump) -> None:
+    frames = (dump_frame(0, FEW, COLUMNS), dump_frame(5, MANY, COLUMNS), dump_frame(9, [], COLUMNS))
+    trajectory = Trajectory(write_dump("".join(frames)))
+    assert [len(frame) for frame in trajectory] == [2, 4, 0]
+    assert trajectory.steps.tolist() == [0, 5, 9]
+    assert trajectory[-2].step == 5
+    with pytest.raises(IndexError):
+        trajectory[3]
+
+
+def test_atoms_come_sorted_by_id_with_all_their_columns(write_dump: WriteDump) -> None:
+    frame = Trajectory(write_dump(dump_frame(5, MANY, COLUMNS)))[0]
+    assert frame.ids.tolist() == [1, 7, 8, 9]
+    assert frame.types.tolist() == [2, 1, 1, 1]
+    assert frame.columns["rho"].tolist() == [1000, 999.5, 2, 1]
+    assert frame.velocities[1].tolist() == [4, 5, 6]
+    assert frame.select(2).ids.tolist() == [1]
+
+
+def test_positions_are_those_of_the_script(write_dump: WriteDump) -> None:
+    text = dump_frame(0, FEW, COLUMNS).replace(" 3 1 2 ", " 3.000000123456 1 2 ")
+    frame = Trajectory(write_dump(text))[0]
+    assert frame.box.tolist() == [[-1, -2, -3], [4, 5, 6]]
+    assert frame.positions.tolist() == [[0.5, 0.25, 0.125], [3.000000123456, 1, 2]]
+
+
+def test_time_comes_from_the_log(write_dump: WriteDump, tmp_path: Path) -> None:
+    log = tmp_path / "log.lammps"
+    log.write_text("---\nkeywords: ['Step', 'Time', ]\ndata:\n  - [0, 0, ]\n  - [9, 0.3, ]\n...\n")
+    dump = write_dump(dump_frame(0, FEW, COLUMNS) + dump_frame(9, MANY, COLUMNS))
+    assert [frame.time for frame in Trajectory(dump, log)] == [0, 0.3]
+    assert np.isnan(Trajectory(dump)[1].time)
+
+
+# characters left of the last frame: within its title, its header, an atom, before the last newline
+@pytest.mark.parametrize("kept", [8, 60, 150, -1])
+def test_a_last_frame_that_is_cut_off_is_left_out(write_dump: WriteDump, kept: int) -> None:
+    dump = write_dump(dump_frame(0, FEW, COLUMNS) + dump_frame(5, MANY, COLUMNS)[:kept])
+    with pytest.warns(UserWarning, match="frame at line 12 is cut off"):
+        trajectory = Trajectory(dump)
+    assert trajectory.steps.tolist() == [0]
+
+
+def test_garbage_between_frames_names_file_and_line(write_dump: WriteDump) -> None:
+    dump = write_dump(dump_frame(0, FEW, COLUMNS) + "rubbish\n" + dump_frame(5, MANY, COLUMNS))
+    with pytest.raises(UserError, match=r"run\.lammpstrj, line 12: expected 'ITEM: TIMESTEP'"):
+        Trajectory(dump)
+
+
+@pytest.mark.parametrize("row", ["7 1 3 one 2 4 5 6 999.5", "7 1 3"])
+def test_garbage_in_a_row_names_file_and_line(write_dump: WriteDump, row: str) -> None:
+    dump = write_dump(dump_frame(0, FEW, COLUMNS).replace("7 1 3 1 2 4 5 6 999.5", row))
+    with pytest.raises(UserError, match=r"run\.lammpstrj, line 11: not a row of numbers"):
+        Trajectory(dump)[0]
+
+
+def test_a_file_that_is_no_dump_is_refused(write_dump: WriteDump) -> None:
+    with pytest.raises(UserError, match="line 1: expected 'ITEM: TIMESTEP', found 'LAMMPS"):
+        Trajectory(write_dump("LAMMPS data file\n\n5 atoms\n"))
+    with pytest.raises(UserError, match="no complete frame"):
+        Trajectory(write_dump(""))
+
+
+def test_missing_columns_say_what_to_dump(write_dump: WriteDump) -> None:
+    with pytest.raises(UserError, match=r"lacks the column id type: .*dump ID all custom"):
+        Trajectory(write_dump(dump_frame(0, [[0, 0, 0]], "x y z")))
+
+
+def test_missing_velocities_are_an_error_only_when_asked_for(write_dump: WriteDump) -> None:
+    frame = Trajectory(write_dump(dump_frame(0, [[1, 1, 0, 0, 0]])))[0]
+    with pytest.raises(UserError, match="no column vx vy vz"):
+        _ = frame.velocities

@@ -28,7 +28,7 @@ static const std::string COEFF = "pair_coeff (sph/tait)";
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
     Pair(lmp), kernel(Kernel::WENDLAND_C2), support_global(0.0), keep_tension(0), viscous(false),
     several_fluids(false), measure_volume(false), active(nullptr), single_fluid(1),
-    stage(Stage::DENSITY), densities_fn(nullptr), forces_fn(nullptr), forces_virial_fn(nullptr),
+    stage(Stage::DENSITY), densities_fn(nullptr), forces_fn(nullptr), virial_fn(nullptr),
     volumes_fn(nullptr)
 {
   restartinfo = 1;
@@ -254,8 +254,8 @@ template <class K> void PairSPHTait::bind_kernel()
 {
   volumes_fn = &PairSPHTait::volumes<K>;
   densities_fn = &PairSPHTait::densities<K>;
-  forces_fn = &PairSPHTait::forces<K, false>;
-  forces_virial_fn = &PairSPHTait::forces<K, true>;
+  forces_fn = &PairSPHTait::forces<K>;
+  virial_fn = &PairSPHTait::tally_virial<K>;
 }
 
 double PairSPHTait::pair_support(int i, int j) const
@@ -359,10 +359,8 @@ void PairSPHTait::compute(int eflag, int vflag)
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
 
-  if (vflag_either)
-    (this->*forces_virial_fn)();
-  else
-    (this->*forces_fn)();
+  (this->*forces_fn)();
+  if (vflag_either) (this->*virial_fn)();
   if (eflag_either) tally_energy();
 }
 
@@ -505,66 +503,76 @@ void PairSPHTait::equation_of_state_all()
   }
 }
 
-template <class K, bool VIRIAL> void PairSPHTait::forces()
+template <class K> void PairSPHTait::forces()
 {
-  if (viscous) {
-    fluid_forces<K, true, VIRIAL>();
-    boundary_forces<K, true, VIRIAL>();
-  } else {
-    fluid_forces<K, false, VIRIAL>();
-    boundary_forces<K, false, VIRIAL>();
-  }
-}
-
-template <class K, bool VISCOUS, bool VIRIAL> void PairSPHTait::fluid_forces()
-{
-  const int n = atom->ntypes + 1;
-  const ParticleView p = view();
   for (int i : fluid) {
     if (!is_active(i)) continue;
-    const PairTerms *row = &terms[atom->type[i] * n];
-    const Neighbourhood near_i = neighbourhood(i);
-    Acceleration a;
-    if (several_fluids)
-      fluid_on_fluid<K, VISCOUS, true, VIRIAL>(p, row, i, near_i.fluid, near_i.n_fluid, a);
-    else
-      fluid_on_fluid<K, VISCOUS, false, VIRIAL>(p, fluid_terms(row), i, near_i.fluid,
-                                                near_i.n_fluid, a);
-    if (near_i.n_boundary)
-      across_boundary<K, VISCOUS, false, VIRIAL>(p, row, i, near_i.boundary, near_i.n_boundary, a);
+    const Acceleration a = viscous ? on_fluid<K, true, false>(i) : on_fluid<K, false, false>(i);
     atom->drho[i] += a.drho;
-    add_force(i, amount[i], a, VIRIAL);
+    add_force(i, a);
   }
-}
-
-template <class K, bool VISCOUS, bool VIRIAL> void PairSPHTait::boundary_forces()
-{
-  const int n = atom->ntypes + 1;
-  const ParticleView p = view();
   for (int i : boundary) {
     gather_near(i, true, false);
-    const Neighbourhood near_i = neighbourhood(i);
-    if (!near_i.n_fluid) continue;
-    Acceleration a;
-    across_boundary<K, VISCOUS, true, VIRIAL>(p, &terms[atom->type[i] * n], i, near_i.fluid,
-                                              near_i.n_fluid, a);
-    add_force(i, amount[i], a, VIRIAL);
+    if (!near_fluid[i]) continue;
+    add_force(i, viscous ? on_boundary<K, true, false>(i) : on_boundary<K, false, false>(i));
   }
 }
 
-// amount: mass of a fluid particle, volume of a boundary particle
+// Only on steps that ask for it, and beside the forces: what is printed must not change, not even
+// in the last bit, what is computed.
 
-void PairSPHTait::add_force(int i, double amount_i, const Acceleration &a, bool virial_too)
+template <class K> void PairSPHTait::tally_virial()
 {
-  const double scale = amount_i / force->ftm2v;
+  for (int i : fluid)
+    add_virial(i, viscous ? on_fluid<K, true, true>(i) : on_fluid<K, false, true>(i));
+  for (int i : boundary)
+    if (near_fluid[i])
+      add_virial(i, viscous ? on_boundary<K, true, true>(i) : on_boundary<K, false, true>(i));
+}
+
+// on a fluid particle, per mass
+
+template <class K, bool VISCOUS, bool VIRIAL> Acceleration PairSPHTait::on_fluid(int i) const
+{
+  const ParticleView p = view();
+  const PairTerms *row = &terms[atom->type[i] * (atom->ntypes + 1)];
+  const Neighbourhood near_i = neighbourhood(i);
+  Acceleration a;
+  if (several_fluids)
+    fluid_on_fluid<K, VISCOUS, true, VIRIAL>(p, row, i, near_i.fluid, near_i.n_fluid, a);
+  else
+    fluid_on_fluid<K, VISCOUS, false, VIRIAL>(p, fluid_terms(row), i, near_i.fluid, near_i.n_fluid,
+                                              a);
+  if (near_i.n_boundary)
+    across_boundary<K, VISCOUS, false, VIRIAL>(p, row, i, near_i.boundary, near_i.n_boundary, a);
+  return a;
+}
+
+// on a boundary particle, per volume
+
+template <class K, bool VISCOUS, bool VIRIAL> Acceleration PairSPHTait::on_boundary(int i) const
+{
+  const Neighbourhood near_i = neighbourhood(i);
+  Acceleration a;
+  across_boundary<K, VISCOUS, true, VIRIAL>(view(), &terms[atom->type[i] * (atom->ntypes + 1)], i,
+                                            near_i.fluid, near_i.n_fluid, a);
+  return a;
+}
+
+void PairSPHTait::add_force(int i, const Acceleration &a)
+{
+  const double scale = amount[i] / force->ftm2v;
   atom->f[i][0] += scale * a.x;
   atom->f[i][1] += scale * a.y;
   atom->f[i][2] += scale * a.z;
-  if (!virial_too) return;
-  const double energy_scale = amount_i * force->mvv2e;
+}
+
+void PairSPHTait::add_virial(int i, const Acceleration &a)
+{
+  const double scale = amount[i] * force->mvv2e;
   for (int m = 0; m < 6; m++) {
-    if (vflag_global) virial[m] += energy_scale * a.virial[m];
-    if (vflag_atom) vatom[i][m] += energy_scale * a.virial[m];
+    if (vflag_global) virial[m] += scale * a.virial[m];
+    if (vflag_atom) vatom[i][m] += scale * a.virial[m];
   }
 }
 

@@ -86,15 +86,15 @@ class PairSPHTait : public Pair {
   const int *active;
   int single_fluid;                        // the type of all fluid, unless several_fluids
   std::vector<int> fluid, boundary;        // owned particles by role, since the last list build
-  std::vector<int> near;                   // neighbours inside the support, stretch per particle
+  sphcloth::AlignedVector<int> near;       // neighbours inside the support, stretch per particle
   std::vector<std::int64_t> near_start;    // by local index
   std::vector<int> near_fluid, near_boundary;
-  std::vector<double> near_rsq;            // of one particle
-  std::vector<double> amount, pressure;    // per atom, owned and ghost
+  sphcloth::AlignedVector<double> near_rsq;    // of one particle
+  sphcloth::AlignedVector<double> amount, pressure;    // per atom, owned and ghost
   Stage stage;
 
   using ComputeFn = void (PairSPHTait::*)();
-  ComputeFn densities_fn, forces_fn, forces_virial_fn, volumes_fn;
+  ComputeFn densities_fn, forces_fn, virial_fn, volumes_fn;
 
   void allocate();
   TypeData read_fluid(ArgReader &, PairData &) const;
@@ -119,10 +119,12 @@ class PairSPHTait : public Pair {
   template <class K> void volumes();
   template <class K> void densities();
   void equation_of_state_all();
-  template <class K, bool VIRIAL> void forces();
-  template <class K, bool VISCOUS, bool VIRIAL> void fluid_forces();
-  template <class K, bool VISCOUS, bool VIRIAL> void boundary_forces();
-  void add_force(int, double, const sphcloth::Acceleration &, bool);
+  template <class K> void forces();
+  template <class K> void tally_virial();
+  template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_fluid(int) const;
+  template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_boundary(int) const;
+  void add_force(int, const sphcloth::Acceleration &);
+  void add_virial(int, const sphcloth::Acceleration &);
   void tally_energy();
 };
 

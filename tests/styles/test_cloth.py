@@ -1,0 +1,245 @@
+"""create_cloth, bond_style pbd, dihedral_style pbd and fix pbd/cloth."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import HEADER
+
+BOX = """
+region box block -2 2 -2 2 -2 2
+create_box 1 box bond/types 2 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 16
+"""
+
+STYLES = """
+special_bonds lj/coul 1 1 1
+pair_style zero 0.3
+pair_coeff * *
+bond_style pbd
+bond_coeff * {k}
+angle_style zero
+angle_coeff *
+dihedral_style pbd
+dihedral_coeff * {bend}
+neigh_modify every 1 delay 0 check yes
+"""
+
+
+def cloth(extra="", k=1.0, bend=0.0, options="", fix="", regions="", header=HEADER):
+    lmp = instance()
+    lmp.commands_string(
+        header.format(boundary="p p p")
+        + BOX
+        + regions
+        + f"create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 group cloth {options}\n"
+        + STYLES.format(k=k, bend=bend)
+        + f"fix gravity all gravity 9.81 vector 0 0 -1\nfix sheet cloth pbd/cloth {fix}\n"
+        + "timestep 1e-3\n"
+        + extra
+    )
+    return lmp
+
+
+@pytest.mark.parametrize("pattern", ["square", "diagonal", "equilateral"])
+@pytest.mark.parametrize("newton", ["on", "off"])
+def test_create_cloth_counts_and_mass(pattern, newton):
+    header = f"newton {newton}" + HEADER
+    lmp = cloth(options=f"pattern {pattern}", header=header)
+    vertices = lmp.get_natoms()
+    edges, triangles, hinges = (
+        lmp.extract_global(name) for name in ("nbonds", "nangles", "ndihedrals")
+    )
+    assert vertices + triangles == edges + 1
+    assert 3 * triangles == edges + hinges
+    assert vertices * lmp.numpy.extract_atom("mass")[1] == pytest.approx(2.0, rel=1e-12)
+    x = by_id(lmp, "x")
+    assert x.min(axis=0) == pytest.approx([-0.5, -0.5, 0]) and x[:, 2].max() == 0
+
+
+def test_create_cloth_masses_by_area_where_atoms_have_masses():
+    header = HEADER
+    lmp = instance()
+    lmp.commands_string(
+        header.format(boundary="p p p")
+        + BOX
+        + "fix mass all property/atom rmass ghost yes\n"
+        + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 pattern square\n"
+    )
+    mass = by_id(lmp, "rmass")
+    assert mass.sum() == pytest.approx(2.0, rel=1e-12)
+    assert mass.min() < 0.5 * mass.max()  # corners carry a third or two of a cell
+
+
+def test_create_cloth_orientation_pins_and_bond_types():
+    lmp = cloth(
+        options="center 0 0 0.5 axes 1 0 0 0 0 1 pattern square shear 2 pin top pins",
+        extra="variable n equal count(pins)\n",
+        regions="region top block INF INF INF INF 0.95 INF\n",
+    )
+    x = by_id(lmp, "x")
+    assert np.ptp(x[:, 1]) == 0 and x[:, 2].max() == pytest.approx(1.0)
+    assert lmp.extract_variable("n") == 11
+    bonds = lmp.numpy.gather_bonds()
+    diagonal = np.array(
+        [np.ptp(x[b - 1, 0]) > 1e-9 and np.ptp(x[b - 1, 2]) > 1e-9 for b in bonds[:, 1:]]
+    )
+    assert np.array_equal(bonds[:, 0] == 2, diagonal)
+
+
+def free_fall(t, steps):
+    """Semi-implicit Euler: z = -g dt^2 n (n + 1) / 2."""
+    dt = t / steps
+    return -9.81 * dt**2 * steps * (steps + 1) / 2
+
+
+@pytest.mark.parametrize("iterations", [1, 20])
+@pytest.mark.parametrize("k", [0.0, 0.3, 1.0])
+def test_unpinned_cloth_falls_freely_at_any_stiffness(k, iterations):
+    lmp = cloth("run 50", k=k, bend=k, fix=f"iterations {iterations} damping 5")
+    z = by_id(lmp, "x")[:, 2]
+    assert z == pytest.approx(np.full_like(z, free_fall(0.05, 50)), rel=1e-9)
+
+
+def test_pinned_cloth_sags_less_the_stiffer_it_is():
+    """The paper's figure 3 in small: k = 0, 0.3 and 1."""
+    sag, n_pins = [], 40
+    for k in (0.0, 0.3, 1.0):
+        lmp = cloth(
+            "run 300",
+            k=k,
+            options="pin rim pins",
+            fix="pin pins iterations 5",
+            regions="region rim block -0.45 0.45 -0.45 0.45 INF INF side out\n",
+        )
+        z = by_id(lmp, "x")[:, 2]
+        assert np.isfinite(z).all() and (z == 0).sum() == n_pins
+        sag.append(-z.min())
+        if k == 0.0:  # the pins hold nothing but themselves
+            pinned = lmp.extract_fix("sheet", 0, 1, 2)
+            assert pinned == pytest.approx(9.81 * 2.0 * n_pins / 121, rel=1e-6)
+    assert sag[0] == pytest.approx(-free_fall(0.3, 300), rel=1e-9)
+    assert 0.3 * sag[0] > sag[1] > 2 * sag[2] > 0
+
+
+PAIR = """
+atom_modify sort 0 0
+create_atoms 1 single 0 0 0
+create_atoms 1 single 0 0 -1
+mass 1 {mass}
+group pins id 1
+create_bonds single/bond 1 1 2
+"""
+
+
+def one_edge(k, iterations, extra, mass=0.1):
+    lmp = instance()
+    lmp.commands_string(
+        HEADER.format(boundary="p p p")
+        + BOX
+        + PAIR.format(mass=mass)
+        + STYLES.format(k=k, bend=0).replace("zero 0.3", "zero 1.5")
+        + "fix gravity all gravity 9.81 vector 0 0 -1\n"
+        + f"fix sheet all pbd/cloth iterations {iterations} pin pins\n"
+        + extra
+    )
+    return lmp
+
+
+@pytest.mark.parametrize("iterations", [1, 2, 5, 20])
+def test_k_of_one_edge_does_not_depend_on_the_iterations(iterations):
+    """After one step the stretch is (1 - k) of free fall, equation (9)."""
+    lmp = one_edge(0.3, iterations, "timestep 0.01\nrun 1")
+    stretch = -1.0 - by_id(lmp, "x")[1, 2]
+    assert stretch == pytest.approx(0.7 * 9.81e-4, rel=1e-9)
+
+
+def test_pin_force_carries_what_hangs():
+    lmp = one_edge(1.0, 5, "timestep 0.001\nrun 300")
+    assert by_id(lmp, "x")[1, 2] == pytest.approx(-1.0, abs=1e-12)
+    assert lmp.extract_fix("sheet", 0, 1, 2) == pytest.approx(2 * 0.1 * 9.81, rel=1e-9)
+    assert abs(lmp.extract_fix("sheet", 0, 1, 3)) < 1e-12  # strain
+
+
+def test_pendulum_swings_with_its_period():
+    """Small swings of one rigid link: half a period turns the displacement round."""
+    lmp = one_edge(1.0, 5, "")
+    half = np.pi * np.sqrt(1.0 / 9.81)
+    lmp.command("set atom 2 x 0.02")
+    lmp.command(f"timestep {half / 2000}")
+    lmp.command("run 2000")
+    assert by_id(lmp, "x")[1, 0] == pytest.approx(-0.02, rel=0.01)
+
+
+def momenta(lmp):
+    """Linear and angular momentum of equal masses, over the mass of one."""
+    x, v = by_id(lmp, "x"), by_id(lmp, "v")
+    return v.sum(axis=0), np.cross(x, v).sum(axis=0)
+
+
+def test_free_cloth_keeps_momentum():
+    lmp = cloth(
+        "unfix gravity\nvelocity all create 1e22 777 loop geom\n"
+        "displace_atoms all random 0.01 0.01 0.01 55 units box\nrun 0",
+        bend=0.5,
+        fix="damping 20",
+    )
+    before = momenta(lmp)[0]
+    lmp.command("run 50")
+    after = momenta(lmp)[0]
+    assert np.abs(after - before).max() < 1e-12 * np.abs(by_id(lmp, "v")).sum()
+
+
+def test_spinning_cloth_keeps_its_spin_to_first_order():
+    """What a turn of the sheet loses in a fixed time falls with the step."""
+    lost = []
+    for dt, steps in ((2e-3, 50), (1e-3, 100)):
+        lmp = cloth(
+            "unfix gravity\nvariable vx atom -5*y\nvariable vy atom 5*x\n"
+            f"velocity all set v_vx v_vy 0\ntimestep {dt}\nrun 0"
+        )
+        before = momenta(lmp)[1][2]
+        lmp.command(f"run {steps}")
+        lost.append(abs(momenta(lmp)[1][2] / before - 1))
+    assert lost[1] < 0.6 * lost[0] < 0.01
+
+
+def test_damping_decays_stretching_at_its_rate_and_leaves_the_fall():
+    lmp = one_edge(1e-9, 1, "unfix sheet\nfix sheet all pbd/cloth iterations 1 damping 30\n")
+    lmp.commands_string("velocity all ramp vz -0.1 0.1 z -1 0 units box\ntimestep 1e-3\nrun 50")
+    v = by_id(lmp, "v")[:, 2]
+    assert v[0] - v[1] == pytest.approx(0.2 * np.exp(-30 * 0.05), rel=1e-4)
+    assert v.mean() == pytest.approx(-9.81 * 0.05, rel=1e-9)
+
+
+def test_cloth_that_crosses_the_periodic_border_moves_like_one_that_does_not():
+    shapes = []
+    for centre, left in (([0, 0, 0], "INF -0.45"), ([2, 1.9, 1.95], "1.4 1.55")):
+        lmp = cloth(
+            "run 60",
+            bend=0.2,
+            options=f"center {' '.join(map(str, centre))} pin left pins",
+            fix="pin pins",
+            regions=f"region left block {left} INF INF INF INF\n",
+        )
+        boxes = np.array([lmp.decode_image_flags(int(i)) for i in by_id(lmp, "image")])
+        shapes.append(by_id(lmp, "x") + 4.0 * boxes - np.array(centre))
+    assert np.ptp(shapes[0][:, 2]) > 0.01
+    np.testing.assert_allclose(shapes[1], shapes[0], atol=1e-10)
+
+
+def test_rest_shape_from_a_property():
+    """The cloth starts stretched by 10 % and returns to the rest positions it was given."""
+    lmp = instance()
+    lmp.commands_string(
+        HEADER.format(boundary="p p p")
+        + BOX
+        + "fix rest all property/atom d2_rest 3\n"
+        + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 group cloth\n"
+        + "variable x atom x\nvariable y atom y\n"
+        + "set group all d2_rest[1] v_x d2_rest[2] v_y d2_rest[3] 0\n"
+        + "displace_atoms all ramp x -0.05 0.05 x -0.5 0.5 units box\n"
+        + STYLES.format(k=1.0, bend=0)
+        + "fix sheet cloth pbd/cloth rest d2_rest damping 100\ntimestep 1e-3\nrun 300"
+    )
+    assert lmp.extract_fix("sheet", 0, 1, 3) < 1e-6
+    assert np.ptp(by_id(lmp, "x")[:, 2]) == 0

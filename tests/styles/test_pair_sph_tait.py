@@ -1,0 +1,256 @@
+"""pair_style sph/tait against closed formulas, written here from the paper's equations."""
+
+import math
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+
+H = 0.1
+RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
+
+
+def wendland(r, dim=3):
+    norm = 21 / (2 * math.pi) / H**3 if dim == 3 else 7 / math.pi / H**2
+    q = r / H
+    return norm * (1 - q) ** 4 * (1 + 4 * q)
+
+
+def wendland_slope(r):
+    return 21 / (2 * math.pi) / H**4 * -20 * (r / H) * (1 - r / H) ** 3
+
+
+def tait(rho):
+    return C0**2 * RHO0 / GAMMA * ((rho / RHO0) ** GAMMA - 1)
+
+
+def two_particles(r, setting="", units="si", coeff=f"fluid {RHO0} c0 {C0}", second="", mass=1.0):
+    lmp = instance()
+    lmp.commands_string(f"""
+        units {units}
+        atom_style sph
+        comm_modify vel yes
+        boundary p p p
+        region box block -1 1 -1 1 -1 1
+        create_box 2 box
+        mass 1 {mass}
+        mass 2 {mass * 1.5}
+        create_atoms 1 single 0 0 0
+        create_atoms 2 single {r} 0 0
+        pair_style sph/tait {H} {setting}
+        pair_coeff * * {coeff}
+        {second}
+        neighbor 0.02 bin
+        run 0""")
+    return lmp
+
+
+@pytest.mark.parametrize("r", [0.02, 0.05, 0.09])
+def test_two_particles(r):
+    lmp = two_particles(r)
+    rho1 = 1.0 * wendland(0) + 1.5 * wendland(r)
+    rho2 = 1.5 * wendland(0) + 1.0 * wendland(r)
+    force = -1.5 * (tait(rho1) / rho1**2 + tait(rho2) / rho2**2) * wendland_slope(r)
+    np.testing.assert_allclose(by_id(lmp, "rho"), [rho1, rho2], rtol=1e-14)
+    np.testing.assert_allclose(by_id(lmp, "f")[:, 0], [-force, force], rtol=1e-12)
+    assert np.all(by_id(lmp, "f")[:, 1:] == 0)
+
+
+def test_outside_the_support_nothing_acts():
+    lmp = two_particles(0.1)
+    assert np.all(by_id(lmp, "f") == 0)
+    np.testing.assert_allclose(by_id(lmp, "rho")[0], wendland(0), rtol=1e-14)
+
+
+def test_units_are_those_of_the_script():
+    si, real = two_particles(0.05), two_particles(0.05, units="real")
+    ftm2v = 4184e-7  # (kcal/mol/Angstrom)/(g/mol) in Angstrom/fs^2
+    np.testing.assert_allclose(by_id(real, "f") * ftm2v, by_id(si, "f"), rtol=2e-4)
+
+
+@pytest.mark.parametrize("stiffness", [f"k {C0**2}", f"c0 {C0}", f"fluctuation 0.01 {C0 / 10}"])
+def test_three_ways_to_give_the_stiffness(stiffness):
+    lmp = two_particles(0.05, coeff=f"fluid {RHO0} {stiffness}")
+    np.testing.assert_allclose(by_id(lmp, "f"), by_id(two_particles(0.05), "f"), rtol=1e-12)
+
+
+def test_negative_pressure_counts_as_zero_unless_asked_for():
+    light = {"mass": 0.01}
+    assert np.all(by_id(two_particles(0.05, **light), "f") == 0)
+    pulled = two_particles(0.05, "tension yes", **light)
+    assert by_id(pulled, "f")[0, 0] > 0
+
+
+def test_kernel_choice():
+    lmp = two_particles(0.05, "kernel cubic")
+    cubic = 8 / math.pi / H**3
+    np.testing.assert_allclose(by_id(lmp, "rho")[0], cubic * (1.0 + 1.5 * 0.25), rtol=1e-14)
+
+
+def test_boundary_counts_with_its_own_volume_and_pushes_back():
+    volume, r = 2e-4, 0.03
+    coeff = f"fluid {RHO0} c0 {C0}"
+    lmp = two_particles(r, coeff=coeff, second=f"pair_coeff 2 2 boundary volume {volume}")
+    rho = wendland(0) + RHO0 * volume * wendland(r)
+    force = -RHO0 * volume * tait(rho) / rho**2 * wendland_slope(r)
+    np.testing.assert_allclose(by_id(lmp, "rho")[0], rho, rtol=1e-14)
+    np.testing.assert_allclose(by_id(lmp, "f")[:, 0], [-force, force], rtol=1e-12)
+
+
+def test_measured_volume_of_a_lone_boundary_particle():
+    coeff = f"fluid {RHO0} c0 {C0}"
+    lmp = two_particles(0.03, coeff=coeff, second="pair_coeff 2 2 boundary")
+    rho = wendland(0) + RHO0 / wendland(0) * wendland(0.03)
+    np.testing.assert_allclose(by_id(lmp, "rho")[0], rho, rtol=1e-14)
+
+
+def test_boundary_stiffness_of_its_own():
+    coeff, volume = f"fluid {RHO0} c0 {C0}", "pair_coeff 2 2 boundary volume 2e-4"
+    plain = two_particles(0.03, coeff=coeff, second=volume)
+    stiff = two_particles(0.03, coeff=coeff, second=f"{volume}\npair_coeff 1 2 c0 {2 * C0}")
+    np.testing.assert_allclose(by_id(stiff, "f"), 4 * by_id(plain, "f"), rtol=1e-12)
+
+
+def lattice(extra="", displace=True, newton="on", dimension=3, boundary="p p p", kind="block"):
+    """A periodic lattice at rest density, jittered if asked for."""
+    depth = "-0.2 0.2" if dimension == 3 else "-0.025 0.025"
+    box = f"-0.2 0.2 -0.2 0.2 {depth}" + (" 0.1 0.05 0.02" if kind == "prism" else "")
+    lmp = instance()
+    lmp.commands_string(f"""
+        newton {newton}
+        units si
+        dimension {dimension}
+        atom_style sph
+        comm_modify vel yes
+        boundary {boundary}
+        lattice {"sc" if dimension == 3 else "sq"} 0.05
+        region box {kind} {box} units box
+        create_box 1 box
+        create_atoms 1 box
+        mass 1 {RHO0 * 0.05**dimension}
+        velocity all create 300 4321 loop geom
+        velocity all scale 1e22
+        {"displace_atoms all random 0.01 0.01 0.01 99 units box" if displace else ""}
+        pair_style sph/tait {H} tension yes
+        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha 0.3 nu 0.01
+        neighbor 0.02 bin
+        neigh_modify every 1 delay 0 check yes
+        {extra}""")
+    return lmp
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_lattice_density_is_the_lattice_sum(dimension):
+    lmp = lattice("run 0", displace=False, dimension=dimension)
+    n = np.arange(-2, 3) * 0.05
+    grid = np.stack(np.meshgrid(*[n] * dimension), axis=-1).reshape(-1, dimension)
+    r = np.linalg.norm(grid, axis=1)
+    expected = RHO0 * 0.05**dimension * wendland(r[r < H], dimension).sum()
+    np.testing.assert_allclose(by_id(lmp, "rho"), expected, rtol=1e-13)
+    lmp.command("velocity all set 0 0 0")
+    lmp.command("run 0")
+    assert np.abs(by_id(lmp, "f")).max() < 1e-9 * RHO0 * 0.05 * C0**2
+
+
+def test_viscosity_against_a_direct_sum():
+    """Laminar and artificial viscosity, with pressure, over all pairs in numpy."""
+    lmp = lattice("run 0")
+    x, v, rho = by_id(lmp, "x"), by_id(lmp, "v"), by_id(lmp, "rho")
+    mass, h_s = RHO0 * 0.05**3, H / 2
+    d = x[:, None] - x[None]
+    d -= 0.4 * np.round(d / 0.4)
+    dv = v[:, None] - v[None]
+    r = np.linalg.norm(d, axis=2)
+    near = (r < H) & (r > 0)
+    r[~near] = H
+    slope = wendland_slope(r) / r
+    vr = (d * dv).sum(axis=2)
+    p = tait(rho) / rho**2
+    mu = h_s * np.minimum(vr, 0) / (r**2 + 0.01 * h_s**2)
+    mean = (rho[:, None] + rho[None]) / 2
+    along = p[:, None] + p[None] - 0.3 * C0 * mu / mean
+    friction = 0.01 * 2 * mean / (rho[:, None] * rho[None])
+    pair = mass**2 * slope[..., None] * (friction[..., None] * dv - along[..., None] * d)
+    expected = np.where(near[..., None], pair, 0).sum(axis=1)
+    np.testing.assert_allclose(by_id(lmp, "f"), expected, rtol=1e-10, atol=1e-9)
+    drho = (mass * slope * vr * near).sum(axis=1)
+    np.testing.assert_allclose(by_id(lmp, "drho"), drho, rtol=1e-10, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["block", "prism"])
+def test_momentum_is_kept_and_newton_does_not_matter(kind):
+    forces = {}
+    for newton in ("on", "off"):
+        lmp = lattice("timestep 1e-4\nfix 1 all nve\nrun 20", newton=newton, kind=kind)
+        v = by_id(lmp, "v")
+        assert np.abs(v.sum(axis=0)).max() < 1e-12 * np.abs(v).sum()
+        forces[newton] = by_id(lmp, "f")
+    scale = np.abs(forces["on"]).max()
+    np.testing.assert_allclose(forces["on"], forces["off"], rtol=0, atol=1e-11 * scale)
+
+
+def test_energy_is_what_compression_stored():
+    """The work done by the pressure equals the loss of the pair energy (no viscosity)."""
+    lmp = lattice(
+        """pair_coeff 1 1 fluid 1000 c0 20
+        velocity all set 0 0 0
+        timestep 2e-5
+        fix 1 all nve
+        thermo_style custom step ke pe etotal
+        run 0""",
+    )
+    start = lmp.get_thermo("etotal")
+    lmp.command("run 400")
+    assert lmp.get_thermo("ke") > 0.05 * start
+    assert abs(lmp.get_thermo("etotal") - start) < 1e-3 * start
+
+
+def test_virial_is_the_derivative_of_the_energy():
+    """Pressure at rest against -dE/dV of the jittered lattice."""
+    lmp = lattice("velocity all set 0 0 0\nthermo_style custom pe press\nrun 0")
+    press, size = lmp.get_thermo("press"), 1e-5
+    energy = []
+    for scale in (1 + size, (1 - size) / (1 + size)):
+        lmp.command(f"change_box all x scale {scale} y scale {scale} z scale {scale} remap")
+        lmp.command("run 0")
+        energy.append(lmp.get_thermo("pe"))
+    slope = (energy[0] - energy[1]) / (0.4**3 * ((1 + size) ** 3 - (1 - size) ** 3))
+    assert press == pytest.approx(-slope, rel=1e-4)
+
+
+def test_column_of_water_rests_on_its_floor():
+    """The floor carries the weight, and the pressure grows with depth."""
+    lmp = instance()
+    lmp.commands_string("""
+        units si
+        atom_style sph
+        comm_modify vel yes
+        boundary p p f
+        region box block 0 0.2 0 0.2 -0.2 0.6
+        create_box 2 box
+        mass 1 0.125
+        mass 2 1
+        lattice sc 0.05 origin 0.5 0.5 0.5
+        region floor block INF INF INF INF -0.026 0.0 units box
+        create_atoms 2 region floor
+        region water block INF INF INF INF 0.0 0.4 units box
+        create_atoms 1 region water
+        group fluid type 1
+        group floor type 2
+        pair_style sph/tait 0.1
+        pair_coeff 1 1 fluid 1000 c0 20 alpha 0.5
+        pair_coeff 2 2 boundary
+        neighbor 0.03 bin
+        timestep 0.002
+        fix gravity fluid gravity 9.81 vector 0 0 -1
+        fix step fluid sph/integrate global
+        compute push floor reduce sum fz
+        fix mean all ave/time 1 1000 1000 c_push
+        run 3000""")
+    weight = 4 * 4 * 8 * 0.125 * 9.81
+    assert -lmp.extract_fix("mean", 0, 0) == pytest.approx(weight, rel=0.02)
+    z = by_id(lmp, "x")[:, 2][by_id(lmp, "type") == 1]
+    rho = by_id(lmp, "rho")[by_id(lmp, "type") == 1]
+    deep, shallow = z < 0.15, (z > 0.2) & (z < 0.3)
+    assert tait(rho[deep].mean()) > tait(rho[shallow].mean()) > 0
+    assert z.min() > 0 and z.max() < 0.45

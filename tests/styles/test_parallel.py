@@ -1,0 +1,121 @@
+"""The same answer on any number of ranks, with newton on or off, and after a restart."""
+
+import numpy as np
+import pytest
+from harness import instance, last_frame, run, write
+from scenes import DROP, END, MAKE_DROP
+
+# what a restart file does not hold; no thermo output here, which must not matter
+RESTARTED = """
+variable restart index mid.restart
+read_restart ${restart}
+special_bonds lj/coul 1 1 1
+angle_style zero
+angle_coeff *
+comm_modify vel yes
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+variable steps index 60
+variable dump index end.txt
+fix gravity all gravity 9.81 vector 0 0 -1
+fix step fluid sph/integrate global
+fix sheet cloth pbd/cloth iterations 5 pin pins damping 2.0
+fix contact fluid cloth/contact 0.015
+"""
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """A folder with the data file, and the result of one rank after 100 steps."""
+    folder = tmp_path_factory.mktemp("drop")
+    run(write(folder, MAKE_DROP, "in.make"))
+    write(folder, DROP + END, "in.drop")
+    run(folder / "in.drop", dump="serial.txt")
+    return folder
+
+
+def largest_difference(folder, a, b):
+    return np.abs(last_frame(folder / a) - last_frame(folder / b)).max()
+
+
+def test_the_scene_has_contact_pressure_and_tension(scene):
+    end = last_frame(scene / "serial.txt")
+    fluid = end[:, 0] <= 384
+    assert end[fluid, 6].mean() > -2.5  # the sheet has slowed the water down
+    assert np.abs(end[~fluid, 3]).max() > 1e-3  # and has given way
+    assert "f_contact[1]" in (scene / "log.lammps").read_text()
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks(scene, ranks):
+    run(scene / "in.drop", ranks=ranks, dump=f"ranks{ranks}.txt")
+    assert largest_difference(scene, "serial.txt", f"ranks{ranks}.txt") < 1e-10
+
+
+def test_another_cut_through_the_cloth(scene):
+    script = DROP.replace("read_data", "processors 1 2 1\nread_data") + END
+    run(write(scene, script, "in.cut"), ranks=2, dump="cut.txt")
+    assert largest_difference(scene, "serial.txt", "cut.txt") < 1e-10
+
+
+def test_all_atoms_on_one_rank(scene):
+    script = DROP.replace("pair_style", "balance 1.0 x 0.98\npair_style", 1) + END
+    script = script.replace("read_data", "processors 2 1 1\nread_data")
+    run(write(scene, script, "in.empty"), ranks=2, dump="empty.txt")
+    assert largest_difference(scene, "serial.txt", "empty.txt") < 1e-10
+
+
+def test_balancing_while_it_runs(scene):
+    script = DROP + "fix balance all balance 20 1.0 shift xy 5 1.05\n" + END
+    run(write(scene, script, "in.balance"), ranks=2, dump="balance.txt")
+    assert largest_difference(scene, "serial.txt", "balance.txt") < 1e-10
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_newton(scene, ranks):
+    run(scene / "in.drop", ranks=ranks, newton="off", dump=f"off{ranks}.txt")
+    assert largest_difference(scene, "serial.txt", f"off{ranks}.txt") < 1e-10
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_continues_to_the_last_bit(scene, ranks):
+    first = "run 60\nwrite_restart mid.restart\n"
+    whole = write(scene, DROP + first + END.replace("${steps}", "60"), "in.whole")
+    run(whole, ranks=ranks, dump="whole.txt")
+    run(write(scene, RESTARTED + END, "in.again"), ranks=ranks, dump="again.txt")
+    np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "whole.txt"))
+
+
+def test_split_runs_are_one_run(scene):
+    split = DROP + "run 30\nrun 30\n" + END.replace("${steps}", "40")
+    run(write(scene, split, "in.split"), dump="split.txt")
+    assert largest_difference(scene, "serial.txt", "split.txt") < 1e-10
+
+
+def test_data_file_keeps_cloth_and_coefficients(scene):
+    script = DROP + "run 0\nwrite_data copy.data nofix\n" + END
+    run(write(scene, script, "in.copy"), dump="first.txt", steps=20)
+    # coefficients in a data file want their styles first
+    styles = "bond_style pbd\ndihedral_style pbd\nangle_style zero\npair_style sph/tait 0.1\n"
+    again = DROP.replace("read_data drop.data", styles + "read_data copy.data") + END
+    run(write(scene, again, "in.read"), dump="second.txt", steps=20)
+    assert largest_difference(scene, "first.txt", "second.txt") < 1e-10
+
+
+def test_two_instances_and_clear(scene, monkeypatch):
+    monkeypatch.chdir(scene)
+    script = (DROP + END).replace("${steps}", "20")
+    alone = instance()
+    alone.commands_string(script.replace("${dump}", "alone.txt"))
+
+    one, two = instance(), instance()
+    for lmp, name in ((one, "one.txt"), (two, "two.txt")):
+        lmp.commands_string(script.replace("${dump}", name))
+    one.command("run 5")
+    two.command("clear")
+    two.commands_string(script.replace("${dump}", "cleared.txt"))
+    one.command("run 5")
+    one.close()
+    two.command("run 5")
+    for name in ("one.txt", "two.txt", "cleared.txt"):
+        assert largest_difference(scene, "alone.txt", name) == 0

@@ -39,8 +39,6 @@ void CreateCloth::command(int narg, char **arg)
                "{}: atom_style {} has no bonds, angles and dihedrals: use atom_style molecular, or "
                "hybrid sph molecular",
                STYLE, atom->atom_style);
-  if (atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "{}: atoms cannot be found by ID: add 'atom_modify map yes'", STYLE);
 
   ArgReader args(lmp, STYLE, narg, arg);
   itype = args.integer("atom type", 1, atom->ntypes);

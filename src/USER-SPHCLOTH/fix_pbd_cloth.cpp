@@ -50,8 +50,6 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
   if (atom->molecular != Atom::MOLECULAR || !atom->num_bond)
     error->all(FLERR, "{}: atom_style {} has no bonds: use atom_style molecular, or hybrid sph molecular",
                label, atom->atom_style);
-  if (!atom->tag_enable || atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "{}: atoms cannot be found by ID: add 'atom_modify map yes'", label);
   if (group->count(igroup) == 0)
     error->all(FLERR, "{}: group {} has no atoms: create the cloth before this fix", label,
                group->names[igroup]);

@@ -110,17 +110,30 @@ void FixSPHEmit::init()
   if (!pair || !pair->is_fluid(itype))
     error->all(FLERR, "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
                label, itype, itype, itype);
-  if (atom->rmass && mass == 0.0)
-    mass = pair->equation_of_state(itype).rho0 * std::pow(spacing, domain->dimension);
+  // the mass with which a lattice of this spacing is water at rest, by the density sum
+  const double at_rest = pair->equation_of_state(itype).rho0 / pair->lattice_sum(itype, spacing);
+  if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
     error->all(FLERR, "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
                label, itype, mass);
+  const double excess = (atom->rmass ? mass : atom->mass[itype]) / at_rest - 1.0;
+  if (comm->me == 0 && excess > 0.01)
+    error->warning(FLERR,
+                   "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of {:.6g}",
+                   label, 100.0 * excess, at_rest);
   for (const Vec3 &x : pattern) {
     Vec3 place = centre + x;
     if (!domain->inside(place.data()))
       error->all(FLERR, "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
                  label, place[0], place[1], place[2]);
   }
+}
+
+// to within round-off, so that a restart or another rank count does not shift a layer by a step
+
+bool FixSPHEmit::layer_is_due() const
+{
+  return emitted < total && due() - now() <= 1e-6 * update->dt;
 }
 
 double FixSPHEmit::now() const
@@ -134,17 +147,17 @@ double FixSPHEmit::now() const
 
 void FixSPHEmit::setup_pre_exchange()
 {
-  while (more() && due() <= now()) emit_layer(now() - due());
+  while (layer_is_due()) emit_layer(now() - due());
 }
 
 void FixSPHEmit::post_integrate()
 {
-  if (more() && due() <= now()) next_reneighbor = update->ntimestep;
+  if (layer_is_due()) next_reneighbor = update->ntimestep;
 }
 
 void FixSPHEmit::pre_exchange()
 {
-  while (more() && due() <= now()) emit_layer(now() - due());
+  while (layer_is_due()) emit_layer(now() - due());
 }
 
 // age: how long ago the layer left the opening

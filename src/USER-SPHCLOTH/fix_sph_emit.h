@@ -40,7 +40,7 @@ class FixSPHEmit : public Fix {
   bigint total, emitted;
   int itype;
   double spacing;
-  double mass;    // of a particle, 0: rho0 spacing^3
+  double mass;    // of a particle, 0: that of water at rest
   Vec3 centre, velocity;
   double extent[2];    // radius of the disc, or the two sides of the rectangle
   bool disc;
@@ -54,7 +54,7 @@ class FixSPHEmit : public Fix {
   void make_pattern();
   double now() const;
   double due() const { return start + static_cast<double>(layers) * layer_time; }
-  bool more() const { return emitted < total; }
+  bool layer_is_due() const;
   void emit_layer(double);
   void add_particle(const Vec3 &, tagint);
 };

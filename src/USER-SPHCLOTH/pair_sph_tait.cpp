@@ -280,6 +280,27 @@ double PairSPHTait::viscosity(int itype) const
   return t.nu + artificial;
 }
 
+double PairSPHTait::lattice_sum(int itype, double spacing) const
+{
+  return kernel == Kernel::CUBIC ? kernel_lattice_sum<CubicSpline>(support(itype), spacing)
+                                 : kernel_lattice_sum<WendlandC2>(support(itype), spacing);
+}
+
+template <class K> double PairSPHTait::kernel_lattice_sum(double support, double spacing) const
+{
+  const KernelScale s = kernel_scale<K>(support, domain->dimension);
+  const int reach = static_cast<int>(support / spacing);
+  const int reach_z = domain->dimension == 3 ? reach : 0;
+  double sum = 0.0;
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++)
+      for (int k = -reach_z; k <= reach_z; k++) {
+        const double r = spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k));
+        if (r < support) sum += s.w * K::shape(r / support);
+      }
+  return sum;
+}
+
 PairSPHTait::Wetting PairSPHTait::wetting(int i) const
 {
   Wetting w;

@@ -46,6 +46,9 @@ class PairSPHTait : public Pair {
   double support(int itype) const;
   double viscosity(int itype) const;    // laminar and artificial together
 
+  // number density of a square or cubic lattice of this type, by summation (1)
+  double lattice_sum(int itype, double spacing) const;
+
   // A boundary particle that fluid touched in the last evaluation: the mass that fluid in its
   // volume would have, and the sound speed of that fluid.  Both 0 if it is dry.
   struct Wetting {
@@ -105,6 +108,7 @@ class PairSPHTait : public Pair {
   void mix(int, int, sphcloth::PairTerms &) const;
   double pair_support(int, int) const;
   template <class K> void bind_kernel();
+  template <class K> double kernel_lattice_sum(double, double) const;
 
   bool is_active(int i) const { return !active || active[i]; }
   sphcloth::ParticleView view() const;

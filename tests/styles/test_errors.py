@@ -1,0 +1,268 @@
+"""Bad input ends with an error that names the style, the keyword, the value and the remedy."""
+
+import pytest
+from harness import instance
+from scenes import HEADER
+
+SHEET = (
+    HEADER.format(boundary="p p p")
+    + """
+region box block -1 1 -1 1 -1 1
+create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 16
+mass * 0.1
+region none block 0.9 0.91 0.9 0.91 0.9 0.91
+create_cloth 2 1.0 size 0.6 0.6 spacing 0.1 group cloth pin none nobody
+create_atoms 1 single 0 0 0.5
+group water type 1
+special_bonds lj/coul 1 1 1
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 20
+pair_coeff 2 2 boundary
+bond_style pbd
+bond_coeff 1 1.0
+dihedral_style pbd
+dihedral_coeff 1 0.1
+neighbor 0.05 bin
+"""
+)
+SHEET_FIX = SHEET + "fix sheet cloth pbd/cloth\n"
+STEP = SHEET + "fix step water sph/integrate "
+EMIT = SHEET + "fix pour water sph/emit "
+
+
+def case(name, script, message):
+    return pytest.param(script, message, id=name)
+
+
+CASES = [
+    # pair_style and pair_coeff
+    case(
+        "pair: no support", SHEET + "pair_style sph/tait", r"pair_style sph/tait: support.*missing"
+    ),
+    case("pair: support < 0", SHEET + "pair_style sph/tait -1", r"support radius H is '-1'.*> 0"),
+    case(
+        "pair: no number", SHEET + "pair_style sph/tait ten", r"support radius H is 'ten'.*number"
+    ),
+    case("pair: nan", SHEET + "pair_style sph/tait nan", r"support radius H is 'nan'.*finite"),
+    case("pair: kernel", SHEET + "pair_style sph/tait 0.1 kernel gauss", r"'gauss'.*wendland/c2"),
+    case("pair: tension", SHEET + "pair_style sph/tait 0.1 tension maybe", r"'maybe'.*yes or no"),
+    case(
+        "pair: keyword", SHEET + "pair_style sph/tait 0.1 colour red", r"unknown keyword 'colour'"
+    ),
+    case("coeff: rho0", SHEET + "pair_coeff 1 1 fluid 0 c0 10", r"pair_coeff .*rho0 is '0'.*> 0"),
+    case("coeff: no stiffness", SHEET + "pair_coeff 1 1 fluid 1000", r"needs a stiffness.*c0 C"),
+    case("coeff: gamma", SHEET + "pair_coeff 1 1 fluid 1000 c0 9 gamma 1", r"gamma.*> 1"),
+    case(
+        "coeff: eta",
+        SHEET + "pair_coeff 1 1 fluid 1000 fluctuation 0.01",
+        r"reference speed.*missing",
+    ),
+    case("coeff: nu", SHEET + "pair_coeff 1 1 fluid 1000 c0 9 nu -1", r"nu is '-1'.*>= 0"),
+    case("coeff: role I J", SHEET + "pair_coeff 1 2 fluid 1000 c0 9", r"role belongs to one type"),
+    case("coeff: no role", SHEET + "pair_coeff 1 1 nu 1", r"pair 1 1 has no role"),
+    case("coeff: volume", SHEET + "pair_coeff 2 2 boundary volume 0", r"volume is '0'.*> 0"),
+    case("coeff: pair", SHEET + "pair_coeff 1 2 gamma 5", r"unknown keyword 'gamma'"),
+    case("coeff: few", SHEET + "pair_coeff 1 1", r"pair_coeff"),
+    case(
+        "init: no role for a type",
+        SHEET.replace("pair_coeff 2 2 boundary", "") + "run 0",
+        r"(type 2 has no role|All pair coeffs are not set)",
+    ),
+    case("init: ghost velocities", SHEET + "comm_modify vel no\nrun 0", r"comm_modify vel yes"),
+    case(
+        "init: special bonds",
+        SHEET_FIX + "special_bonds lj/coul 0 1 1\nrun 0",
+        r"special_bonds would hide.*lj/coul 1.0 1.0 1.0",
+    ),
+    case(
+        "init: cut-off smaller than the support",
+        SHEET_FIX + "comm_modify cutoff 0.05\nrun 0",
+        r"ghost cut-off 0.05.*smaller than the support 0.1.*raise it",
+    ),
+    case(
+        "init: atom style without density",
+        SHEET.replace("hybrid sph molecular", "molecular") + "run 0",
+        r"atom_style molecular has no density.*hybrid sph molecular",
+    ),
+    case(
+        "run: NaN",
+        SHEET
+        + "fix step water sph/integrate constant\nrun 0\nset type 1 x 0.5\nset type 1 vx NaN\nrun 3",
+        r"(density|Non-numeric|NaN|finite|floating|number)",
+    ),
+    # bonds and hinges
+    case("bond: k > 1", SHEET + "bond_coeff 1 1.5", r"bond_coeff .*stiffness k is '1.5'.*0 to 1"),
+    case("bond: none", SHEET + "bond_coeff 1", r"stiffness k is missing"),
+    case("bond: many", SHEET + "bond_coeff 1 0.5 3", r"'3'"),
+    case("hinge: k < 0", SHEET + "dihedral_coeff 1 -0.5", r"dihedral_coeff .*'-0.5'.*0 to 1"),
+    # fix pbd/cloth
+    case(
+        "cloth: keyword", SHEET + "fix s cloth pbd/cloth stretch 1", r"fix s pbd/cloth.*'stretch'"
+    ),
+    case("cloth: sweeps", SHEET + "fix s cloth pbd/cloth iterations 0", r"iterations is '0'"),
+    case("cloth: damping", SHEET + "fix s cloth pbd/cloth damping -1", r"damping rate is '-1'"),
+    case(
+        "cloth: no pin group", SHEET + "fix s cloth pbd/cloth pin who", r"pin group is 'who'.*group"
+    ),
+    case(
+        "cloth: empty pins", SHEET + "fix s cloth pbd/cloth pin nobody", r"pin group has no vertex"
+    ),
+    case(
+        "cloth: rest",
+        SHEET + "fix s cloth pbd/cloth rest d2_r",
+        r"rest property 'd2_r'.*property/atom",
+    ),
+    case("cloth: empty", SHEET + "fix s nobody pbd/cloth", r"group nobody has no atoms"),
+    case("cloth: no bonds", SHEET + "fix s water pbd/cloth\nrun 0", r"group water has no bonds"),
+    case(
+        "cloth: bonds leave the group",
+        SHEET + "group half id 1:10\nfix s half pbd/cloth\nrun 0",
+        r"bond of atom \d+ leaves the group at atom \d+",
+    ),
+    case(
+        "cloth: two on one vertex",
+        SHEET_FIX + "group half id 1:10\nfix b half pbd/cloth\nrun 0",
+        r"shares vertices with fix",
+    ),
+    case(
+        "cloth: other bond style",
+        SHEET_FIX + "bond_style zero\nbond_coeff *\nrun 0",
+        r"bond_style zero holds no stiffness.*bond_style pbd",
+    ),
+    case(
+        "cloth: vertex added later",
+        SHEET_FIX + "create_atoms 2 single 0 0 -0.5\ngroup cloth id 51\nrun 0",
+        r"has no rest position",
+    ),
+    case(
+        "cloth: ghosts out of reach",
+        SHEET_FIX.replace("pair_style sph/tait 0.1", "pair_style sph/tait 0.01").replace(
+            "neighbor 0.05", "neighbor 0.001"
+        )
+        + "displace_atoms all move 1 0 0 units box\nrun 0",
+        r"(out of reach|Bond atoms? .*missing|bond atoms)",
+    ),
+    # fix cloth/contact
+    case("contact: thickness", SHEET_FIX + "fix c water cloth/contact 0", r"thickness is '0'.*> 0"),
+    case("contact: none", SHEET_FIX + "fix c water cloth/contact", r"thickness is missing"),
+    case(
+        "contact: no cloth", SHEET + "fix c water cloth/contact 0.01\nrun 0", r"there is no cloth"
+    ),
+    case(
+        "contact: group",
+        SHEET_FIX + "fix c all cloth/contact 0.01\nrun 0",
+        r"group all holds vertices",
+    ),
+    case(
+        "contact: no triangles",
+        SHEET_FIX + "delete_bonds all angle 1 remove\nfix c water cloth/contact 0.01\nrun 0",
+        r"cloth has no triangles.*Angles",
+    ),
+    # fix sph/integrate and run_style
+    case("step: no scheme", STEP, r"fix step sph/integrate: scheme is missing"),
+    case("step: scheme", STEP + "local", r"scheme is 'local'.*constant or global"),
+    case("step: keyword", STEP + "global speed 1", r"unknown keyword 'speed'"),
+    case("step: growth", STEP + "global growth 3", r"growth is '3.*at most 2"),
+    case("step: below", STEP + "global below zero", r"below is 'zero'.*stop or clamp"),
+    case("step: min > max", STEP + "global min 1 max 0.1", r"min 1 is above max 0.1"),
+    case(
+        "step: no pair",
+        STEP + "global\npair_style zero 0.2\npair_coeff * *\nrun 0",
+        r"pair_style zero",
+    ),
+    case(
+        "step: cloth",
+        SHEET + "fix step all sph/integrate global\nrun 0",
+        r"group all holds type 2, a boundary",
+    ),
+    case(
+        "step: twice",
+        STEP + "global\nfix again water sph/integrate global\nrun 0",
+        r"another fix sph/integrate",
+    ),
+    case("run style: scheme", STEP + "global\nrun_style sph/adaptive", r"scheme is missing"),
+    case("run style: value", STEP + "global\nrun_style sph/adaptive all", r"scheme is 'all'"),
+    case(
+        "run style: no fix",
+        SHEET + "run_style sph/adaptive global\nrun 0",
+        r"needs one fix sph/integrate",
+    ),
+    # sources
+    case("emit: count", EMIT + "0 1 0.05", r"fix pour sph/emit: number of particles is '0'"),
+    case("emit: type", EMIT + "10 7 0.05", r"atom type is '7'.*1 to 2"),
+    case("emit: opening", EMIT + "10 1 0.05 velocity 0 0 -1", r"opening is missing.*disc"),
+    case("emit: velocity", EMIT + "10 1 0.05 disc 0 0 0 0.1", r"velocity is missing"),
+    case("emit: radius", EMIT + "10 1 0.05 disc 0 0 0 -1", r"disc radius is '-1'"),
+    case("emit: short", EMIT + "10 1 0.05 disc 0 0", r"disc centre z is missing"),
+    case(
+        "emit: boundary type",
+        EMIT + "10 2 0.05 disc 0 0 0 0.1 velocity 0 0 -1\nrun 0",
+        r"type 2 is no fluid",
+    ),
+    case(
+        "emit: out of the box",
+        EMIT + "10 1 0.05 disc 0.99 0 0 0.1 velocity 0 0 -1\nrun 0",
+        r"opening reaches out of the box",
+    ),
+    case(
+        "emit: mass of a type",
+        EMIT + "10 1 0.05 disc 0 0 0 0.1 velocity 0 0 -1 mass 2\nrun 0",
+        r"masses belong to types",
+    ),
+    case(
+        "drain: region",
+        SHEET + "fix d water sph/drain region sea",
+        r"region is 'sea'.*region command",
+    ),
+    case("drain: keyword", SHEET + "fix d water sph/drain sea", r"unknown keyword 'sea'"),
+    case("drain: cloth", SHEET + "fix d all sph/drain\nrun 0", r"group all holds bonded atoms"),
+    # create_cloth
+    case("create: type", SHEET + "create_cloth 5 1.0", r"create_cloth: atom type is '5'"),
+    case("create: mass", SHEET + "create_cloth 2 0", r"mass per area is '0'"),
+    case("create: size", SHEET + "create_cloth 2 1 spacing 0.1", r"size is missing"),
+    case("create: spacing", SHEET + "create_cloth 2 1 size 1 1", r"spacing is missing"),
+    case("create: coarse", SHEET + "create_cloth 2 1 size 1 1 spacing 3", r"spacing 3 is larger"),
+    case(
+        "create: pattern",
+        SHEET + "create_cloth 2 1 pattern knit",
+        r"pattern is 'knit'.*equilateral",
+    ),
+    case("create: region", SHEET + "create_cloth 2 1 pin edge pins", r"pin region is 'edge'"),
+    case("create: bond type", SHEET + "create_cloth 2 1 bond 4", r"bond is '4'.*1 to 1"),
+    case(
+        "create: axes",
+        SHEET + "create_cloth 2 1 size 1 1 spacing 0.1 axes 1 0 0 2 0 0",
+        r"two axes are parallel",
+    ),
+    case(
+        "create: out of the box",
+        SHEET.replace("boundary p p p", "boundary f f f") + "create_cloth 2 1 size 3 1 spacing 0.1",
+        r"sheet reaches out of the box",
+    ),
+    case(
+        "create: no room",
+        SHEET.replace("extra/bond/per/atom 8", ""),
+        r"no room for .*extra/bond/per/atom",
+    ),
+    case(
+        "create: no box", HEADER.format(boundary="p p p") + "create_cloth 2 1", r"there is no box"
+    ),
+]
+
+
+@pytest.mark.parametrize(("script", "message"), CASES)
+def test_error(script, message):
+    lmp = instance()
+    with pytest.raises(Exception, match=message):
+        lmp.commands_string(script)
+
+
+def test_the_scene_of_these_tests_is_sound():
+    lmp = instance()
+    lmp.commands_string(
+        SHEET_FIX
+        + "fix step water sph/integrate global\nfix c water cloth/contact 0.01\n"
+        + "fix d water sph/drain\nrun_style sph/adaptive global\nrun 2"
+    )
+    assert lmp.extract_global("ntimestep") == 2

@@ -1,0 +1,120 @@
+"""fix sph/emit and fix sph/drain: what comes in, what goes out, and that nothing is lost."""
+
+import re
+
+import numpy as np
+import pytest
+from harness import by_id, instance, last_frame, run, write
+from lammps import lammps
+
+POUR = """
+units si
+atom_style sph
+atom_modify map yes
+comm_modify vel yes
+boundary f f f
+region box block -0.5 0.5 -0.5 0.5 -0.5 1
+create_box 1 box
+mass 1 0.1209
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 20
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+timestep {dt}
+group water type 1
+fix step water sph/integrate constant
+fix pour water sph/emit {n} 1 0.05 {opening} velocity 0 0 -2 start 0
+"""
+
+
+def pour(n=1000, dt=1e-3, opening="disc 0 0 0.8 0.12", extra=""):
+    lmp = instance()
+    lmp.commands_string(POUR.format(n=n, dt=dt, opening=opening) + extra)
+    return lmp
+
+
+def test_a_rectangle_pours_layers_at_the_density_of_water():
+    lmp = pour(opening="rectangle 0 0 0.8 0.2 0.1", extra="run 100")
+    x = by_id(lmp, "x")
+    # 4 x 2 particles a layer, a layer each 0.05 / 2 s, the first at t = 0, the fifth at 0.1
+    assert len(x) == 4 * 2 * 5
+    assert np.unique(np.round(x[:, 2], 9)) == pytest.approx([0.6, 0.65, 0.7, 0.75, 0.8])
+    assert sorted(set(np.round(x[:, 0], 9))) == pytest.approx([-0.075, -0.025, 0.025, 0.075])
+    assert by_id(lmp, "v")[:, 2] == pytest.approx(np.full(len(x), -2.0))
+
+
+@pytest.mark.parametrize("dt", [1e-3, 7e-4, 3e-3])
+def test_layers_follow_time_and_not_steps(dt):
+    steps = round(0.21 / dt)
+    z = by_id(pour(dt=dt, extra=f"run {steps}"), "x")[:, 2]
+    assert np.unique(np.round(z, 6)).size == 9
+    assert z.min() == pytest.approx(0.8 - 2 * 0.21, abs=1e-9)
+
+
+def test_the_count_is_exact_and_ids_are_unique():
+    lmp = pour(n=101, extra="fix two water sph/emit 57 1 0.05 disc 0.3 0 0.8 0.1 velocity 0 0 -1\n")
+    lmp.command("run 300")
+    assert lmp.get_natoms() == 158
+    assert lmp.extract_fix("pour", 0, 0) == 101 and lmp.extract_fix("two", 0, 0) == 57
+    assert len(set(by_id(lmp, "id"))) == 158
+    assert lmp.extract_fix("pour", 0, 1, 3) == pytest.approx(-2.0 * 101 * 0.1209)
+
+
+def test_what_leaves_is_counted_with_its_mass_and_momentum():
+    lmp = pour(n=40, extra="fix out water sph/drain\n")
+    lmp.command("run 1500")
+    assert lmp.get_natoms() == 0
+    assert lmp.extract_fix("out", 0, 0) == 40
+    assert lmp.extract_fix("out", 0, 1, 0) == pytest.approx(40 * 0.1209)
+    assert lmp.extract_fix("out", 0, 1, 3) == pytest.approx(-2.0 * 40 * 0.1209)
+    lmp.command("run 10")  # an empty box goes on
+
+
+def test_without_a_drain_lammps_says_that_atoms_were_lost():
+    with pytest.raises(Exception, match="Lost atoms"):
+        pour(n=40, extra="thermo 100\nrun 1500")
+
+
+def test_a_region_drains_inside_the_box():
+    lmp = pour(n=400, extra="region low block INF INF INF INF INF 0.2\n")
+    lmp.command("fix out water sph/drain region low")
+    lmp.command("run 400")
+    poured, drained = lmp.extract_fix("pour", 0, 0), lmp.extract_fix("out", 0, 0)
+    assert drained > 0 and poured - drained == lmp.get_natoms()
+    assert by_id(lmp, "x")[:, 2].min() > 0.2 - 0.03
+
+
+def test_a_mass_that_bursts_apart_is_named(capfd):
+    text = POUR.format(n=10, dt=1e-3, opening="disc 0 0 0.8 0.12").replace("0.1209", "0.125")
+    lmp = lammps(cmdargs=["-log", "none"])
+    lmp.commands_string(text + "run 0")
+    assert re.search(r"3.4 % too dense.*use a mass of 0.120908", capfd.readouterr().out)
+
+
+RUN = """
+fix out water sph/drain
+{before}
+run {steps}
+{after}
+write_dump all custom {dump} id x y z vx vy vz modify sort id format float %.17g
+"""
+
+
+def test_pouring_on_two_ranks_and_after_a_restart(tmp_path):
+    text = POUR.format(n=300, dt=1e-3, opening="disc 0 0 0.8 0.12")
+    gravity = "fix gravity water gravity 9.81 vector 0 0 -1"
+    script = text + RUN.format(before=gravity, steps=500, after="", dump="whole.txt")
+    run(write(tmp_path, script))
+    run(write(tmp_path, script.replace("whole", "two")), ranks=2)
+    stop = RUN.format(before=gravity, steps=250, after="write_restart mid", dump="half.txt")
+    run(write(tmp_path, text + stop))
+    _, tail = text.split("group water")
+    again = "read_restart mid\nneighbor 0.03 bin\nneigh_modify every 1 delay 0 check yes\n"
+    fixes = tail.split("\n", 1)[1]
+    again += "comm_modify vel yes\ntimestep 1e-3\n" + fixes.replace("start 0", "")
+    end = RUN.format(before=gravity, steps=250, after="", dump="again.txt")
+    run(write(tmp_path, again + end))
+    whole = last_frame(tmp_path / "whole.txt")
+    assert len(whole) > 100
+    for name in ("two.txt", "again.txt"):
+        np.testing.assert_allclose(last_frame(tmp_path / name), whole, atol=1e-9)

@@ -87,8 +87,7 @@ CASES = [
     ),
     case(
         "run: NaN",
-        SHEET
-        + "fix step water sph/integrate constant\nrun 0\nset type 1 x 0.5\nset type 1 vx NaN\nrun 3",
+        SHEET + "fix step water sph/integrate constant\nrun 0\nset type 1 vx NaN\nrun 3",
         r"(density|Non-numeric|NaN|finite|floating|number)",
     ),
     # bonds and hinges

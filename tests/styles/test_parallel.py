@@ -65,6 +65,21 @@ def test_all_atoms_on_one_rank(scene):
     assert largest_difference(scene, "serial.txt", "empty.txt") < 1e-10
 
 
+def test_tilted_box(scene):
+    """The sheet crosses both periodic borders of a tilted box."""
+    tilt = "change_box all triclinic\nchange_box all xy final 0.1 xz final -0.05 yz final 0.08\n"
+    move = tilt + "displace_atoms all move 0.3 0.4 0 units box\ngroup fluid type 1\n"
+    script = DROP.replace("group fluid type 1\n", move) + END
+    # the pins are chosen before the move
+    script = script.replace("region held block -0.44 0.44 INF", "region held block -0.14 0.74 INF")
+    write(scene, script, "in.tilt")
+    run(scene / "in.tilt", dump="tilt1.txt")
+    for ranks, grid in ((2, "2 1 1"), (2, "1 2 1"), (4, "* * *")):
+        cut = script.replace("read_data", f"processors {grid}\nread_data")
+        run(write(scene, cut, "in.tilted"), ranks=ranks, dump="tilt.txt")
+        assert largest_difference(scene, "tilt1.txt", "tilt.txt") < 1e-10
+
+
 def test_balancing_while_it_runs(scene):
     script = DROP + "fix balance all balance 20 1.0 shift xy 5 1.05\n" + END
     run(write(scene, script, "in.balance"), ranks=2, dump="balance.txt")

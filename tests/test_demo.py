@@ -22,8 +22,10 @@ VARIANTS = {
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_pour(variant, tmp_path):
     done = subprocess.run(
-        [SPHCLOTH, "run", "pour", "--size", "tiny", "--ranks", "2", "--out", tmp_path]
-        + ["--no-pictures", *VARIANTS[variant]],
+        [
+            *(SPHCLOTH, "run", "pour", "--size", "tiny", "--ranks", "2", "--out", tmp_path),
+            *("--no-pictures", *VARIANTS[variant]),
+        ],
         capture_output=True,
         text=True,
         timeout=300,

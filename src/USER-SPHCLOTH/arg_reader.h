@@ -29,7 +29,8 @@ class ArgReader : protected Pointers {
   std::string word(const std::string &what)
   {
     if (next >= narg)
-      error->all(FLERR, "{}: {} is missing at the end of the command; see its doc page for the syntax",
+      error->all(FLERR,
+                 "{}: {} is missing at the end of the command; see its doc page for the syntax",
                  style, what);
     return arg[next++];
   }

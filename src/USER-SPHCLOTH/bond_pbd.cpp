@@ -64,10 +64,7 @@ double BondPBD::single(int, double, int, int, double &fforce)
   return 0.0;
 }
 
-void BondPBD::write_restart(FILE *fp)
-{
-  fwrite(&k[1], sizeof(double), atom->nbondtypes, fp);
-}
+void BondPBD::write_restart(FILE *fp) { fwrite(&k[1], sizeof(double), atom->nbondtypes, fp); }
 
 void BondPBD::read_restart(FILE *fp)
 {

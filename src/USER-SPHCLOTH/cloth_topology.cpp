@@ -110,10 +110,11 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
     for (std::size_t k = 0; k < N; k++) {
       sorted[m].vertices[k] = index_of(record[k]);
       if (sorted[m].vertices[k] < 0)
-        error->all(FLERR,
-                   "{}: a {} of atom {} leaves the group at atom {}: put both into the fix group or "
-                   "delete the {}",
-                   owner, what, record[k ? 0 : 1], record[k], what);
+        error->all(
+            FLERR,
+            "{}: a {} of atom {} leaves the group at atom {}: put both into the fix group or "
+            "delete the {}",
+            owner, what, record[k ? 0 : 1], record[k], what);
     }
     canonical(sorted[m].vertices);
     sorted[m].type = static_cast<int>(record[N]);

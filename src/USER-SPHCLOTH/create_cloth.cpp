@@ -93,15 +93,17 @@ void CreateCloth::read_options(ArgReader &args)
       region->prematch();
       pins.emplace_back(region, read_group(args));
     } else
-      args.unknown(keyword,
-                   "center, size, spacing, axes, pattern, bond, shear, triangle, hinge, group, pin");
+      args.unknown(
+          keyword,
+          "center, size, spacing, axes, pattern, bond, shear, triangle, hinge, group, pin");
   }
   if (length == 0.0) error->all(FLERR, "{}: the size is missing: add 'size LX LY'", STYLE);
   if (spacing == 0.0) error->all(FLERR, "{}: the spacing is missing: add 'spacing D'", STYLE);
   if (spacing > std::min(length, width))
     error->all(FLERR, "{}: spacing {} is larger than the sheet: lower it", STYLE, spacing);
   if (axis_u.cross(axis_v).norm() < 1e-6 * axis_u.norm() * axis_v.norm() || axis_u.norm() == 0.0)
-    error->all(FLERR, "{}: the two axes are parallel or zero: give two directions in the sheet", STYLE);
+    error->all(FLERR, "{}: the two axes are parallel or zero: give two directions in the sheet",
+               STYLE);
   axis_u.normalize();
   axis_v = (axis_v - axis_v.dot(axis_u) * axis_u).normalized();
   if (!shear_type) shear_type = bond_type;
@@ -151,8 +153,10 @@ void CreateCloth::check_box() const
   for (int k = 0; k < static_cast<int>(sheet.vertices.size()); k++) {
     Vec3 x = place(k);
     if (!domain->inside_nonperiodic(x.data()))
-      error->all(FLERR, "{}: the sheet reaches out of the box at ({}, {}, {}): shrink it or move its center",
-                 STYLE, x[0], x[1], x[2]);
+      error->all(
+          FLERR,
+          "{}: the sheet reaches out of the box at ({}, {}, {}): shrink it or move its center",
+          STYLE, x[0], x[1], x[2]);
   }
 }
 
@@ -175,10 +179,11 @@ void CreateCloth::check_capacity() const
   const int a = *std::max_element(angles.begin(), angles.end());
   const int d = hinge_type ? *std::max_element(dihedrals.begin(), dihedrals.end()) : 0;
   if (b > atom->bond_per_atom || a > atom->angle_per_atom || d > atom->dihedral_per_atom)
-    error->all(FLERR,
-               "{}: no room for {} bonds, {} angles and {} dihedrals per atom: add 'extra/bond/per/atom "
-               "{} extra/angle/per/atom {} extra/dihedral/per/atom {}' to create_box",
-               STYLE, b, a, d, b, a, d);
+    error->all(
+        FLERR,
+        "{}: no room for {} bonds, {} angles and {} dihedrals per atom: add 'extra/bond/per/atom "
+        "{} extra/angle/per/atom {} extra/dihedral/per/atom {}' to create_box",
+        STYLE, b, a, d, b, a, d);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -216,7 +221,8 @@ void CreateCloth::create_vertices()
   bigint made = atom->nlocal - before, all = 0;
   MPI_Allreduce(&made, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all != static_cast<bigint>(sheet.vertices.size()))
-    error->all(FLERR, "{}: {} vertices were not created: the sheet touches the upper border of the box",
+    error->all(FLERR,
+               "{}: {} vertices were not created: the sheet touches the upper border of the box",
                STYLE, static_cast<bigint>(sheet.vertices.size()) - all);
   atom->natoms += all;
   atom->nghost = 0;

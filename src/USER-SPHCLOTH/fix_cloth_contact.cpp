@@ -76,7 +76,8 @@ void FixClothContact::init()
   if (cloths.empty())
     error->all(FLERR, "{}: there is no cloth: define 'fix ID group pbd/cloth' before", label);
   bool any_triangle = false;
-  for (const FixPBDCloth *cloth : cloths) any_triangle = any_triangle || cloth->topology().triangles.size();
+  for (const FixPBDCloth *cloth : cloths)
+    any_triangle = any_triangle || cloth->topology().triangles.size();
   if (!any_triangle)
     error->all(FLERR,
                "{}: the cloth has no triangles: they are LAMMPS angles, create_cloth makes them, a "
@@ -107,7 +108,8 @@ void FixClothContact::post_neighbor()
   w.assign(halo.n_slots(), 0.0);
   for (int s = 0; s < halo.n_owned(); s++)
     for (const FixPBDCloth *cloth : cloths)
-      if (atom->mask[halo.atom_of(s)] & cloth->groupbit) w[s] = cloth->inverse_mass(halo.atom_of(s));
+      if (atom->mask[halo.atom_of(s)] & cloth->groupbit)
+        w[s] = cloth->inverse_mass(halo.atom_of(s));
   halo.forward(0, w);
   start.resize(halo.n_slots());
   end.resize(halo.n_slots());

@@ -48,7 +48,8 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
   comm_forward = VertexHalo::LINK;
 
   if (atom->molecular != Atom::MOLECULAR || !atom->num_bond)
-    error->all(FLERR, "{}: atom_style {} has no bonds: use atom_style molecular, or hybrid sph molecular",
+    error->all(FLERR,
+               "{}: atom_style {} has no bonds: use atom_style molecular, or hybrid sph molecular",
                label, atom->atom_style);
   if (group->count(igroup) == 0)
     error->all(FLERR, "{}: group {} has no atoms: create the cloth before this fix", label,
@@ -96,10 +97,11 @@ void FixPBDCloth::check_pins()
     if (atom->mask[i] & groupbit && atom->mask[i] & pinbit) mine++;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (!all)
-    error->all(FLERR,
-               "{}: the pin group has no vertex of group {}: choose pins among the cloth's vertices "
-               "or leave the pin keyword away",
-               label, group->names[igroup]);
+    error->all(
+        FLERR,
+        "{}: the pin group has no vertex of group {}: choose pins among the cloth's vertices "
+        "or leave the pin keyword away",
+        label, group->names[igroup]);
 }
 
 void FixPBDCloth::take_rest_positions(const char *property)
@@ -150,7 +152,8 @@ void FixPBDCloth::check_overlap()
       if (atom->mask[i] & groupbit && atom->mask[i] & other->groupbit) mine = 1;
     MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
     if (any)
-      error->all(FLERR, "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
+      error->all(FLERR,
+                 "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
 }
@@ -188,10 +191,11 @@ void FixPBDCloth::measure_rest()
   int any_missing = 0;
   MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);
   if (any_missing)
-    error->all(FLERR,
-               "{}: vertex {} has no rest position, it was added after the fix: define the fix when "
-               "the cloth is complete",
-               label, any_missing);
+    error->all(
+        FLERR,
+        "{}: vertex {} has no rest position, it was added after the fix: define the fix when "
+        "the cloth is complete",
+        label, any_missing);
   MPI_Allreduce(mine.data(), rest.data(), 3 * n, MPI_DOUBLE, MPI_SUM, world);
 
   // nearest images, for cloth that closes over a periodic boundary
@@ -214,10 +218,8 @@ void FixPBDCloth::measure_rest()
 
 void FixPBDCloth::colour_mesh()
 {
-  distance.colour =
-      colour_constraints(mesh.edges.vertices, mesh.n_vertices(), distance.n_colours);
-  bending.colour =
-      colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), bending.n_colours);
+  distance.colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), distance.n_colours);
+  bending.colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), bending.n_colours);
 }
 
 /* ----------------------------------------------------------------------
@@ -297,10 +299,11 @@ int FixPBDCloth::slot_of_vertex(int i, int vertex)
 {
   const int j = mesh.image_near(vertex, i);
   if (j < 0)
-    error->one(FLERR,
-               "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
-               "'comm_modify cutoff' to the size of two edges",
-               label, mesh.ids[vertex], atom->tag[i]);
+    error->one(
+        FLERR,
+        "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
+        "'comm_modify cutoff' to the size of two edges",
+        label, mesh.ids[vertex], atom->tag[i]);
   return halo.slot_of(j);
 }
 
@@ -458,10 +461,7 @@ void FixPBDCloth::unpack_forward_comm(int n, int first, double *buf)
 
 void FixPBDCloth::grow_arrays(int nmax) { memory->grow(rest_x, nmax, 3, "pbd/cloth:rest"); }
 
-void FixPBDCloth::copy_arrays(int i, int j, int)
-{
-  std::copy(rest_x[i], rest_x[i] + 3, rest_x[j]);
-}
+void FixPBDCloth::copy_arrays(int i, int j, int) { std::copy(rest_x[i], rest_x[i] + 3, rest_x[j]); }
 
 void FixPBDCloth::set_arrays(int i)
 {
@@ -502,7 +502,8 @@ int FixPBDCloth::maxsize_restart() { return 4; }
 
 double FixPBDCloth::memory_usage()
 {
-  const double constraints = distance.slots.capacity() * (sizeof(std::array<int, 2>) + 2 * sizeof(double)) +
+  const double constraints =
+      distance.slots.capacity() * (sizeof(std::array<int, 2>) + 2 * sizeof(double)) +
       bending.slots.capacity() * (sizeof(std::array<int, 4>) + 2 * sizeof(double));
   return 3.0 * sizeof(double) * atom->nmax + constraints + 7.0 * sizeof(double) * p.capacity() +
       halo.memory_usage();

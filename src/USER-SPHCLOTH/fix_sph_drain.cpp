@@ -49,7 +49,8 @@ void FixSPHDrain::init()
   if (!region_name.empty()) {
     region = domain->get_region_by_id(region_name);
     if (!region)
-      error->all(FLERR, "{}: region {} is gone: define it again or delete the fix", label, region_name);
+      error->all(FLERR, "{}: region {} is gone: define it again or delete the fix", label,
+                 region_name);
     region->init();
   }
   if (!atom->num_bond) return;
@@ -58,8 +59,10 @@ void FixSPHDrain::init()
     if (atom->mask[i] & groupbit && atom->num_bond[i] > 0) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (any)
-    error->all(FLERR, "{}: group {} holds bonded atoms: cloth cannot be drained, give the group of the fluid",
-               label, group->names[igroup]);
+    error->all(
+        FLERR,
+        "{}: group {} holds bonded atoms: cloth cannot be drained, give the group of the fluid",
+        label, group->names[igroup]);
 }
 
 // out of the box where it is not periodic, or inside the region

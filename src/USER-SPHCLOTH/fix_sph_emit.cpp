@@ -76,7 +76,8 @@ void FixSPHEmit::read_options(ArgReader &args)
       args.unknown(keyword, "disc, rectangle, velocity, start, mass");
   }
   if (extent[0] == 0.0)
-    error->all(FLERR, "{}: the opening is missing: add 'disc X Y Z R' or 'rectangle X Y Z A B'", label);
+    error->all(FLERR, "{}: the opening is missing: add 'disc X Y Z R' or 'rectangle X Y Z A B'",
+               label);
   if (velocity.norm() == 0.0)
     error->all(FLERR, "{}: the velocity is missing: add 'velocity VX VY VZ'", label);
   layer_time = spacing / velocity.norm();
@@ -108,23 +109,28 @@ void FixSPHEmit::init()
 {
   const auto *pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
   if (!pair || !pair->is_fluid(itype))
-    error->all(FLERR, "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
-               label, itype, itype, itype);
+    error->all(
+        FLERR,
+        "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
+        label, itype, itype, itype);
   // the mass with which a lattice of this spacing is water at rest, by the density sum
   const double at_rest = pair->equation_of_state(itype).rho0 / pair->lattice_sum(itype, spacing);
   if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
-    error->all(FLERR, "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
+    error->all(FLERR,
+               "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
                label, itype, mass);
   const double excess = (atom->rmass ? mass : atom->mass[itype]) / at_rest - 1.0;
   if (comm->me == 0 && excess > 0.01)
-    error->warning(FLERR,
-                   "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of {:.6g}",
-                   label, 100.0 * excess, at_rest);
+    error->warning(
+        FLERR,
+        "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of {:.6g}",
+        label, 100.0 * excess, at_rest);
   for (const Vec3 &x : pattern) {
     Vec3 place = centre + x;
     if (!domain->inside(place.data()))
-      error->all(FLERR, "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
+      error->all(FLERR,
+                 "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
                  label, place[0], place[1], place[2]);
   }
 }
@@ -177,7 +183,8 @@ void FixSPHEmit::emit_layer(double age)
   bigint made = atom->nlocal - before, all = 0;
   MPI_Allreduce(&made, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all != wanted)
-    error->all(FLERR, "{}: {} of {} particles of a layer fell out of the box: move the opening inwards",
+    error->all(FLERR,
+               "{}: {} of {} particles of a layer fell out of the box: move the opening inwards",
                label, wanted - all, wanted);
   atom->natoms += all;
   if (atom->map_style != Atom::MAP_NONE) {
@@ -215,8 +222,12 @@ double FixSPHEmit::compute_vector(int n)
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[6] = {static_cast<double>(emitted), static_cast<double>(layers), start,
-                          momentum[0], momentum[1], momentum[2]};
+  const double list[6] = {static_cast<double>(emitted),
+                          static_cast<double>(layers),
+                          start,
+                          momentum[0],
+                          momentum[1],
+                          momentum[2]};
   const int bytes = sizeof(list);
   fwrite(&bytes, sizeof(int), 1, fp);
   fwrite(list, sizeof(list), 1, fp);

@@ -31,8 +31,8 @@ using namespace sphcloth;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
-    ceiling(update->dt), growth(2.0), clamp_at_floor(false), state(nullptr), active(nullptr),
-    previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
+    ceiling(update->dt), growth(2.0), ceiling_given(false), clamp_at_floor(false), state(nullptr),
+    active(nullptr), previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
 {
   time_integrate = 1;
   nevery = 1;
@@ -78,9 +78,10 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       lambda.density = args.at_least(keyword, 0.0);
     else if (keyword == "min")
       floor = args.positive(keyword);
-    else if (keyword == "max")
+    else if (keyword == "max") {
       ceiling = args.positive(keyword);
-    else if (keyword == "growth") {
+      ceiling_given = true;
+    } else if (keyword == "growth") {
       growth = args.number(keyword);
       if (growth <= 1.0 || growth > 2.0)
         args.fail(keyword, std::to_string(growth), "give a factor above 1, at most 2");
@@ -89,8 +90,7 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       if (choice != "stop" && choice != "clamp") args.fail(keyword, choice, "use stop or clamp");
       clamp_at_floor = choice == "clamp";
     } else
-      args.unknown(keyword,
-                   "velocity, force, acoustic, viscous, density, min, max, growth, below");
+      args.unknown(keyword, "velocity, force, acoustic, viscous, density, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
@@ -129,10 +129,11 @@ void FixSPHIntegrate::init()
     if (atom->mask[i] & groupbit && !pair->is_fluid(atom->type[i])) wrong = atom->type[i];
   MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
   if (any_wrong)
-    error->all(FLERR,
-               "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
-               "walls out",
-               label, group->names[igroup], any_wrong);
+    error->all(
+        FLERR,
+        "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
+        "walls out",
+        label, group->names[igroup], any_wrong);
 }
 
 void FixSPHIntegrate::setup(int)
@@ -186,10 +187,11 @@ void FixSPHIntegrate::choose_step()
   const StepLimit wanted = {out.dt, static_cast<Limit>(out.by)};
   const StepLimit step = bounded_step(wanted, previous, growth, floor, ceiling);
   if (step.by == Limit::FLOOR && !clamp_at_floor)
-    error->all(FLERR,
-               "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
-               "to go on with min and count",
-               label, limit_name(wanted.by), wanted.dt, floor);
+    error->all(
+        FLERR,
+        "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
+        "to go on with min and count",
+        label, limit_name(wanted.by), wanted.dt, floor);
   limited_by = step.by;
   if (step.dt != update->dt) apply(step.dt);
 }
@@ -318,13 +320,12 @@ double FixSPHIntegrate::largest_compression() const
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit)
-      largest = std::max(largest,
-                         atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0);
+      largest = std::max(largest, atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0);
   return largest;
 }
 
 /* ----------------------------------------------------------------------
-   restart: the step before, the counters
+   restart: the step before, the ceiling unless it is given anew, the counters
 ------------------------------------------------------------------------- */
 
 void FixSPHIntegrate::write_restart(FILE *fp)
@@ -332,7 +333,7 @@ void FixSPHIntegrate::write_restart(FILE *fp)
   double all_updates = 0.0;
   MPI_Reduce(&updates, &all_updates, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  std::array<double, 4 + N_LIMITS> list{previous, update->dt, static_cast<double>(limited_by),
+  std::array<double, 4 + N_LIMITS> list{previous, ceiling, static_cast<double>(limited_by),
                                         all_updates};
   std::copy(steps_limited.begin(), steps_limited.end(), list.begin() + 4);
   const int bytes = static_cast<int>(sizeof(list));
@@ -344,7 +345,8 @@ void FixSPHIntegrate::restart(char *buf)
 {
   const auto *list = reinterpret_cast<const double *>(buf);
   previous = list[0];
-  update->dt = list[1];
+  // the time step that LAMMPS restored is the last one that was taken, no ceiling
+  if (!ceiling_given) ceiling = list[1];
   limited_by = static_cast<Limit>(static_cast<int>(list[2]));
   updates = comm->me == 0 ? list[3] : 0.0;
   std::copy(list + 4, list + 4 + N_LIMITS, steps_limited.begin());

@@ -60,7 +60,7 @@ class FixSPHIntegrate : public Fix {
   bool run_style_drives;
   sphcloth::StepCoefficients lambda;
   double floor, ceiling, growth;
-  bool clamp_at_floor;
+  bool ceiling_given, clamp_at_floor;
 
   double **state;    // per particle: its own allowed step, time of its last update
   int *active;       // per particle: 1 if it takes part in this step

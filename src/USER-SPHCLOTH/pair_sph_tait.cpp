@@ -148,7 +148,8 @@ PairSPHTait::TypeData PairSPHTait::read_fluid(ArgReader &args, PairData &own) co
       t.eos.k = read_stiffness(args, keyword);
     else if (keyword == "gamma") {
       t.eos.gamma = args.number("gamma");
-      if (!(t.eos.gamma > 1.0)) args.fail("gamma", std::to_string(t.eos.gamma), "give a number > 1");
+      if (!(t.eos.gamma > 1.0))
+        args.fail("gamma", std::to_string(t.eos.gamma), "give a number > 1");
     } else if (keyword == "nu")
       t.nu = args.at_least("nu", 0.0);
     else if (keyword == "alpha")
@@ -159,8 +160,8 @@ PairSPHTait::TypeData PairSPHTait::read_fluid(ArgReader &args, PairData &own) co
       args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support");
   }
   if (t.eos.k == 0.0)
-    error->all(FLERR,
-               "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'", COEFF);
+    error->all(FLERR, "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'",
+               COEFF);
   return t;
 }
 
@@ -204,8 +205,9 @@ PairSPHTait::PairData PairSPHTait::read_pair(ArgReader &args) const
     else if (keyword == "support")
       p.support = args.positive("support");
     else
-      args.unknown(keyword, "k, c0, fluctuation, nu, alpha, support for two types, or fluid, "
-                            "boundary for one type");
+      args.unknown(keyword,
+                   "k, c0, fluctuation, nu, alpha, support for two types, or fluid, "
+                   "boundary for one type");
   }
   return p;
 }
@@ -230,7 +232,8 @@ void PairSPHTait::init_style()
                    STYLE);
   for (int i = 1; i <= atom->ntypes; i++)
     if (types[i].role == Role::NONE)
-      error->all(FLERR, "{}: type {} has no role: add 'pair_coeff {} {} fluid ...' or '... boundary'",
+      error->all(FLERR,
+                 "{}: type {} has no role: add 'pair_coeff {} {} fluid ...' or '... boundary'",
                  STYLE, i, i, i);
   neighbor->add_request(this, NeighConst::REQ_FULL);
   active = nullptr;    // until a fix says who is
@@ -275,8 +278,8 @@ double PairSPHTait::viscosity(int itype) const
 {
   // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2))
   const TypeData &t = types[itype];
-  const double artificial = t.alpha * t.eos.sound_speed() * 0.5 * support(itype) /
-      (2.0 * (domain->dimension + 2));
+  const double artificial =
+      t.alpha * t.eos.sound_speed() * 0.5 * support(itype) / (2.0 * (domain->dimension + 2));
   return t.nu + artificial;
 }
 
@@ -422,8 +425,12 @@ void PairSPHTait::sort_by_role()
 
 ParticleView PairSPHTait::view() const
 {
-  return {atom->nmax ? atom->x[0] : nullptr, atom->nmax ? atom->v[0] : nullptr,
-          amount.data(), atom->rho, pressure.data(), atom->type};
+  return {atom->nmax ? atom->x[0] : nullptr,
+          atom->nmax ? atom->v[0] : nullptr,
+          amount.data(),
+          atom->rho,
+          pressure.data(),
+          atom->type};
 }
 
 Neighbourhood PairSPHTait::neighbourhood(int i) const
@@ -498,8 +505,8 @@ template <class K> void PairSPHTait::densities()
     if (several_fluids)
       rho += kernel_sum<K, true>(p, row, near_rsq.data(), near_i.fluid, near_i.n_fluid);
     else
-      rho += kernel_sum<K, false>(p, fluid_terms(row), near_rsq.data(), near_i.fluid,
-                                  near_i.n_fluid);
+      rho +=
+          kernel_sum<K, false>(p, fluid_terms(row), near_rsq.data(), near_i.fluid, near_i.n_fluid);
     if (near_i.n_boundary) {
       const double *rsq = near_rsq.data() + list->numneigh[i] - near_i.n_boundary;
       rho += types[itype].eos.rho0 *

@@ -88,8 +88,8 @@ class PairSPHTait : public Pair {
   // scratch, kept from step to step
   const int *active;
   int single_fluid;                        // the type of all fluid, unless several_fluids
-  std::vector<int> fluid, boundary;        // owned particles by role, since the last list build
-  sphcloth::AlignedVector<int> near;       // neighbours inside the support, stretch per particle
+  std::vector<int> fluid, boundary;    // owned particles by role, since the last list build
+  sphcloth::AlignedVector<int> near;    // neighbours inside the support, stretch per particle
   std::vector<std::int64_t> near_start;    // by local index
   std::vector<int> near_fluid, near_boundary;
   sphcloth::AlignedVector<double> near_rsq;    // of one particle

@@ -59,7 +59,8 @@ int VertexHalo::pack_link(int n, const int *sendlist, double *buf) const
 {
   int m = 0;
   for (int k = 0; k < n; k++)
-    for (int d = 0; d < LINK; d++) buf[m++] = link[LINK * static_cast<std::size_t>(sendlist[k]) + d];
+    for (int d = 0; d < LINK; d++)
+      buf[m++] = link[LINK * static_cast<std::size_t>(sendlist[k]) + d];
   return m;
 }
 
@@ -75,7 +76,8 @@ void VertexHalo::find_images()
 {
   image.resize(n_slots() - owned);
   for (int s = owned; s < n_slots(); s++) {
-    const double *x = atom->x[atoms[s]], *x_owner = &link[LINK * static_cast<std::size_t>(atoms[s]) + 2];
+    const double *x = atom->x[atoms[s]],
+                 *x_owner = &link[LINK * static_cast<std::size_t>(atoms[s]) + 2];
     double dx = x[0] - x_owner[0], dy = x[1] - x_owner[1], dz = x[2] - x_owner[2];
     const auto count = [](double distance, double period) {
       return static_cast<int>(std::lround(distance / period));

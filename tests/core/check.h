@@ -43,17 +43,17 @@ inline void report(bool ok, const char *file, int line, const std::string &what)
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
-#define CASE(name)                                                   \
-  static void JOIN(case_, __LINE__)();                               \
+#define CASE(name)                                                              \
+  static void JOIN(case_, __LINE__)();                                          \
   static const Register JOIN(register_, __LINE__)(name, JOIN(case_, __LINE__)); \
   static void JOIN(case_, __LINE__)()
 
 #define CHECK(condition) report((condition), __FILE__, __LINE__, #condition)
-#define CHECK_NEAR(a, b, tolerance)                                                        \
-  do {                                                                                     \
-    const double a_ = (a), b_ = (b);                                                       \
-    report(std::fabs(a_ - b_) <= (tolerance), __FILE__, __LINE__,                          \
-           std::string(#a " = ") + std::to_string(a_) + ", not " + std::to_string(b_));    \
+#define CHECK_NEAR(a, b, tolerance)                                                     \
+  do {                                                                                  \
+    const double a_ = (a), b_ = (b);                                                    \
+    report(std::fabs(a_ - b_) <= (tolerance), __FILE__, __LINE__,                       \
+           std::string(#a " = ") + std::to_string(a_) + ", not " + std::to_string(b_)); \
   } while (0)
 
 #endif

@@ -31,7 +31,8 @@ CASE("stiffness per iteration, equation (9)")
       CHECK_NEAR(std::pow(1.0 - stiffness_per_iteration(k, n), n), 1.0 - k, 1e-12);
   CHECK(stiffness_per_iteration(0.0, 10) == 0.0);
   CHECK(stiffness_per_iteration(1.0, 10) == 1.0);
-  CHECK(stiffness_per_iteration(0.3, 1) == 0.3 || std::fabs(stiffness_per_iteration(0.3, 1) - 0.3) < 1e-16);
+  CHECK(stiffness_per_iteration(0.3, 1) == 0.3 ||
+        std::fabs(stiffness_per_iteration(0.3, 1) - 0.3) < 1e-16);
 }
 
 CASE("distance: projected exactly, mass-weighted, momentum and pins kept")
@@ -69,7 +70,8 @@ CASE("hinge: the angle has a sign and every digit near flat")
   for (double angle : {-2.6, -1.0, -1e-10, 0.0, 1e-12, 0.5, 2.6}) {
     const auto [a, e1, e2, b] = folded(angle);
     CHECK(hinge(a, e1, e2, b).valid);
-    CHECK_NEAR(std::fabs(hinge(a, e1, e2, b).angle), std::fabs(angle), 1e-12 * std::fabs(angle) + 1e-17);
+    CHECK_NEAR(std::fabs(hinge(a, e1, e2, b).angle), std::fabs(angle),
+               1e-12 * std::fabs(angle) + 1e-17);
     CHECK_NEAR(hinge(b, e2, e1, a).angle, hinge(a, e1, e2, b).angle, 1e-15);
   }
   const auto p = folded(0.3), m = folded(-0.3);

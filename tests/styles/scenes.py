@@ -23,7 +23,7 @@ region block block -0.2 0.2 -0.2 0.2 0.03 0.33 units box
 create_atoms 1 region block
 group fluid type 1
 displace_atoms fluid random 0.01 0.01 0.01 1234 units box
-velocity fluid set 0.5 0.3 -3.0
+velocity fluid set 0.5 0.3 -3.0 units box
 special_bonds lj/coul 1 1 1
 create_cloth 2 4.0 center 0 0 0 size 0.9 0.9 spacing 0.05
 neighbor 0.05 bin
@@ -92,11 +92,11 @@ region high block -0.15 0.15 -0.15 0.15 0.2 0.3 units box
 create_atoms 1 region low
 create_atoms 2 region high
 group fluid type 1 2
-velocity fluid set 0.3 -0.2 -8.0
+velocity fluid set 0.3 -0.2 -6.0 units box
 special_bonds lj/coul 1 1 1
 pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000.0 c0 30 alpha 0.1
-pair_coeff 2 2 fluid 2000.0 c0 20 nu 0.01
+pair_coeff 1 1 fluid 1000.0 c0 8 alpha 0.1
+pair_coeff 2 2 fluid 2000.0 c0 6 nu 0.01
 pair_coeff 3 3 boundary
 bond_style pbd
 bond_coeff 1 0.9
@@ -109,6 +109,6 @@ neigh_modify every 1 delay 0 check yes
 timestep 0.001
 fix step fluid sph/integrate global
 fix sheet cloth pbd/cloth iterations 5 damping 1.0
-fix contact fluid cloth/contact 0.05
+fix contact fluid cloth/contact 0.03
 """
 )

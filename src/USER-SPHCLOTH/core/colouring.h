@@ -17,7 +17,8 @@ template <std::size_t N>
 std::vector<int> colour_constraints(const std::vector<std::array<int, N>> &constraints,
                                     int n_vertices, int &n_colours)
 {
-  std::vector<std::vector<bool>> used(n_vertices);    // used[v][c]: v is in a constraint of colour c
+  std::vector<std::vector<bool>> used(
+      n_vertices);    // used[v][c]: v is in a constraint of colour c
   std::vector<int> colour(constraints.size());
   n_colours = 0;
   const auto taken = [&](const std::array<int, N> &vertices, std::size_t c) {

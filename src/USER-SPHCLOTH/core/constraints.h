@@ -23,10 +23,7 @@ using Vec3 = Eigen::Vector3d;
 
 // (9): what one of n iterations must do so that all of them together do k.  k = 1 gives 1.
 
-inline double stiffness_per_iteration(double k, int n)
-{
-  return -std::expm1(std::log1p(-k) / n);
-}
+inline double stiffness_per_iteration(double k, int n) { return -std::expm1(std::log1p(-k) / n); }
 
 // (4)
 

@@ -53,7 +53,8 @@ inline std::vector<SheetRow> sheet_rows(Pattern pattern, double length, double w
 
 // rows with the same columns: each cell is cut along one diagonal, alternating if DIAGONAL
 
-inline void cut_cells(Pattern pattern, const SheetRow &low, const SheetRow &high, int r, Sheet &sheet)
+inline void cut_cells(Pattern pattern, const SheetRow &low, const SheetRow &high, int r,
+                      Sheet &sheet)
 {
   for (int c = 0; c + 1 < static_cast<int>(low.u.size()); c++) {
     const int a = low.first + c, b = a + 1, d = high.first + c, e = d + 1;

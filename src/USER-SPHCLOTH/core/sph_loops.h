@@ -99,8 +99,7 @@ SPHCLOTH_MULTIVERSION void fluid_on_fluid(const ParticleView &p, const PairTerms
     const double dx = xi - p.x[3 * j], dy = yi - p.x[3 * j + 1], dz = zi - p.x[3 * j + 2];
     const double du = ui - p.v[3 * j], dv = vi - p.v[3 * j + 1], dw = wi - p.v[3 * j + 2];
     const double r_sq = dx * dx + dy * dy + dz * dz;
-    const double slope =
-        t.kernel.f * Kernel::slope_over_q(std::sqrt(r_sq) * t.kernel.inv_support);
+    const double slope = t.kernel.f * Kernel::slope_over_q(std::sqrt(r_sq) * t.kernel.inv_support);
     const double v_dot_r = du * dx + dv * dy + dw * dz;
     const double weight = p.amount[j] * slope;
 

@@ -40,7 +40,9 @@ def doctor(
 @app.command()
 def run(
     example: Annotated[str, typer.Argument(metavar="EXAMPLE", help="Name of a packaged example.")],
-    size: Annotated[str, typer.Option(help="tiny, small, medium or paper.")] = "small",
+    size: Annotated[
+        str, typer.Option(help="One of the sizes in the example's sizes.toml.")
+    ] = "small",
     ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
     out: Annotated[
         Path | None, typer.Option(help="Output folder.", show_default="sphcloth-EXAMPLE-SIZE")

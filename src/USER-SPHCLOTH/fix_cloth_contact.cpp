@@ -75,6 +75,16 @@ void FixClothContact::init()
   }
   if (cloths.empty())
     error->all(FLERR, "{}: there is no cloth: define 'fix ID group pbd/cloth' before", label);
+}
+
+/* ----------------------------------------------------------------------
+   triangles with vertices in reach of this rank, after each list build
+------------------------------------------------------------------------- */
+
+// every cloth has gathered its mesh by now, whatever the order of the fixes
+
+void FixClothContact::setup_post_neighbor()
+{
   bool any_triangle = false;
   for (const FixPBDCloth *cloth : cloths)
     any_triangle = any_triangle || cloth->topology().triangles.size();
@@ -83,11 +93,8 @@ void FixClothContact::init()
                "{}: the cloth has no triangles: they are LAMMPS angles, create_cloth makes them, a "
                "data file needs an Angles section",
                label);
+  post_neighbor();
 }
-
-/* ----------------------------------------------------------------------
-   triangles with vertices in reach of this rank, after each list build
-------------------------------------------------------------------------- */
 
 void FixClothContact::post_neighbor()
 {

@@ -28,7 +28,7 @@ class FixClothContact : public Fix {
   FixClothContact(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
-  void setup_post_neighbor() override { post_neighbor(); }
+  void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
   double compute_vector(int) override;

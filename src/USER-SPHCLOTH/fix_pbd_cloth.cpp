@@ -432,8 +432,9 @@ double FixPBDCloth::largest_strain() const
 {
   double strain = 0.0;
   for (std::size_t m = 0; m < distance.slots.size(); m++) {
-    const double *a = atom->x[halo.atom_of(distance.slots[m][0])];
-    const double *b = atom->x[halo.atom_of(distance.slots[m][1])];
+    const auto [slot_a, slot_b] = distance.slots[m];
+    if (w[slot_a] == 0.0 && w[slot_b] == 0.0) continue;    // the user holds both ends
+    const double *a = atom->x[halo.atom_of(slot_a)], *b = atom->x[halo.atom_of(slot_b)];
     const double error =
         distance_error(Vec3(a[0], a[1], a[2]), Vec3(b[0], b[1], b[2]), distance.rest[m]);
     if (distance.rest[m] > 0.0) strain = std::max(strain, std::fabs(error) / distance.rest[m]);

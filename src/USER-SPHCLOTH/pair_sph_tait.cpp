@@ -27,9 +27,9 @@ static const std::string COEFF = "pair_coeff (sph/tait)";
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
     Pair(lmp), kernel(Kernel::WENDLAND_C2), support_global(0.0), keep_tension(0), viscous(false),
-    several_fluids(false), measure_volume(false), active(nullptr), single_fluid(1),
-    stage(Stage::DENSITY), densities_fn(nullptr), forces_fn(nullptr), virial_fn(nullptr),
-    volumes_fn(nullptr)
+    several_fluids(false), several_roles(false), measure_volume(false), active(nullptr),
+    single_fluid(1), stage(Stage::DENSITY), densities_fn(nullptr), forces_fn(nullptr),
+    virial_fn(nullptr), volumes_fn(nullptr)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -230,11 +230,6 @@ void PairSPHTait::init_style()
                    "{}: special_bonds would hide bonded neighbours from the sums: add "
                    "'special_bonds lj/coul 1.0 1.0 1.0'",
                    STYLE);
-  for (int i = 1; i <= atom->ntypes; i++)
-    if (types[i].role == Role::NONE)
-      error->all(FLERR,
-                 "{}: type {} has no role: add 'pair_coeff {} {} fluid ...' or '... boundary'",
-                 STYLE, i, i, i);
   neighbor->add_request(this, NeighConst::REQ_FULL);
   active = nullptr;    // until a fix says who is
 
@@ -242,14 +237,18 @@ void PairSPHTait::init_style()
     case Kernel::WENDLAND_C2: bind_kernel<WendlandC2>(); break;
     case Kernel::CUBIC: bind_kernel<CubicSpline>(); break;
   }
-  viscous = measure_volume = several_fluids = false;
+  viscous = measure_volume = several_fluids = several_roles = false;
+  support_sq.assign((atom->ntypes + 1) * (atom->ntypes + 1), 0.0);
+  fluid_type.assign(atom->ntypes + 1, 0);
   single_fluid = 0;
   for (int i = 1; i <= atom->ntypes; i++) {
     if (types[i].role == Role::FLUID) {
-      several_fluids = single_fluid != 0;
+      several_fluids = several_fluids || single_fluid != 0;
       if (!single_fluid) single_fluid = i;
-    } else if (types[i].volume == 0.0)
-      measure_volume = true;
+      fluid_type[i] = 1;
+    } else
+      several_roles = true;
+    if (types[i].role == Role::BOUNDARY && types[i].volume == 0.0) measure_volume = true;
   }
 }
 
@@ -285,8 +284,11 @@ double PairSPHTait::viscosity(int itype) const
 
 double PairSPHTait::lattice_sum(int itype, double spacing) const
 {
-  return kernel == Kernel::CUBIC ? kernel_lattice_sum<CubicSpline>(support(itype), spacing)
-                                 : kernel_lattice_sum<WendlandC2>(support(itype), spacing);
+  switch (kernel) {
+    case Kernel::WENDLAND_C2: return kernel_lattice_sum<WendlandC2>(support(itype), spacing);
+    case Kernel::CUBIC: return kernel_lattice_sum<CubicSpline>(support(itype), spacing);
+  }
+  return 0.0;
 }
 
 template <class K> double PairSPHTait::kernel_lattice_sum(double support, double spacing) const
@@ -334,6 +336,7 @@ double PairSPHTait::init_one(int i, int j)
   }
   mix(i, j, t);
   terms[j * n + i] = t;
+  support_sq[i * n + j] = support_sq[j * n + i] = t.kernel.support_sq;
   if (t.nu > 0.0 || t.monaghan > 0.0) viscous = true;
 
   // two boundary particles only meet to measure their volume
@@ -441,32 +444,36 @@ Neighbourhood PairSPHTait::neighbourhood(int i) const
 }
 
 // Keeps those neighbours of i that are inside the support: fluid at the front of i's stretch,
-// boundary at its back, squared distances in near_rsq likewise.
+// boundary at its back, squared distances in near_rsq likewise.  Every neighbour is written and the
+// cursor moves only past the wanted ones: whether one is inside is a coin toss that no branch
+// predictor wins.
 
 void PairSPHTait::gather_near(int i, bool want_fluid, bool want_boundary)
 {
   const int *type = atom->type;
-  const double *const *x = atom->x;
-  const PairTerms *row = &terms[type[i] * (atom->ntypes + 1)];
-  const double xi = x[i][0], yi = x[i][1], zi = x[i][2];
+  const double *x = atom->x[0];
+  const double *cut = &support_sq[type[i] * (atom->ntypes + 1)];
+  const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2];
   const int *jlist = list->firstneigh[i];
   const int jnum = list->numneigh[i];
   int *out = near.data() + near_start[i];
   int front = 0, back = jnum;
   for (int jj = 0; jj < jnum; jj++) {
     const int j = jlist[jj] & NEIGHMASK;
-    const double dx = xi - x[j][0], dy = yi - x[j][1], dz = zi - x[j][2];
+    const int t = type[j];
+    const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2];
     const double rsq = dx * dx + dy * dy + dz * dz;
-    if (rsq >= row[type[j]].kernel.support_sq) continue;
-    if (types[type[j]].role == Role::FLUID) {
-      if (!want_fluid) continue;
-      out[front] = j;
-      near_rsq[front++] = rsq;
-    } else if (want_boundary) {
-      out[--back] = j;
-      near_rsq[back] = rsq;
-    }
+    const bool inside = rsq < cut[t], fluid_j = fluid_type[t];
+    near_rsq[front] = rsq;
+    out[front] = j;
+    front += inside & fluid_j & want_fluid;
+    if (several_roles && (inside & !fluid_j & want_boundary)) behind.push_back({j, rsq});
   }
+  for (const auto &[j, rsq] : behind) {
+    out[--back] = j;
+    near_rsq[back] = rsq;
+  }
+  behind.clear();
   near_fluid[i] = front;
   near_boundary[i] = jnum - back;
 }

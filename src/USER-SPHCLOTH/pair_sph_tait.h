@@ -15,6 +15,7 @@ PairStyle(sph/tait,PairSPHTait);
 #include "core/tait.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -83,7 +84,9 @@ class PairSPHTait : public Pair {
   std::vector<TypeData> types;
   std::vector<PairData> pairs;                  // (ntypes+1)^2
   std::vector<sphcloth::PairTerms> terms;       // (ntypes+1)^2, of the run
-  bool viscous, several_fluids, measure_volume;
+  bool viscous, several_fluids, several_roles, measure_volume;
+  std::vector<double> support_sq;    // (ntypes+1)^2
+  std::vector<char> fluid_type;      // 1 for a type of fluid
 
   // scratch, kept from step to step
   const int *active;
@@ -92,6 +95,7 @@ class PairSPHTait : public Pair {
   sphcloth::AlignedVector<int> near;    // neighbours inside the support, stretch per particle
   std::vector<std::int64_t> near_start;    // by local index
   std::vector<int> near_fluid, near_boundary;
+  std::vector<std::pair<int, double>> behind;    // boundary neighbours of one particle
   sphcloth::AlignedVector<double> near_rsq;    // of one particle
   sphcloth::AlignedVector<double> amount, pressure;    // per atom, owned and ghost
   Stage stage;

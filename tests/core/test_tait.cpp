@@ -21,6 +21,7 @@ CASE("Tait: rest, closed form, sound speed, energy")
 CASE("Tait: any exponent; a small fluctuation keeps its digits; stiffness from a goal")
 {
   const Tait gas{1.2, 9.0, 1.4};
+  CHECK_NEAR(gas.sound_speed(2.4), 3.0 * std::pow(2.0, 0.2), 1e-14);
   CHECK_NEAR(gas.pressure(2.4), 9.0 * 1.2 / 1.4 * (std::pow(2.0, 1.4) - 1.0), 1e-12);
   const Tait water{1000.0, 100.0, 7.0};
   CHECK_NEAR(water.pressure(1000.0 * (1.0 + 1e-9)) / (100.0 * 1000.0 * 1e-9), 1.0, 1e-6);

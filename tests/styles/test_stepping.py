@@ -234,3 +234,22 @@ def test_light_wet_cloth_shortens_the_step():
         steps.append(lmp.extract_global("dt"))
     assert steps[1] == pytest.approx(2 * steps[0], rel=1e-9)
     assert steps[1] < 0.5 * 0.05 / 20
+
+
+def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
+    lmp = free_particles(speed=50.0, run="run 3")
+    lmp.command(f"write_restart {tmp_path / 'stop'}")
+    counted = lmp.extract_fix("step", 0, 1, 2)
+    again = instance()
+    again.commands_string(f"""
+        read_restart {tmp_path / "stop"}
+        comm_modify vel yes
+        neighbor 0.05 bin
+        fix step all sph/integrate global
+        velocity all set 0 0 0
+        run 0""")
+    dt, limit = dt_and_limit(again)
+    assert (dt, limit) == (pytest.approx(2 * 0.1 * 0.1 / 50.0), GROWTH)
+    again.command("run 20")
+    assert dt_and_limit(again) == (0.01, CEILING)
+    assert again.extract_fix("step", 0, 1, 2) == counted + 2 * 20

@@ -33,7 +33,11 @@ struct Tait {
 
   double sound_speed(double rho) const
   {
-    return sound_speed() * std::pow(rho / rho0, 0.5 * (gamma - 1.0));
+    const double ratio = rho / rho0;
+    // water's exponent needs no pow()
+    const double stretch = gamma == 7.0 ? ratio * ratio * ratio
+                                        : std::pow(ratio, 0.5 * (gamma - 1.0));
+    return sound_speed() * stretch;
   }
 
   // A relative fluctuation eta needs c0 = v_ref / sqrt(eta), v_ref the larger of the expected

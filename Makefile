@@ -37,3 +37,9 @@ build/core/test_core: $(VENV)/installed $(wildcard tests/core/*)
 
 clean:
 	rm -rf build dist demo $(VENV)
+
+# the picture of the README, from the demo's
+docs/pictures/pour.png: demo
+	mkdir -p $(@D)
+	$(BIN)/python -c "from PIL import Image; \
+	  Image.open('demo/contact_sheet.png').convert('RGB').resize((1296, 684)).quantize(256, dither=0).save('$@', optimize=True)"

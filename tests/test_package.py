@@ -65,7 +65,7 @@ def test_every_style_has_source_page_test_and_example(kind, name):
     tests = "".join(path.read_text() for path in (ROOT / "tests").rglob("*.py"))
     assert name in tests
     examples = "".join(path.read_text() for path in (ROOT / "examples").rglob("in.*"))
-    assert name in examples or kind == "run"
+    assert name in examples
 
 
 def test_another_release_is_refused(capfd):

@@ -35,7 +35,7 @@ SKY_COLOURS = ("#ffffff", "#c9d9ea")
 WATER = colors.LinearSegmentedColormap.from_list("water", ["#1257a8", "#3b97df", "#b5e2f8"])
 
 # from the scene towards the camera; the lens's full angle in degrees
-VIEW = np.array([1.0, -1.8, 0.95]) / np.linalg.norm([1.0, -1.8, 0.95])
+VIEW = np.array([1.0, -1.8, 0.45]) / np.linalg.norm([1.0, -1.8, 0.45])
 VIEW_ANGLE = 30.0
 HALF_HEIGHT = np.tan(np.radians(VIEW_ANGLE / 2))
 HALF_EXTENT = HALF_HEIGHT * np.array([PICTURE_SIZE[0] / PICTURE_SIZE[1], 1.0])
@@ -229,7 +229,11 @@ def _add_lights(plotter: pyvista.Plotter, scene: Scene) -> None:
     import pyvista
 
     target, distance = scene.camera.target, scene.camera.distance
-    for direction, intensity in (((0.3, -1, 2.0), 0.75), ((1, -1.5, 0.4), 0.35), ((-1, 1, 1), 0.2)):
+    for direction, intensity in (
+        ((0.3, -1, 2.0), 0.75),
+        ((1, -1.5, -0.3), 0.55),
+        ((-1, 1, 1), 0.2),
+    ):
         position = target + distance * np.array(direction)
         light = pyvista.Light(position=position, focal_point=target, intensity=intensity)
         plotter.add_light(light)

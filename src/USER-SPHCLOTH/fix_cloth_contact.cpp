@@ -111,6 +111,7 @@ void FixClothContact::post_neighbor()
   for (const FixPBDCloth *cloth : cloths) add_triangles(*cloth, reach);
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
   halo.connect(this);
+  check_reach();
 
   w.assign(halo.n_slots(), 0.0);
   for (int s = 0; s < halo.n_owned(); s++)
@@ -122,8 +123,8 @@ void FixClothContact::post_neighbor()
   end.resize(halo.n_slots());
 }
 
-// Every image of a triangle once, from the view of its first vertex; an image with a vertex out
-// of reach is too far from this rank's particles to matter.
+// Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
+// out of reach is too far from this rank's particles to matter.
 
 void FixClothContact::add_triangles(const FixPBDCloth &cloth, const std::vector<int> &reach)
 {
@@ -136,10 +137,37 @@ void FixClothContact::add_triangles(const FixPBDCloth &cloth, const std::vector<
       const std::array<int, 3> &members = t.vertices[t.incident[k]];
       if (members[0] != vertex) continue;
       const int j = mesh.image_near(members[1], i), l = mesh.image_near(members[2], i);
+      if ((j < 0 || l < 0) && i < atom->nlocal)
+        error->one(
+            FLERR,
+            "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
+            "it with 'comm_modify cutoff', or refine the mesh",
+            label, mesh.ids[vertex], mesh.ids[members[1]], mesh.ids[members[2]]);
       if (j < 0 || l < 0) continue;
       triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
     }
   }
+}
+
+// A particle next to a triangle must see all of its vertices, also those of other ranks.
+
+void FixClothContact::check_reach()
+{
+  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
+  double longest_sq = 0.0;
+  for (const std::array<int, 3> &t : triangles)
+    for (int q = 0; q < 3; q++) {
+      const double *a = atom->x[halo.atom_of(t[q])], *b = atom->x[halo.atom_of(t[(q + 1) % 3])];
+      longest_sq =
+          std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
+    }
+  const double needed = std::sqrt(longest_sq) + thickness, reach = comm->get_comm_cutoff();
+  if (needed > reach)
+    error->one(
+        FLERR,
+        "{}: the longest edge of the cloth and the thickness are {}, more than the ghost cut-off "
+        "{}: raise it with 'comm_modify cutoff', or refine the mesh",
+        label, needed, reach);
 }
 
 /* ----------------------------------------------------------------------

@@ -65,6 +65,7 @@ class FixClothContact : public Fix {
   double impulse[3];    // what the pinned vertices took up, this rank
 
   void add_triangles(const FixPBDCloth &, const std::vector<int> &);
+  void check_reach();
   void load_vertices();
   void move_vertices();
   sphcloth::Sweep particle_sweep(int) const;

@@ -34,6 +34,7 @@ angle_coeff *
 dihedral_style pbd
 dihedral_coeff 1 0.1
 neighbor 0.1 bin
+comm_modify cutoff 0.6
 neigh_modify every 1 delay 0 check yes
 timestep {dt}
 fix step fluid sph/integrate constant

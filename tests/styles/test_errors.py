@@ -158,6 +158,12 @@ CASES = [
         SHEET_FIX + "delete_bonds all angle 1 remove\nfix c water cloth/contact 0.01\nrun 0",
         r"cloth has no triangles.*Angles",
     ),
+    case(
+        "contact: coarse mesh",
+        SHEET_FIX.replace("neighbor 0.05", "neighbor 0.02")
+        + "fix c water cloth/contact 0.01\nrun 0",
+        r"longest edge of the cloth and the thickness are 0.15.*comm_modify cutoff",
+    ),
     # fix sph/integrate and run_style
     case("step: no scheme", STEP, r"fix step sph/integrate: scheme is missing"),
     case("step: scheme", STEP + "local", r"scheme is 'local'.*constant or global"),
@@ -261,7 +267,7 @@ def test_the_scene_of_these_tests_is_sound():
     lmp = instance()
     lmp.commands_string(
         SHEET_FIX
-        + "fix step water sph/integrate global\nfix c water cloth/contact 0.01\n"
+        + "fix step water sph/integrate global\nfix c water cloth/contact 0.005\n"
         + "fix d water sph/drain\nrun_style sph/adaptive global\nrun 2"
     )
     assert lmp.extract_global("ntimestep") == 2

@@ -32,7 +32,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), ceiling_given(false), clamp_at_floor(false), state(nullptr),
-    active(nullptr), previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
+    previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
 {
   time_integrate = 1;
   nevery = 1;
@@ -43,7 +43,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   extscalar = extvector = 0;
   peratom_flag = 1;
-  size_peratom_cols = 2;
+  size_peratom_cols = N_COLUMNS;
   peratom_freq = 1;
   dynamic_group_allow = 1;
 
@@ -101,7 +101,6 @@ FixSPHIntegrate::~FixSPHIntegrate()
 {
   atom->delete_callback(id, Atom::GROW);
   memory->destroy(state);
-  memory->destroy(active);
 }
 
 int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_RUN; }
@@ -119,7 +118,7 @@ void FixSPHIntegrate::init()
   const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
-  pair->set_active(active);
+  pair->set_active(state, ACTIVE);
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
@@ -150,7 +149,7 @@ void FixSPHIntegrate::initial_integrate(int)
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || !active[i]) continue;
+    if (!(atom->mask[i] & groupbit) || state[i][ACTIVE] == 0.0) continue;
     const double kick = dtf / (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
@@ -295,7 +294,7 @@ double FixSPHIntegrate::compute_vector(int n)
       double mine[2] = {0.0, 0.0}, all[2];
       for (int i = 0; i < atom->nlocal; i++)
         if (atom->mask[i] & groupbit) {
-          mine[0] += active[i];
+          mine[0] += state[i][ACTIVE];
           mine[1] += 1.0;
         }
       MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -358,39 +357,32 @@ void FixSPHIntegrate::restart(char *buf)
 
 void FixSPHIntegrate::grow_arrays(int nmax)
 {
-  memory->grow(state, nmax, 2, "sph/integrate:state");
-  memory->grow(active, nmax, "sph/integrate:active");
+  memory->grow(state, nmax, N_COLUMNS, "sph/integrate:state");
   array_atom = state;
-  if (pair) pair->set_active(active);
+  if (pair) pair->set_active(state, ACTIVE);
 }
 
 void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
-  state[j][OWN_STEP] = state[i][OWN_STEP];
-  state[j][LAST_UPDATE] = state[i][LAST_UPDATE];
-  active[j] = active[i];
+  std::copy(state[i], state[i] + N_COLUMNS, state[j]);
 }
 
 void FixSPHIntegrate::set_arrays(int i)
 {
   state[i][OWN_STEP] = state[i][LAST_UPDATE] = 0.0;
-  active[i] = 1;
+  state[i][ACTIVE] = 1.0;
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
-  buf[0] = state[i][OWN_STEP];
-  buf[1] = state[i][LAST_UPDATE];
-  buf[2] = active[i];
-  return 3;
+  std::copy(state[i], state[i] + N_COLUMNS, buf);
+  return N_COLUMNS;
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
-  state[i][OWN_STEP] = buf[0];
-  state[i][LAST_UPDATE] = buf[1];
-  active[i] = static_cast<int>(buf[2]);
-  return 3;
+  std::copy(buf, buf + N_COLUMNS, state[i]);
+  return N_COLUMNS;
 }
 
-double FixSPHIntegrate::memory_usage() { return atom->nmax * (2.0 * sizeof(double) + sizeof(int)); }
+double FixSPHIntegrate::memory_usage() { return sizeof(double) * N_COLUMNS * atom->nmax; }

@@ -51,7 +51,7 @@ class FixSPHIntegrate : public Fix {
   void finish_step();
 
  private:
-  enum Column { OWN_STEP, LAST_UPDATE };    // of the per-particle state
+  enum Column { OWN_STEP, LAST_UPDATE, ACTIVE, N_COLUMNS };
 
   std::string label;
   PairSPHTait *pair;
@@ -62,8 +62,8 @@ class FixSPHIntegrate : public Fix {
   double floor, ceiling, growth;
   bool ceiling_given, clamp_at_floor;
 
-  double **state;    // per particle: its own allowed step, time of its last update
-  int *active;       // per particle: 1 if it takes part in this step
+  // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
+  double **state;
 
   double previous;      // the last step that was taken, 0 before the first
   sphcloth::Limit limited_by;

@@ -60,8 +60,13 @@ class PairSPHTait : public Pair {
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
 
-  // 0 for a particle whose density and forces need no update; a null pointer: all are active
-  void set_active(const int *flags) { active = flags; }
+  // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
+  // without an array all are active.
+  void set_active(double **array, int column)
+  {
+    active = array;
+    active_column = column;
+  }
 
  private:
   enum class Role : int { NONE, FLUID, BOUNDARY };
@@ -89,7 +94,8 @@ class PairSPHTait : public Pair {
   std::vector<char> fluid_type;      // 1 for a type of fluid
 
   // scratch, kept from step to step
-  const int *active;
+  double **active;
+  int active_column;
   int single_fluid;                        // the type of all fluid, unless several_fluids
   std::vector<int> fluid, boundary;    // owned particles by role, since the last list build
   sphcloth::AlignedVector<int> near;    // neighbours inside the support, stretch per particle
@@ -114,7 +120,7 @@ class PairSPHTait : public Pair {
   template <class K> void bind_kernel();
   template <class K> double kernel_lattice_sum(double, double) const;
 
-  bool is_active(int i) const { return !active || active[i]; }
+  bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
   sphcloth::ParticleView view() const;
   sphcloth::Neighbourhood neighbourhood(int) const;
   const sphcloth::PairTerms *fluid_terms(const sphcloth::PairTerms *row) const

@@ -253,3 +253,32 @@ def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
     again.command("run 20")
     assert dt_and_limit(again) == (0.01, CEILING)
     assert again.extract_fix("step", 0, 1, 2) == counted + 2 * 20
+
+
+def test_inactive_particles_rest_and_cost_no_sums():
+    """Their position, density and force stay; their active neighbours still feel them."""
+    lmp = instance()
+    lmp.commands_string(DAM.format(scheme="global", style="").replace("run 100", "run 10"))
+    tags = lmp.numpy.extract_atom("id")[: lmp.extract_setting("nlocal")]
+    asleep = 20
+    state = lmp.numpy.extract_fix("step", 1, 2)
+    assert state.shape[1] == 3 and (state[:, 2] == 1).all()
+    state[np.flatnonzero(tags == asleep)[0], 2] = 0.0
+    before = {name: by_id(lmp, name)[asleep - 1].copy() for name in ("x", "v", "rho")}
+    updates = lmp.extract_fix("step", 0, 1, 2)
+    lmp.command("run 5")
+    after = {name: by_id(lmp, name)[asleep - 1] for name in ("x", "v", "rho")}
+    for name in ("x", "v", "rho"):
+        np.testing.assert_array_equal(after[name], before[name])
+    fluid = by_id(lmp, "type") == 1
+    assert lmp.extract_fix("step", 0, 1, 2) == updates + 5 * (fluid.sum() - 1)
+    assert lmp.extract_fix("step", 0, 1, 1) == pytest.approx(1 - 1 / fluid.sum())
+    x, rho = by_id(lmp, "x"), by_id(lmp, "rho")
+    near = np.linalg.norm(x - x[asleep - 1], axis=1)
+    neighbour = np.flatnonzero((near < 0.08) & (near > 0) & fluid)[0]
+    awake = rho[neighbour]
+    state = lmp.numpy.extract_fix("step", 1, 2)
+    state[:, 2] = 1.0
+    lmp.command("run 0")
+    assert by_id(lmp, "rho")[neighbour] == pytest.approx(awake, rel=1e-12)
+    assert by_id(lmp, "rho")[asleep - 1] != before["rho"]

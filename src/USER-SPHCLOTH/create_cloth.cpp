@@ -2,6 +2,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
@@ -195,23 +196,13 @@ CreateCloth::Vec3 CreateCloth::place(int k) const
 
 void CreateCloth::create_vertices()
 {
-  tagint mine = 0, last = 0;
-  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &last, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  first_id = last + 1;
+  first_id = largest_id(atom, world) + 1;
 
   const int before = atom->nlocal;
   for (int k = 0; k < static_cast<int>(sheet.vertices.size()); k++) {
     const Vec3 at = place(k);
-    double x[3] = {at[0], at[1], at[2]};
-    imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
-    const tagint tag = first_id + k;
-    if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) continue;
-    atom->avec->create_atom(itype, x);
-    const int i = atom->nlocal - 1;
-    atom->tag[i] = tag;
-    atom->image[i] = image;
-    atom->mask[i] = 1 | groupbit;
+    const int i = create_owned_atom(atom, domain, first_id + k, itype, at.data(), groupbit);
+    if (i < 0) continue;
     for (const auto &[region, pin_bit] : pins)
       if (region->match(at[0], at[1], at[2])) atom->mask[i] |= pin_bit;
   }
@@ -225,9 +216,7 @@ void CreateCloth::create_vertices()
                "{}: {} vertices were not created: the sheet touches the upper border of the box",
                STYLE, static_cast<bigint>(sheet.vertices.size()) - all);
   atom->natoms += all;
-  atom->nghost = 0;
-  atom->map_init();
-  atom->map_set();
+  refresh_map(atom);
 }
 
 // Each vertex gets the mass of its area; where masses belong to types, all get the mean.

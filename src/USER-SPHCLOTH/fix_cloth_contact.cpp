@@ -10,6 +10,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -63,11 +64,7 @@ void FixClothContact::init()
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) {
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
-    int mine = 0, any = 0;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->mask[i] & groupbit && atom->mask[i] & fix->groupbit) mine = 1;
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any)
+    if (share_atoms(atom, groupbit, fix->groupbit, world))
       error->all(FLERR,
                  "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
                  "the cloth",
@@ -259,10 +256,7 @@ bool FixClothContact::find_contacts(double slack)
   return any;
 }
 
-double FixClothContact::particle_inverse_mass(int i) const
-{
-  return 1.0 / (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]);
-}
+double FixClothContact::particle_inverse_mass(int i) const { return 1.0 / atom_mass(atom, i); }
 
 // over how many contacts the mass of each vertex and of each particle is split
 

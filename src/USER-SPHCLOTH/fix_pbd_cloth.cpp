@@ -9,6 +9,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
 #include "core/colouring.h"
@@ -92,11 +93,7 @@ void FixPBDCloth::read_options(ArgReader &args)
 
 void FixPBDCloth::check_pins()
 {
-  bigint mine = 0, all = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && atom->mask[i] & pinbit) mine++;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (!all)
+  if (!share_atoms(atom, groupbit, pinbit, world))
     error->all(
         FLERR,
         "{}: the pin group has no vertex of group {}: choose pins among the cloth's vertices "
@@ -147,11 +144,7 @@ void FixPBDCloth::check_overlap()
 {
   for (Fix *other : modify->get_fix_by_style("^pbd/cloth$")) {
     if (other == this) continue;
-    int mine = 0, any = 0;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->mask[i] & groupbit && atom->mask[i] & other->groupbit) mine = 1;
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any)
+    if (share_atoms(atom, groupbit, other->groupbit, world))
       error->all(FLERR,
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
@@ -322,7 +315,7 @@ void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
 double FixPBDCloth::inverse_mass(int i) const
 {
   if (atom->mask[i] & pinbit) return 0.0;
-  return 1.0 / (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]);
+  return 1.0 / atom_mass(atom, i);
 }
 
 /* ----------------------------------------------------------------------

@@ -4,6 +4,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
@@ -92,7 +93,7 @@ void FixSPHDrain::pre_exchange()
       i++;
       continue;
     }
-    const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+    const double mass = atom_mass(atom, i);
     mine[0] += 1.0;
     mine[1] += mass;
     for (int d = 0; d < 3; d++) mine[2 + d] += mass * atom->v[i][d];
@@ -105,11 +106,7 @@ void FixSPHDrain::pre_exchange()
   drained += gone;
   atom->natoms -= gone;
   for (int k = 0; k < 4; k++) taken[k] += all[1 + k];
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->nghost = 0;
-    atom->map_init();
-    atom->map_set();
-  }
+  refresh_map(atom);
 }
 
 void FixSPHDrain::write_restart(FILE *fp)

@@ -6,6 +6,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
@@ -54,7 +55,7 @@ void FixSPHEmit::read_options(ArgReader &args)
     for (int d = 0; d < 3; d++) v[d] = args.number(what + (d == 0 ? " x" : d == 1 ? " y" : " z"));
     return v;
   };
-  start = now();
+  start = physical_time(update);
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "disc") {
@@ -139,12 +140,7 @@ void FixSPHEmit::init()
 
 bool FixSPHEmit::layer_is_due() const
 {
-  return emitted < total && due() - now() <= 1e-6 * update->dt;
-}
-
-double FixSPHEmit::now() const
-{
-  return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
+  return emitted < total && due() - physical_time(update) <= 1e-6 * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -153,7 +149,7 @@ double FixSPHEmit::now() const
 
 void FixSPHEmit::setup_pre_exchange()
 {
-  while (layer_is_due()) emit_layer(now() - due());
+  while (layer_is_due()) emit_layer(physical_time(update) - due());
 }
 
 void FixSPHEmit::post_integrate()
@@ -163,7 +159,7 @@ void FixSPHEmit::post_integrate()
 
 void FixSPHEmit::pre_exchange()
 {
-  while (layer_is_due()) emit_layer(now() - due());
+  while (layer_is_due()) emit_layer(physical_time(update) - due());
 }
 
 // age: how long ago the layer left the opening
@@ -171,9 +167,7 @@ void FixSPHEmit::pre_exchange()
 void FixSPHEmit::emit_layer(double age)
 {
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
-  tagint mine = 0, last = 0;
-  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &last, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  const tagint last = largest_id(atom, world);
 
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
@@ -187,11 +181,7 @@ void FixSPHEmit::emit_layer(double age)
                "{}: {} of {} particles of a layer fell out of the box: move the opening inwards",
                label, wanted - all, wanted);
   atom->natoms += all;
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->nghost = 0;
-    atom->map_init();
-    atom->map_set();
-  }
+  refresh_map(atom);
   const double each = atom->rmass ? mass : atom->mass[itype];
   for (int d = 0; d < 3; d++) momentum[d] += static_cast<double>(all) * each * velocity[d];
   emitted += all;
@@ -200,14 +190,8 @@ void FixSPHEmit::emit_layer(double age)
 
 void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)
 {
-  double x[3] = {place[0], place[1], place[2]};
-  imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
-  if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) return;
-  atom->avec->create_atom(itype, x);
-  const int i = atom->nlocal - 1;
-  atom->tag[i] = tag;
-  atom->mask[i] = 1 | groupbit;
-  atom->image[i] = image;
+  const int i = create_owned_atom(atom, domain, tag, itype, place.data(), groupbit);
+  if (i < 0) return;
   for (int d = 0; d < 3; d++) atom->v[i][d] = velocity[d];
   if (atom->rmass) atom->rmass[i] = mass;
 }

@@ -52,7 +52,6 @@ class FixSPHEmit : public Fix {
 
   void read_options(ArgReader &);
   void make_pattern();
-  double now() const;
   double due() const { return start + static_cast<double>(layers) * layer_time; }
   bool layer_is_due() const;
   void emit_layer(double);

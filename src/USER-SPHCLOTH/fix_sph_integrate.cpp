@@ -5,6 +5,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -150,7 +151,7 @@ void FixSPHIntegrate::initial_integrate(int)
   double **x = atom->x, **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i][ACTIVE] == 0.0) continue;
-    const double kick = dtf / (atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]]);
+    const double kick = dtf / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
       x[i][d] += dt * v[i][d];
@@ -197,7 +198,7 @@ void FixSPHIntegrate::choose_step()
 
 StepLimit FixSPHIntegrate::tightest_particle()
 {
-  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  const double now = physical_time(update);
   StepLimit tightest;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -219,7 +220,7 @@ StepLimit FixSPHIntegrate::tightest_particle()
 
 double FixSPHIntegrate::speed_and_force(int i, StepState &s) const
 {
-  const double mass = atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+  const double mass = atom_mass(atom, i);
   const double *v = atom->v[i], *f = atom->f[i];
   const double to_accel = force->ftm2v / mass;
   s.support = pair->support(atom->type[i]);

@@ -5,6 +5,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -405,7 +406,7 @@ void PairSPHTait::sort_by_role()
     if (t.role == Role::BOUNDARY)
       amount[i] = t.volume;
     else
-      amount[i] = atom->rmass ? atom->rmass[i] : atom->mass[type[i]];
+      amount[i] = atom_mass(atom, i);
   }
 
   fluid.clear();

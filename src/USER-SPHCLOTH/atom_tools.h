@@ -1,0 +1,77 @@
+// What several styles ask of atoms and of the clock.
+
+#ifndef SPHCLOTH_ATOM_TOOLS_H
+#define SPHCLOTH_ATOM_TOOLS_H
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+
+namespace LAMMPS_NS {
+
+inline double atom_mass(const Atom *atom, int i)
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+// at the end of the current step
+
+inline double physical_time(const Update *update)
+{
+  return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
+}
+
+// collective: is any atom in both groups?
+
+inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_Comm world)
+{
+  int mine = 0, any = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && atom->mask[i] & other_groupbit) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
+// collective
+
+inline tagint largest_id(const Atom *atom, MPI_Comm world)
+{
+  tagint mine = 0, all = 0;
+  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
+}
+
+// An atom of this rank, in group all and in those of groupbits; its local index, or -1 if the place
+// belongs to another rank.
+
+inline int create_owned_atom(Atom *atom, Domain *domain, tagint tag, int type, const double *place,
+                             int groupbits)
+{
+  double x[3] = {place[0], place[1], place[2]};
+  imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
+  if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) return -1;
+  atom->avec->create_atom(type, x);
+  const int i = atom->nlocal - 1;
+  atom->tag[i] = tag;
+  atom->image[i] = image;
+  atom->mask[i] = 1 | groupbits;
+  return i;
+}
+
+// after atoms came or went: ghosts are void, IDs are found anew
+
+inline void refresh_map(Atom *atom)
+{
+  if (atom->map_style == Atom::MAP_NONE) return;
+  atom->nghost = 0;
+  atom->map_init();
+  atom->map_set();
+}
+
+}    // namespace LAMMPS_NS
+
+#endif

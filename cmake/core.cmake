@@ -1,10 +1,15 @@
-# sphcloth::core: numerics without LAMMPS, headers only.
+# sphcloth::core: numerics without LAMMPS; the loops over neighbours are compiled once per kernel.
 
-add_library(sphcloth_core INTERFACE)
+file(GLOB _core CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH/core/*.cpp")
+add_library(sphcloth_core STATIC ${_core})
 add_library(sphcloth::core ALIAS sphcloth_core)
-target_include_directories(sphcloth_core INTERFACE "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH")
-target_link_libraries(sphcloth_core INTERFACE Eigen3::Eigen)
+set_target_properties(sphcloth_core PROPERTIES POSITION_INDEPENDENT_CODE ON
+  CXX_VISIBILITY_PRESET hidden)
+target_compile_features(sphcloth_core PUBLIC cxx_std_17)
+target_include_directories(sphcloth_core PUBLIC "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH")
+target_link_libraries(sphcloth_core PUBLIC Eigen3::Eigen)
+target_compile_options(sphcloth_core PRIVATE -Wall -Wextra)
 # Vectors without a second OpenMP runtime; errno and trapping semantics would keep square roots
 # and branches out of vectors.  Results stay IEEE: no reassociation beyond `omp simd reduction`.
-target_compile_options(sphcloth_core INTERFACE
+target_compile_options(sphcloth_core PUBLIC
   -fopenmp-simd -fno-math-errno -fno-trapping-math)

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -71,6 +72,18 @@ class ArgReader : protected Pointers {
         std::stoll(text) > high)
       fail(what, text, fmt::format("give a whole number from {} to {}", low, high));
     return std::stoi(text);
+  }
+
+  // index of the word among those that are allowed
+  int choice(const std::string &what, const std::vector<std::string> &allowed)
+  {
+    const std::string text = word(what);
+    std::string known;
+    for (std::size_t k = 0; k < allowed.size(); k++) {
+      if (text == allowed[k]) return static_cast<int>(k);
+      known += (k ? " or " : "") + allowed[k];
+    }
+    fail(what, text, "use " + known);
   }
 
   [[noreturn]] void fail(const std::string &what, const std::string &value,

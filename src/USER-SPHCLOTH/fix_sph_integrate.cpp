@@ -149,6 +149,7 @@ void FixSPHIntegrate::initial_integrate(int)
 {
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
+  pair->advance(dt);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || state[i][ACTIVE] == 0.0) continue;
     const double kick = dtf / atom_mass(atom, i);

@@ -1,5 +1,5 @@
 // Weakly compressible SPH: density summation (1), momentum (2), Tait equation of state (3).
-// The sums themselves are in core/sph_loops.h.
+// The sums themselves are in core/fluid_loops.h, what is said of types in sph_materials.cpp.
 
 #include "pair_sph_tait.h"
 
@@ -11,30 +11,28 @@
 #include "error.h"
 #include "force.h"
 #include "memory.h"
-#include "neigh_list.h"
 #include "neighbor.h"
+#include "timer.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 static const std::string STYLE = "pair_style sph/tait";
-static const std::string COEFF = "pair_coeff (sph/tait)";
 
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), kernel(Kernel::WENDLAND_C2), support_global(0.0), keep_tension(0), viscous(false),
-    several_fluids(false), several_roles(false), measure_volume(false), active(nullptr),
-    active_column(0), single_fluid(1), stage(Stage::DENSITY), densities_fn(nullptr),
-    forces_fn(nullptr), virial_fn(nullptr), volumes_fn(nullptr)
+    Pair(lmp), materials(lmp), measure_volume(false), active(nullptr), active_column(0),
+    elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
   manybody_flag = 1;
+  writedata = 1;
   no_virial_fdotr_compute = 1;
   comm_forward = 2;
 }
@@ -55,9 +53,7 @@ void PairSPHTait::allocate()
   memory->create(cutsq, n, n, "pair:cutsq");
   for (int i = 1; i < n; i++)
     for (int j = i; j < n; j++) setflag[i][j] = 0;
-  types.assign(n, TypeData());
-  pairs.assign(n * n, PairData());
-  terms.assign(n * n, PairTerms());
+  materials.allocate();
 }
 
 /* ----------------------------------------------------------------------
@@ -67,150 +63,43 @@ void PairSPHTait::allocate()
 void PairSPHTait::settings(int narg, char **arg)
 {
   ArgReader args(lmp, STYLE, narg, arg);
-  support_global = args.positive("support radius H");
+  options = Options();
+  options.support = args.positive("support radius H");
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "kernel") {
-      const std::string name = args.word("kernel");
-      if (name == WendlandC2::NAME)
-        kernel = Kernel::WENDLAND_C2;
-      else if (name == CubicSpline::NAME)
-        kernel = Kernel::CUBIC;
-      else
-        args.fail("kernel", name, "use wendland/c2 or cubic");
-    } else if (keyword == "tension") {
-      const std::string choice = args.word("tension");
-      if (choice != "yes" && choice != "no") args.fail("tension", choice, "use yes or no");
-      keep_tension = choice == "yes";
-    } else
-      args.unknown(keyword, "kernel, tension");
+      const std::string name = args.word(keyword);
+      std::string known;
+      bool found = false;
+      for (KernelName k : ALL_KERNELS) {
+        known += (known.empty() ? "" : ", ") + kernel_word(k);
+        if (kernel_word(k) == name) {
+          options.kernel = k;
+          found = true;
+        }
+      }
+      if (!found) args.fail(keyword, name, "use one of " + known);
+    } else if (keyword == "tension")
+      options.tension = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "precision")
+      options.precision = args.choice(keyword, {"double", "mixed"}) ? Precision::MIXED
+                                                                    : Precision::DOUBLE;
+    else if (keyword == "density")
+      options.continuity = args.choice(keyword, {"summation", "continuity"});
+    else if (keyword == "delta")
+      options.delta = args.at_least(keyword, 0.0);
+    else if (keyword == "reinit")
+      options.reinit = args.integer(keyword, 0, 1000000000);
+    else
+      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit");
   }
+  materials.default_support = options.support;
 }
-
-/* ----------------------------------------------------------------------
-   pair_coeff I I fluid rho0 ... | pair_coeff I I boundary ... | pair_coeff I J keyword ...
-------------------------------------------------------------------------- */
 
 void PairSPHTait::coeff(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, COEFF, error);
   if (!allocated) allocate();
-  int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
-
-  ArgReader args(lmp, COEFF, narg, arg, 2);
-  const std::string role = arg[2];
-  if (role == "fluid" || role == "boundary") {
-    args.word("role");
-    PairData own;
-    const TypeData data = role == "fluid" ? read_fluid(args, own) : read_boundary(args);
-    store_fluid_and_boundary(ilo, ihi, jlo, jhi, data, own);
-    return;
-  }
-  const PairData data = read_pair(args);
-  int count = 0;
-  for (int i = ilo; i <= ihi; i++)
-    for (int j = std::max(jlo, i); j <= jhi; j++) {
-      if (i == j) continue;
-      pairs[i * (atom->ntypes + 1) + j] = data;
-      setflag[i][j] = 1;
-      count++;
-    }
-  if (!count)
-    error->all(FLERR,
-               "{}: pair {} {} has no role: start with 'fluid' or 'boundary' for I = J, and give "
-               "I < J for two types",
-               COEFF, arg[0], arg[1]);
-}
-
-void PairSPHTait::store_fluid_and_boundary(int ilo, int ihi, int jlo, int jhi, const TypeData &data,
-                                           const PairData &own)
-{
-  int count = 0;
-  for (int i = std::max(ilo, jlo); i <= std::min(ihi, jhi); i++) {
-    types[i] = data;
-    pairs[i * (atom->ntypes + 1) + i] = own;
-    setflag[i][i] = 1;
-    count++;
-  }
-  if (!count)
-    error->all(FLERR, "{}: a role belongs to one type: give the same type twice (I = J)", COEFF);
-}
-
-PairSPHTait::TypeData PairSPHTait::read_fluid(ArgReader &args, PairData &own) const
-{
-  TypeData t;
-  t.role = Role::FLUID;
-  t.eos.rho0 = args.positive("rho0");
-  while (args.more()) {
-    const std::string keyword = args.word("keyword");
-    if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
-      t.eos.k = read_stiffness(args, keyword);
-    else if (keyword == "gamma") {
-      t.eos.gamma = args.number("gamma");
-      if (!(t.eos.gamma > 1.0))
-        args.fail("gamma", std::to_string(t.eos.gamma), "give a number > 1");
-    } else if (keyword == "nu")
-      t.nu = args.at_least("nu", 0.0);
-    else if (keyword == "alpha")
-      t.alpha = args.at_least("alpha", 0.0);
-    else if (keyword == "support")
-      own.support = args.positive("support");
-    else
-      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support");
-  }
-  if (t.eos.k == 0.0)
-    error->all(FLERR, "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'",
-               COEFF);
-  return t;
-}
-
-// k, or what it follows from
-
-double PairSPHTait::read_stiffness(ArgReader &args, const std::string &keyword) const
-{
-  const double value = args.positive(keyword);
-  if (keyword == "k") return value;
-  if (keyword == "c0") return value * value;
-  return Tait::stiffness_from_fluctuation(value, args.positive("fluctuation reference speed"));
-}
-
-PairSPHTait::TypeData PairSPHTait::read_boundary(ArgReader &args) const
-{
-  TypeData t;
-  t.role = Role::BOUNDARY;
-  while (args.more()) {
-    const std::string keyword = args.word("keyword");
-    if (keyword != "volume") args.unknown(keyword, "volume");
-    if (std::strcmp(args.more() ? args.peek() : "", "auto") == 0) {
-      args.word("volume");
-      t.volume = 0.0;
-    } else
-      t.volume = args.positive("volume");
-  }
-  return t;
-}
-
-PairSPHTait::PairData PairSPHTait::read_pair(ArgReader &args) const
-{
-  PairData p;
-  while (args.more()) {
-    const std::string keyword = args.word("keyword");
-    if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
-      p.stiffness = read_stiffness(args, keyword);
-    else if (keyword == "nu")
-      p.nu = args.at_least("nu", 0.0);
-    else if (keyword == "alpha")
-      p.alpha = args.at_least("alpha", 0.0);
-    else if (keyword == "support")
-      p.support = args.positive("support");
-    else
-      args.unknown(keyword,
-                   "k, c0, fluctuation, nu, alpha, support for two types, or fluid, "
-                   "boundary for one type");
-  }
-  return p;
+  materials.read(narg, arg, setflag);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -224,148 +113,61 @@ void PairSPHTait::init_style()
                STYLE, atom->atom_style);
   if (!comm->ghost_velocity)
     error->all(FLERR, "{}: ghost atoms have no velocity: add 'comm_modify vel yes'", STYLE);
-  if (atom->molecular != Atom::ATOMIC)
-    for (int k = 1; k < 4; k++)
-      if (force->special_lj[k] != 1.0 || force->special_coul[k] != 1.0)
-        error->all(FLERR,
-                   "{}: special_bonds would hide bonded neighbours from the sums: add "
-                   "'special_bonds lj/coul 1.0 1.0 1.0'",
-                   STYLE);
-  neighbor->add_request(this, NeighConst::REQ_FULL);
+  if (neighbor->nex_type || neighbor->nex_group || neighbor->nex_mol)
+    error->all(FLERR,
+               "{}: neigh_modify exclude would hide neighbours from the sums: remove it; walls and "
+               "cloth leave each other out by their role",
+               STYLE);
   active = nullptr;    // until a fix says who is
 
-  switch (kernel) {
-    case Kernel::WENDLAND_C2: bind_kernel<WendlandC2>(); break;
-    case Kernel::CUBIC: bind_kernel<CubicSpline>(); break;
-  }
-  viscous = measure_volume = several_fluids = several_roles = false;
-  support_sq.assign((atom->ntypes + 1) * (atom->ntypes + 1), 0.0);
-  fluid_type.assign(atom->ntypes + 1, 0);
-  single_fluid = 0;
-  for (int i = 1; i <= atom->ntypes; i++) {
-    if (types[i].role == Role::FLUID) {
-      several_fluids = several_fluids || single_fluid != 0;
-      if (!single_fluid) single_fluid = i;
-      fluid_type[i] = 1;
-    } else
-      several_roles = true;
-    if (types[i].role == Role::BOUNDARY && types[i].volume == 0.0) measure_volume = true;
-  }
+  create_fluid();
+  measure_volume = false;
+  for (int i = 1; i <= atom->ntypes; i++)
+    if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
 }
 
-template <class K> void PairSPHTait::bind_kernel()
+void PairSPHTait::create_fluid()
 {
-  volumes_fn = &PairSPHTait::volumes<K>;
-  densities_fn = &PairSPHTait::densities<K>;
-  forces_fn = &PairSPHTait::forces<K>;
-  virial_fn = &PairSPHTait::tally_virial<K>;
-}
-
-double PairSPHTait::pair_support(int i, int j) const
-{
+  fluid = Fluid::create(options.kernel, options.precision);
+  FluidModel &model = fluid->model;
   const int n = atom->ntypes + 1;
-  const double said = pairs[std::min(i, j) * n + std::max(i, j)].support;
-  if (said > 0.0) return said;
-  if (i == j) return support_global;
-  const bool fluid_i = types[i].role == Role::FLUID, fluid_j = types[j].role == Role::FLUID;
-  if (fluid_i == fluid_j) return 0.5 * (pair_support(i, i) + pair_support(j, j));
-  return fluid_i ? pair_support(i, i) : pair_support(j, j);
-}
-
-double PairSPHTait::support(int itype) const { return pair_support(itype, itype); }
-
-double PairSPHTait::viscosity(int itype) const
-{
-  // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2))
-  const TypeData &t = types[itype];
-  const double artificial =
-      t.alpha * t.eos.sound_speed() * 0.5 * support(itype) / (2.0 * (domain->dimension + 2));
-  return t.nu + artificial;
+  model.dimension = domain->dimension;
+  model.n_types = atom->ntypes;
+  model.friction = Friction::NONE;
+  model.role.assign(n, Role::NONE);
+  model.mass.assign(n, 0.0);
+  model.terms.assign(n * n, PairTerms());
+  reach.assign(n * n, 0.0);
+  for (int i = 1; i < n; i++) model.role[i] = materials.type(i).role;
 }
 
 double PairSPHTait::lattice_sum(int itype, double spacing) const
 {
-  switch (kernel) {
-    case Kernel::WENDLAND_C2: return kernel_lattice_sum<WendlandC2>(support(itype), spacing);
-    case Kernel::CUBIC: return kernel_lattice_sum<CubicSpline>(support(itype), spacing);
-  }
-  return 0.0;
-}
-
-template <class K> double PairSPHTait::kernel_lattice_sum(double support, double spacing) const
-{
-  const KernelScale s = kernel_scale<K>(support, domain->dimension);
-  const int reach = static_cast<int>(support / spacing);
-  const int reach_z = domain->dimension == 3 ? reach : 0;
-  double sum = 0.0;
-  for (int i = -reach; i <= reach; i++)
-    for (int j = -reach; j <= reach; j++)
-      for (int k = -reach_z; k <= reach_z; k++) {
-        const double r = spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k));
-        if (r < support) sum += s.w * K::shape(r / support);
-      }
-  return sum;
-}
-
-PairSPHTait::Wetting PairSPHTait::wetting(int i) const
-{
-  Wetting w;
-  const Neighbourhood near_i = neighbourhood(i);
-  for (int k = 0; k < near_i.n_fluid; k++) {
-    const Tait &eos = types[atom->type[near_i.fluid[k]]].eos;
-    w.fluid_mass = std::max(w.fluid_mass, eos.rho0 * amount[i]);
-    w.sound = std::max(w.sound, eos.sound_speed());
-  }
-  return w;
+  return fluid->lattice_sum(support(itype), spacing);
 }
 
 double PairSPHTait::init_one(int i, int j)
 {
   const int n = atom->ntypes + 1;
-  const double support = pair_support(i, j);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < support)
+  const double radius = materials.support(i, j);
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < radius)
     error->all(FLERR,
                "{}: the ghost cut-off {} of comm_modify is smaller than the support {} of types {} "
                "and {}: raise it to the support plus the skin",
-               STYLE, comm->cutghostuser, support, i, j);
-  PairTerms &t = terms[i * n + j];
-  switch (kernel) {
-    case Kernel::WENDLAND_C2:
-      t.kernel = kernel_scale<WendlandC2>(support, domain->dimension);
-      break;
-    case Kernel::CUBIC: t.kernel = kernel_scale<CubicSpline>(support, domain->dimension); break;
-  }
-  mix(i, j, t);
-  terms[j * n + i] = t;
-  support_sq[i * n + j] = support_sq[j * n + i] = t.kernel.support_sq;
-  if (t.nu > 0.0 || t.monaghan > 0.0) viscous = true;
+               STYLE, comm->cutghostuser, radius, i, j);
 
-  // two boundary particles only meet to measure their volume
-  const bool both_boundary = types[i].role == Role::BOUNDARY && types[j].role == Role::BOUNDARY;
-  if (both_boundary && (i != j || types[i].volume > 0.0)) return 0.0;
-  return support;
-}
+  FluidModel &model = fluid->model;
+  PairTerms t = materials.mix(i, j, options.kernel);
+  // density diffuses within a fluid, not across the step between two
+  if (i == j && options.continuity)
+    t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * radius;
+  model.terms[i * n + j] = model.terms[j * n + i] = t;
+  if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
+  if (t.nu > 0.0) model.friction = Friction::ANY;
 
-// What the user did not say of a pair: the mean of two fluids, the fluid's own at a boundary.
-
-void PairSPHTait::mix(int i, int j, PairTerms &t) const
-{
-  const PairData &said = pairs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
-  const TypeData &a = types[i].role == Role::FLUID ? types[i] : types[j];
-  const TypeData &b = types[j].role == Role::FLUID ? types[j] : a;
-  const double smoothing = 0.5 * pair_support(i, j);
-  const double alpha = said.alpha >= 0.0 ? said.alpha : 0.5 * (a.alpha + b.alpha);
-  const double sound = 0.5 * (a.eos.sound_speed() + b.eos.sound_speed());
-  t.nu = said.nu >= 0.0 ? said.nu : 0.5 * (a.nu + b.nu);
-  t.monaghan = alpha * sound * smoothing;
-  t.soft = 0.01 * smoothing * smoothing;
-  t.rho0 = a.eos.rho0;
-  t.stiffness = said.stiffness > 0.0 ? said.stiffness / a.eos.k : 1.0;
-  if (said.stiffness > 0.0 && types[i].role == types[j].role)
-    error->all(FLERR,
-               "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
-               "own with I = J",
-               COEFF, i, j);
+  const double far = materials.reach(i, j);
+  reach[i * n + j] = reach[j * n + i] = far > 0.0 ? far + neighbor->skin : 0.0;
+  return far;
 }
 
 /* ----------------------------------------------------------------------
@@ -375,255 +177,214 @@ void PairSPHTait::mix(int i, int j, PairTerms &t) const
 void PairSPHTait::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
-  const bool new_lists = neighbor->ago == 0;
-  if (new_lists) sort_by_role();
-  if (measure_volume) (this->*volumes_fn)();
-  if (new_lists || measure_volume) {
-    stage = Stage::AMOUNT;
-    comm->forward_comm(this, 1);
+  const bool new_neighbours = neighbor->ago == 0;
+  if (new_neighbours) {
+    new_lists();
+    timer->stamp(Timer::NEIGH);
   }
-  (this->*densities_fn)();
-  equation_of_state_all();
+  const Particles p = particles();
+
+  const double centre[3] = {0.5 * (domain->boxlo[0] + domain->boxhi[0]),
+                            0.5 * (domain->boxlo[1] + domain->boxhi[1]),
+                            0.5 * (domain->boxlo[2] + domain->boxhi[2])};
+  const double ghosts = comm->get_comm_cutoff() + neighbor->skin;
+  double span = 0.0;
+  for (int d = 0; d < 3; d++) span += domain->boxhi[d] - domain->boxlo[d] + 2.0 * ghosts;
+  fluid->place(p, centre, span);
+
+  measure_amounts(p, new_neighbours);
+  densities(p);
+  pressures(p);
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
+  fluid->record(p);
 
-  (this->*forces_fn)();
-  if (vflag_either) (this->*virial_fn)();
-  if (eflag_either) tally_energy();
+  fluid->forces(
+      p,
+      [](void *self, int i, const Acceleration &a) {
+        auto *pair = static_cast<PairSPHTait *>(self);
+        const double scale = pair->amount[i] / pair->force->ftm2v;
+        double *f = pair->atom->f[i];
+        f[0] += scale * a.x;
+        f[1] += scale * a.y;
+        f[2] += scale * a.z;
+        pair->atom->drho[i] += a.drho;
+      },
+      this);
+  if (vflag_either)
+    fluid->virials(
+        p,
+        [](void *self, int i, const Acceleration &a) {
+          auto *pair = static_cast<PairSPHTait *>(self);
+          const double scale = pair->amount[i] * pair->force->mvv2e;
+          for (int m = 0; m < 6; m++) {
+            if (pair->vflag_global) pair->virial[m] += scale * a.virial[m];
+            if (pair->vflag_atom) pair->vatom[i][m] += scale * a.virial[m];
+          }
+        },
+        this);
+  if (eflag_either) tally_energy(p);
 }
 
-// Fixed until the next list build: roles, masses, room for the neighbours inside the support.
-
-void PairSPHTait::sort_by_role()
+Particles PairSPHTait::particles()
 {
-  const int nlocal = atom->nlocal;
-  const int *type = atom->type;
+  Particles p;
+  p.n_owned = atom->nlocal;
+  p.n_all = atom->nlocal + atom->nghost;
+  if (p.n_all == 0) return p;
+  p.type = atom->type;
+  p.x = atom->x[0];
+  p.v = atom->v[0];
+  p.amount = amount.data();
+  p.pressure = pressure.data();
+  p.rho = atom->rho;
+  p.active = active;
+  p.active_column = active_column;
+  return p;
+}
+
+// Fixed until the next list build: neighbours, masses.
+
+void PairSPHTait::new_lists()
+{
   amount.resize(atom->nmax);
-  pressure.resize(atom->nmax);
-  std::fill(pressure.begin(), pressure.end(), 0.0);
-  for (int i = 0; i < nlocal; i++) {
-    const TypeData &t = types[type[i]];
-    if (t.role == Role::BOUNDARY)
-      amount[i] = t.volume;
-    else
+  pressure.assign(atom->nmax, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int itype = atom->type[i];
+    if (!materials.is_boundary(itype))
       amount[i] = atom_mass(atom, i);
+    else if (materials.type(itype).volume > 0.0)
+      amount[i] = materials.type(itype).volume;
+    const double *v = atom->v[i];
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
+      error->one(FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
+                 atom->tag[i], v[0], v[1], v[2]);
   }
-
-  fluid.clear();
-  boundary.clear();
-  near_start.resize(nlocal);
-  near_fluid.assign(nlocal, 0);
-  near_boundary.assign(nlocal, 0);
-  std::int64_t total = 0;
-  int most = 0;
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    (types[type[i]].role == Role::FLUID ? fluid : boundary).push_back(i);
-    near_start[i] = total;
-    total += list->numneigh[i];
-    most = std::max(most, list->numneigh[i]);
-  }
-  near.resize(total);
-  near_rsq.resize(most);
+  fluid->list(particles(), reach.data());
 }
 
-ParticleView PairSPHTait::view() const
+// Volumes of boundary particles that share space among themselves follow their motion.
+
+void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
 {
-  return {atom->nmax ? atom->x[0] : nullptr,
-          atom->nmax ? atom->v[0] : nullptr,
-          amount.data(),
-          atom->rho,
-          pressure.data(),
-          atom->type};
-}
-
-Neighbourhood PairSPHTait::neighbourhood(int i) const
-{
-  const int *front = near.data() + near_start[i];
-  const int *back = front + list->numneigh[i] - near_boundary[i];
-  return {front, back, near_fluid[i], near_boundary[i]};
-}
-
-// Keeps those neighbours of i that are inside the support: fluid at the front of i's stretch,
-// boundary at its back, squared distances in near_rsq likewise.  Every neighbour is written and the
-// cursor moves only past the wanted ones: whether one is inside is a coin toss that no branch
-// predictor wins.
-
-void PairSPHTait::gather_near(int i, bool want_fluid, bool want_boundary)
-{
-  const int *type = atom->type;
-  const double *x = atom->x[0];
-  const double *cut = &support_sq[type[i] * (atom->ntypes + 1)];
-  const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2];
-  const int *jlist = list->firstneigh[i];
-  const int jnum = list->numneigh[i];
-  int *out = near.data() + near_start[i];
-  int front = 0, back = jnum;
-  for (int jj = 0; jj < jnum; jj++) {
-    const int j = jlist[jj] & NEIGHMASK;
-    const int t = type[j];
-    const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2];
-    const double rsq = dx * dx + dy * dy + dz * dz;
-    const bool inside = rsq < cut[t], fluid_j = fluid_type[t];
-    near_rsq[front] = rsq;
-    out[front] = j;
-    front += inside & fluid_j & want_fluid;
-    if (several_roles && (inside & !fluid_j & want_boundary)) behind.push_back({j, rsq});
-  }
-  for (const auto &[j, rsq] : behind) {
-    out[--back] = j;
-    near_rsq[back] = rsq;
-  }
-  behind.clear();
-  near_fluid[i] = front;
-  near_boundary[i] = jnum - back;
-}
-
-// V_b = 1 / sum_k W_bk over the boundary particles of the same type, with itself
-
-template <class K> void PairSPHTait::volumes()
-{
-  for (int i : boundary) {
-    const int itype = atom->type[i];
-    if (types[itype].volume > 0.0) continue;
-    gather_near(i, false, true);
-    const PairTerms &t = terms[itype * (atom->ntypes + 1) + itype];
-    const Neighbourhood near_i = neighbourhood(i);
-    double sum = t.kernel.w * K::shape(0.0);
-    for (int k = 0; k < near_i.n_boundary; k++) {
-      if (atom->type[near_i.boundary[k]] != itype) continue;
-      const double rsq = near_rsq[list->numneigh[i] - near_i.n_boundary + k];
-      sum += t.kernel.w * K::shape(std::sqrt(rsq) * t.kernel.inv_support);
+  int measure = measure_volume && new_neighbours;
+  if (measure_volume && !new_neighbours) {
+    int moved = 0;
+    for (int i = 0; i < p.n_owned && !moved; i++) {
+      const double *v = p.v + 3 * i;
+      moved = materials.is_boundary(p.type[i]) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
     }
-    amount[i] = 1.0 / sum;
+    MPI_Allreduce(&moved, &measure, 1, MPI_INT, MPI_MAX, world);
+  }
+  if (measure)
+    for (int t = 1; t <= atom->ntypes; t++)
+      if (materials.is_boundary(t) && materials.type(t).volume == 0.0)
+        fluid->volumes(p, t, amount.data());
+  if (!measure && !new_neighbours) return;
+  stage = Stage::AMOUNT;
+  comm->forward_comm(this, 1);
+  if (!new_neighbours) return;
+
+  // a mass that all particles of a type share leaves the sums
+  std::vector<double> &mass = fluid->model.mass;
+  std::fill(mass.begin(), mass.end(), -1.0);
+  for (int i = 0; i < p.n_all; i++) {
+    const int t = p.type[i];
+    if (mass[t] < 0.0) mass[t] = materials.is_fluid(t) ? amount[i] : 0.0;
+    if (mass[t] != amount[i]) mass[t] = 0.0;
   }
 }
 
-template <class K> void PairSPHTait::densities()
+template <class F> void PairSPHTait::for_each_fluid(const Particles &p, F &&act) const
 {
-  const int n = atom->ntypes + 1;
-  const ParticleView p = view();
-  for (int i : fluid) {
-    if (!is_active(i)) continue;
-    gather_near(i, true, true);
-    const int itype = atom->type[i];
-    const PairTerms *row = &terms[itype * n];
-    const Neighbourhood near_i = neighbourhood(i);
-    double rho = amount[i] * row[itype].kernel.w * K::shape(0.0);
-    if (several_fluids)
-      rho += kernel_sum<K, true>(p, row, near_rsq.data(), near_i.fluid, near_i.n_fluid);
-    else
-      rho +=
-          kernel_sum<K, false>(p, fluid_terms(row), near_rsq.data(), near_i.fluid, near_i.n_fluid);
-    if (near_i.n_boundary) {
-      const double *rsq = near_rsq.data() + list->numneigh[i] - near_i.n_boundary;
-      rho += types[itype].eos.rho0 *
-          kernel_sum<K, true>(p, row, rsq, near_i.boundary, near_i.n_boundary);
+  const NeighbourLists &order = fluid->order();
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!materials.is_fluid(t)) continue;
+    const Tait eos = materials.type(t).eos;
+    for (int slot = order.begin(t); slot < order.begin(t + 1); slot++) {
+      const int i = order.at(slot);
+      if (p.is_active(i)) act(i, eos);
     }
-    atom->rho[i] = rho;
   }
 }
 
-void PairSPHTait::equation_of_state_all()
+void PairSPHTait::densities(const Particles &p)
 {
-  for (int i : fluid) {
-    if (!is_active(i)) continue;
-    const double rho = atom->rho[i];
-    double p = types[atom->type[i]].eos.pressure(rho);
-    if (!std::isfinite(p))
+  if (!options.continuity) {
+    fluid->gather(p, true);
+    return;
+  }
+  check_densities();
+  fluid->record(p);
+  fluid->gather(p, false);
+  integrate_density(p);
+}
+
+// The density at the new positions follows from the new velocities: together with velocity and
+// position a symplectic step.
+
+void PairSPHTait::integrate_density(const Particles &p)
+{
+  rate.resize(atom->nmax);
+  if (elapsed > 0.0) {
+    fluid->density_rates(p, rate.data());
+    for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
+    elapsed = 0.0;
+    if (options.reinit && update->ntimestep % options.reinit == 0) {
+      stage = Stage::DENSITY;
+      comm->forward_comm(this, 2);
+      fluid->smooth_densities(p, rate.data());
+      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] = rate[i]; });
+    }
+  }
+}
+
+void PairSPHTait::check_densities() const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_fluid(atom->type[i]) && !(atom->rho[i] > 0.0))
+      error->one(FLERR,
+                 "{}: particle {} has density {}: give every fluid particle one, 'set group all "
+                 "sph/rho RHO0', or use 'density summation'",
+                 STYLE, atom->tag[i], atom->rho[i]);
+}
+
+void PairSPHTait::pressures(const Particles &p)
+{
+  for_each_fluid(p, [&](int i, const Tait &eos) {
+    const double rho = p.rho[i];
+    double pressure_i = eos.pressure(rho);
+    if (!std::isfinite(pressure_i))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
-    if (!keep_tension) p = std::max(p, 0.0);
-    pressure[i] = p / (rho * rho);
-  }
-}
-
-template <class K> void PairSPHTait::forces()
-{
-  for (int i : fluid) {
-    if (!is_active(i)) continue;
-    const Acceleration a = viscous ? on_fluid<K, true, false>(i) : on_fluid<K, false, false>(i);
-    atom->drho[i] += a.drho;
-    add_force(i, a);
-  }
-  for (int i : boundary) {
-    gather_near(i, true, false);
-    if (!near_fluid[i]) continue;
-    add_force(i, viscous ? on_boundary<K, true, false>(i) : on_boundary<K, false, false>(i));
-  }
-}
-
-// Only on steps that ask for it, and beside the forces: what is printed must not change, not even
-// in the last bit, what is computed.
-
-template <class K> void PairSPHTait::tally_virial()
-{
-  for (int i : fluid)
-    add_virial(i, viscous ? on_fluid<K, true, true>(i) : on_fluid<K, false, true>(i));
-  for (int i : boundary)
-    if (near_fluid[i])
-      add_virial(i, viscous ? on_boundary<K, true, true>(i) : on_boundary<K, false, true>(i));
-}
-
-// on a fluid particle, per mass
-
-template <class K, bool VISCOUS, bool VIRIAL> Acceleration PairSPHTait::on_fluid(int i) const
-{
-  const ParticleView p = view();
-  const PairTerms *row = &terms[atom->type[i] * (atom->ntypes + 1)];
-  const Neighbourhood near_i = neighbourhood(i);
-  Acceleration a;
-  if (several_fluids)
-    fluid_on_fluid<K, VISCOUS, true, VIRIAL>(p, row, i, near_i.fluid, near_i.n_fluid, a);
-  else
-    fluid_on_fluid<K, VISCOUS, false, VIRIAL>(p, fluid_terms(row), i, near_i.fluid, near_i.n_fluid,
-                                              a);
-  if (near_i.n_boundary)
-    across_boundary<K, VISCOUS, false, VIRIAL>(p, row, i, near_i.boundary, near_i.n_boundary, a);
-  return a;
-}
-
-// on a boundary particle, per volume
-
-template <class K, bool VISCOUS, bool VIRIAL> Acceleration PairSPHTait::on_boundary(int i) const
-{
-  const Neighbourhood near_i = neighbourhood(i);
-  Acceleration a;
-  across_boundary<K, VISCOUS, true, VIRIAL>(view(), &terms[atom->type[i] * (atom->ntypes + 1)], i,
-                                            near_i.fluid, near_i.n_fluid, a);
-  return a;
-}
-
-void PairSPHTait::add_force(int i, const Acceleration &a)
-{
-  const double scale = amount[i] / force->ftm2v;
-  atom->f[i][0] += scale * a.x;
-  atom->f[i][1] += scale * a.y;
-  atom->f[i][2] += scale * a.z;
-}
-
-void PairSPHTait::add_virial(int i, const Acceleration &a)
-{
-  const double scale = amount[i] * force->mvv2e;
-  for (int m = 0; m < 6; m++) {
-    if (vflag_global) virial[m] += scale * a.virial[m];
-    if (vflag_atom) vatom[i][m] += scale * a.virial[m];
-  }
+    if (!options.tension) pressure_i = std::max(pressure_i, 0.0);
+    pressure[i] = pressure_i / (rho * rho);
+  });
 }
 
 // internal energy of the fluid: what compression has stored
 
-void PairSPHTait::tally_energy()
+void PairSPHTait::tally_energy(const Particles &p)
 {
-  for (int i : fluid) {
-    const Tait &eos = types[atom->type[i]].eos;
-    const double rho = atom->rho[i];
-    if (rho < eos.rho0 && !keep_tension) continue;
-    const double e = amount[i] * eos.energy(rho) * force->mvv2e;
+  for_each_fluid(p, [&](int i, const Tait &eos) {
+    if (p.rho[i] < eos.rho0 && !options.tension) return;
+    const double e = amount[i] * eos.energy(p.rho[i]) * force->mvv2e;
     if (eflag_global) eng_vdwl += e;
     if (eflag_atom) eatom[i] += e;
+  });
+}
+
+PairSPHTait::Wetting PairSPHTait::wetting(int i) const
+{
+  Wetting w;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!materials.is_fluid(t) || fluid->neighbours(i, t).n == 0) continue;
+    const Tait &eos = materials.type(t).eos;
+    w.fluid_mass = std::max(w.fluid_mass, eos.rho0 * amount[i]);
+    w.sound = std::max(w.sound, eos.sound_speed());
   }
+  return w;
 }
 
 /* ----------------------------------------------------------------------
@@ -658,56 +419,54 @@ void PairSPHTait::unpack_forward_comm(int n, int first, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   restart: settings and coefficients, as the user gave them
+   restart and data files: settings and coefficients, as the user gave them
 ------------------------------------------------------------------------- */
 
-void PairSPHTait::write_restart_settings(FILE *fp)
-{
-  fwrite(&support_global, sizeof(double), 1, fp);
-  fwrite(&kernel, sizeof(Kernel), 1, fp);
-  fwrite(&keep_tension, sizeof(int), 1, fp);
-}
+void PairSPHTait::write_restart_settings(FILE *fp) { fwrite(&options, sizeof(Options), 1, fp); }
 
 void PairSPHTait::read_restart_settings(FILE *fp)
 {
-  if (comm->me == 0) {
-    utils::sfread(FLERR, &support_global, sizeof(double), 1, fp, nullptr, error);
-    utils::sfread(FLERR, &kernel, sizeof(Kernel), 1, fp, nullptr, error);
-    utils::sfread(FLERR, &keep_tension, sizeof(int), 1, fp, nullptr, error);
-  }
-  MPI_Bcast(&support_global, 1, MPI_DOUBLE, 0, world);
-  MPI_Bcast(&kernel, sizeof(Kernel), MPI_BYTE, 0, world);
-  MPI_Bcast(&keep_tension, 1, MPI_INT, 0, world);
+  if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
+  MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
+  materials.default_support = options.support;
 }
 
 void PairSPHTait::write_restart(FILE *fp)
 {
   write_restart_settings(fp);
-  const int n = atom->ntypes + 1;
-  fwrite(types.data(), sizeof(TypeData), n, fp);
-  fwrite(pairs.data(), sizeof(PairData), n * n, fp);
-  for (int i = 1; i < n; i++) fwrite(&setflag[i][i], sizeof(int), n - i, fp);
+  materials.write_restart(fp);
+  for (int i = 1; i <= atom->ntypes; i++)
+    fwrite(&setflag[i][i], sizeof(int), atom->ntypes + 1 - i, fp);
 }
 
 void PairSPHTait::read_restart(FILE *fp)
 {
   read_restart_settings(fp);
   allocate();
-  const int n = atom->ntypes + 1;
-  if (comm->me == 0) {
-    utils::sfread(FLERR, types.data(), sizeof(TypeData), n, fp, nullptr, error);
-    utils::sfread(FLERR, pairs.data(), sizeof(PairData), n * n, fp, nullptr, error);
-    for (int i = 1; i < n; i++)
-      utils::sfread(FLERR, &setflag[i][i], sizeof(int), n - i, fp, nullptr, error);
+  materials.read_restart(fp);
+  for (int i = 1; i <= atom->ntypes; i++) {
+    const int n = atom->ntypes + 1 - i;
+    if (comm->me == 0) utils::sfread(FLERR, &setflag[i][i], sizeof(int), n, fp, nullptr, error);
+    MPI_Bcast(&setflag[i][i], n, MPI_INT, 0, world);
   }
-  MPI_Bcast(types.data(), n * sizeof(TypeData), MPI_BYTE, 0, world);
-  MPI_Bcast(pairs.data(), n * n * sizeof(PairData), MPI_BYTE, 0, world);
-  for (int i = 1; i < n; i++) MPI_Bcast(&setflag[i][i], n - i, MPI_INT, 0, world);
+}
+
+void PairSPHTait::write_data(FILE *fp)
+{
+  for (int i = 1; i <= atom->ntypes; i++) utils::print(fp, "{} {}\n", i, materials.words(i, i));
+}
+
+void PairSPHTait::write_data_all(FILE *fp)
+{
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      const std::string words = materials.words(i, j);
+      if (!words.empty()) utils::print(fp, "{} {} {}\n", i, j, words);
+    }
 }
 
 double PairSPHTait::memory_usage()
 {
-  return Pair::memory_usage() + sizeof(double) * (amount.capacity() + pressure.capacity()) +
-      sizeof(int) * (near.capacity() + near_fluid.capacity() + near_boundary.capacity()) +
-      sizeof(std::int64_t) * near_start.capacity();
+  return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
+      sizeof(double) * (amount.capacity() + pressure.capacity() + rate.capacity());
 }

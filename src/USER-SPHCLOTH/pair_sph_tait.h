@@ -11,16 +11,12 @@ PairStyle(sph/tait,PairSPHTait);
 
 #include "pair.h"
 
-#include "core/sph_loops.h"
-#include "core/tait.h"
+#include "sph_materials.h"
 
-#include <cstdint>
-#include <utility>
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
-
-class ArgReader;
 
 class PairSPHTait : public Pair {
  public:
@@ -36,16 +32,19 @@ class PairSPHTait : public Pair {
   void read_restart(FILE *) override;
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
+  void write_data(FILE *) override;
+  void write_data_all(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   double memory_usage() override;
 
-  // what the stepping and the source need to know of a type
+  // what fixes, computes and commands need to know of a type
 
-  bool is_fluid(int itype) const { return types[itype].role == Role::FLUID; }
-  const sphcloth::Tait &equation_of_state(int itype) const { return types[itype].eos; }
-  double support(int itype) const;
-  double viscosity(int itype) const;    // laminar and artificial together
+  bool is_fluid(int itype) const { return materials.is_fluid(itype); }
+  const sphcloth::Tait &equation_of_state(int itype) const { return materials.type(itype).eos; }
+  double support(int itype) const { return materials.support(itype, itype); }
+  double viscosity(int itype) const { return materials.viscosity(itype); }
+  sphcloth::KernelName kernel() const { return options.kernel; }
 
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
@@ -60,6 +59,9 @@ class PairSPHTait : public Pair {
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
 
+  // neighbours inside the support in the last evaluation, of an owned atom
+  sphcloth::Stretch neighbours(int i, int type) const { return fluid->neighbours(i, type); }
+
   // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
   // without an array all are active.
   void set_active(double **array, int column)
@@ -68,78 +70,48 @@ class PairSPHTait : public Pair {
     active_column = column;
   }
 
+  // Time that has passed since the last evaluation, for a density that follows its rate
+  void advance(double dt) { elapsed += dt; }
+
  private:
-  enum class Role : int { NONE, FLUID, BOUNDARY };
-  enum class Kernel : int { WENDLAND_C2, CUBIC };
   enum class Stage { AMOUNT, DENSITY };
 
-  struct TypeData {
-    Role role = Role::NONE;
-    sphcloth::Tait eos;
-    double nu = 0.0, alpha = 0.0;
-    double volume = 0.0;    // of a boundary particle; 0: from the particles around it
-  };
-  struct PairData {    // what the user said of a pair of types; < 0: not said
-    double support = -1.0, nu = -1.0, alpha = -1.0, stiffness = -1.0;
+  struct Options {    // of pair_style, plain for the restart file
+    sphcloth::KernelName kernel = sphcloth::KernelName::WENDLAND_C2;
+    sphcloth::Precision precision = sphcloth::Precision::DOUBLE;
+    double support = 0.0;
+    int tension = 0;       // 1: negative pressure acts, 0: it counts as zero
+    int continuity = 0;    // 1: density from its rate, 0: by summation
+    double delta = 0.1;    // diffusion of the density in the rate
+    int reinit = 0;        // steps between re-initialisations of that density, 0: never
   };
 
-  Kernel kernel;
-  double support_global;
-  int keep_tension;    // 1: negative pressure acts, 0: it counts as zero
-  std::vector<TypeData> types;
-  std::vector<PairData> pairs;                  // (ntypes+1)^2
-  std::vector<sphcloth::PairTerms> terms;       // (ntypes+1)^2, of the run
-  bool viscous, several_fluids, several_roles, measure_volume;
-  std::vector<double> support_sq;    // (ntypes+1)^2
-  std::vector<char> fluid_type;      // 1 for a type of fluid
+  Options options;
+  SPHMaterials materials;
+  std::unique_ptr<sphcloth::Fluid> fluid;
+  bool measure_volume;
+  std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
   // scratch, kept from step to step
   double **active;
   int active_column;
-  int single_fluid;                        // the type of all fluid, unless several_fluids
-  std::vector<int> fluid, boundary;    // owned particles by role, since the last list build
-  sphcloth::AlignedVector<int> near;    // neighbours inside the support, stretch per particle
-  std::vector<std::int64_t> near_start;    // by local index
-  std::vector<int> near_fluid, near_boundary;
-  std::vector<std::pair<int, double>> behind;    // boundary neighbours of one particle
-  sphcloth::AlignedVector<double> near_rsq;    // of one particle
-  sphcloth::AlignedVector<double> amount, pressure;    // per atom, owned and ghost
+  double elapsed;
+  std::vector<double> amount, pressure;    // per atom, owned and ghost
+  std::vector<double> rate;
   Stage stage;
 
-  using ComputeFn = void (PairSPHTait::*)();
-  ComputeFn densities_fn, forces_fn, virial_fn, volumes_fn;
-
   void allocate();
-  TypeData read_fluid(ArgReader &, PairData &) const;
-  TypeData read_boundary(ArgReader &) const;
-  PairData read_pair(ArgReader &) const;
-  double read_stiffness(ArgReader &, const std::string &) const;
-  void store_fluid_and_boundary(int, int, int, int, const TypeData &, const PairData &);
-  void mix(int, int, sphcloth::PairTerms &) const;
-  double pair_support(int, int) const;
-  template <class K> void bind_kernel();
-  template <class K> double kernel_lattice_sum(double, double) const;
-
-  bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
-  sphcloth::ParticleView view() const;
-  sphcloth::Neighbourhood neighbourhood(int) const;
-  const sphcloth::PairTerms *fluid_terms(const sphcloth::PairTerms *row) const
-  {
-    return several_fluids ? row : row + single_fluid;
-  }
-
-  void sort_by_role();
-  void gather_near(int, bool, bool);
-  template <class K> void volumes();
-  template <class K> void densities();
-  void equation_of_state_all();
-  template <class K> void forces();
-  template <class K> void tally_virial();
-  template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_fluid(int) const;
-  template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_boundary(int) const;
-  void add_force(int, const sphcloth::Acceleration &);
-  void add_virial(int, const sphcloth::Acceleration &);
-  void tally_energy();
+  void read_density(class ArgReader &);
+  void create_fluid();
+  sphcloth::Particles particles();
+  void new_lists();
+  void measure_amounts(const sphcloth::Particles &, bool);
+  void densities(const sphcloth::Particles &);
+  void integrate_density(const sphcloth::Particles &);
+  void pressures(const sphcloth::Particles &);
+  void check_densities() const;
+  void tally_energy(const sphcloth::Particles &);
+  template <class F> void for_each_fluid(const sphcloth::Particles &, F &&) const;
 };
 
 }    // namespace LAMMPS_NS

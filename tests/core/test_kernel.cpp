@@ -39,11 +39,34 @@ template <class K> void check_kernel()
     }
     CHECK(K::shape(1.0) == 0.0);
     CHECK(K::slope_over_q(1.0) == 0.0);
+    CHECK(K::shape(1.3) == 0.0);
+    CHECK(K::slope_over_q(1.3) == 0.0);
     CHECK(std::isfinite(K::slope_over_q(0.0)));
   }
 }
 
 }    // namespace
 
-CASE("Wendland C2: integral, gradient, support") { check_kernel<WendlandC2>(); }
-CASE("cubic spline: integral, gradient, support") { check_kernel<CubicSpline>(); }
+CASE("every kernel: integral, gradient, support")
+{
+  for (KernelName name : ALL_KERNELS)
+    with_kernel(name, [](auto kernel) { check_kernel<decltype(kernel)>(); });
+}
+
+CASE("a kernel is found by its name and only by its own")
+{
+  for (KernelName a : ALL_KERNELS)
+    for (KernelName b : ALL_KERNELS) CHECK((kernel_word(a) == kernel_word(b)) == (a == b));
+}
+
+CASE("kernels in single precision agree with double")
+{
+  for (KernelName name : ALL_KERNELS)
+    with_kernel(name, [](auto kernel) {
+      using K = decltype(kernel);
+      for (double q = 0.0; q < 1.2; q += 0.013) {
+        CHECK_NEAR(K::shape(static_cast<float>(q)), K::shape(q), 2e-6 * K::shape(0.0));
+        CHECK_NEAR(K::slope_over_q(static_cast<float>(q)), K::slope_over_q(q), 4e-5);
+      }
+    });
+}

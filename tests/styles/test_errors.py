@@ -46,7 +46,7 @@ CASES = [
     ),
     case("pair: nan", SHEET + "pair_style sph/tait nan", r"support radius H is 'nan'.*finite"),
     case("pair: kernel", SHEET + "pair_style sph/tait 0.1 kernel gauss", r"'gauss'.*wendland/c2"),
-    case("pair: tension", SHEET + "pair_style sph/tait 0.1 tension maybe", r"'maybe'.*yes or no"),
+    case("pair: tension", SHEET + "pair_style sph/tait 0.1 tension maybe", r"'maybe'.*no or yes"),
     case(
         "pair: keyword", SHEET + "pair_style sph/tait 0.1 colour red", r"unknown keyword 'colour'"
     ),
@@ -71,10 +71,18 @@ CASES = [
     ),
     case("init: ghost velocities", SHEET + "comm_modify vel no\nrun 0", r"comm_modify vel yes"),
     case(
-        "init: special bonds",
-        SHEET_FIX + "special_bonds lj/coul 0 1 1\nrun 0",
-        r"special_bonds would hide.*lj/coul 1.0 1.0 1.0",
+        "init: excluded pairs",
+        SHEET_FIX + "neigh_modify exclude type 1 2\nrun 0",
+        r"neigh_modify exclude would hide.*remove it",
     ),
+    case(
+        "run: continuity without a density",
+        SHEET.replace("sph/tait 0.1", "sph/tait 0.1 density continuity") + "run 0",
+        r"particle \d+ has density 0.*set group all sph/rho RHO0.*density summation",
+    ),
+    case("pair: delta", "pair_style sph/tait 0.1 delta -1", r"delta is '-1'.*>= 0"),
+    case("pair: precision", "pair_style sph/tait 0.1 precision half", r"'half'.*double or mixed"),
+    case("pair: density", "pair_style sph/tait 0.1 density sum", r"'sum'.*summation or continuity"),
     case(
         "init: cut-off smaller than the support",
         SHEET_FIX + "comm_modify cutoff 0.05\nrun 0",

@@ -1,19 +1,34 @@
-// SIMD multiversioning: one portable binary, the widest vectors that the running CPU has.
+// SIMD: one portable binary, the widest vectors that the running CPU has.
+//
+// Loops are plain `omp simd` loops over contiguous columns, compiled several times by
+// SPHCLOTH_MULTIVERSION.  Only what no compiler vectorises is written by hand: records of scattered
+// particles turned into columns (hardware gathers are several times slower), and the compaction of
+// a list to the entries that pass a test.
 
 #ifndef SPHCLOTH_CORE_SIMD_H
 #define SPHCLOTH_CORE_SIMD_H
 
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <vector>
+
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
     !defined(SPHCLOTH_SINGLE_TARGET)
+#define SPHCLOTH_X86_TARGETS
 #define SPHCLOTH_MULTIVERSION \
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#include <immintrin.h>
 #else
 #define SPHCLOTH_MULTIVERSION
 #endif
 
-#include <cstddef>
-#include <new>
-#include <vector>
+#if defined(__GNUC__)
+#define SPHCLOTH_INLINE inline __attribute__((always_inline))
+#else
+#define SPHCLOTH_INLINE inline
+#endif
 
 namespace sphcloth {
 
@@ -33,6 +48,148 @@ template <class T> struct CacheLineAllocator {
 };
 
 template <class T> using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+// Loops run over whole groups of LANES; what lies past the end must be readable and is ignored.
+
+inline constexpr int LANES = 8;
+inline constexpr int whole_groups(int n) { return (n + LANES - 1) / LANES * LANES; }
+
+// A sum kept lane by lane, so that a loop over whole groups adds to it without a reduction
+
+struct LaneSum {
+  alignas(64) double of[LANES] = {};
+  double total() const
+  {
+    const double a = (of[0] + of[4]) + (of[2] + of[6]), b = (of[1] + of[5]) + (of[3] + of[7]);
+    return a + b;
+  }
+};
+
+// Columns of records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k], for k
+// up to n rounded up to whole groups; indices past n must be valid.  A record is four numbers of
+// sizeof(Lane) bytes, the last of which may be of another type than the first three.
+
+template <class Lane, class Last>
+SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane *x, Lane *y,
+                             Lane *z, Last *w)
+{
+  static_assert(sizeof(Lane) == sizeof(Last));
+#ifdef SPHCLOTH_X86_TARGETS
+  // written in whole groups: a load that spans two recent stores would wait for both
+  typedef Lane Record
+      __attribute__((vector_size(4 * sizeof(Lane)), aligned(sizeof(Lane)), may_alias));
+  typedef Lane Group
+      __attribute__((vector_size(8 * sizeof(Lane)), aligned(sizeof(Lane)), may_alias));
+  static_assert(LANES == 8);
+  for (int k = 0; k < n; k += LANES) {
+    Group r[4];
+    for (int m = 0; m < 4; m++) {
+      const Lane *a = records + 4 * static_cast<std::ptrdiff_t>(index[k + m]);
+      const Lane *b = records + 4 * static_cast<std::ptrdiff_t>(index[k + m + 4]);
+      r[m] = __builtin_shufflevector(*reinterpret_cast<const Record *>(a),
+                                     *reinterpret_cast<const Record *>(b), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    const Group xy01 = __builtin_shufflevector(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Group xy23 = __builtin_shufflevector(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Group zw01 = __builtin_shufflevector(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Group zw23 = __builtin_shufflevector(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    *reinterpret_cast<Group *>(x + k) =
+        __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
+    *reinterpret_cast<Group *>(y + k) =
+        __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
+    *reinterpret_cast<Group *>(z + k) =
+        __builtin_shufflevector(zw01, zw23, 0, 1, 8, 9, 4, 5, 12, 13);
+    *reinterpret_cast<Group *>(w + k) =
+        __builtin_shufflevector(zw01, zw23, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+#else
+  for (int k = 0; k < n; k++) {
+    const Lane *r = records + 4 * static_cast<std::ptrdiff_t>(index[k]);
+    x[k] = r[0];
+    y[k] = r[1];
+    z[k] = r[2];
+    std::memcpy(w + k, r + 3, sizeof(Lane));
+  }
+#endif
+}
+
+// Compaction: of n pairs (key, index) keeps those with key < limit, in order; returns how many.
+// Up to 16 places past the end are read from the input and written to the output.  Keys may be
+// compacted in place.
+
+template <class Key>
+inline int compact_plain(const Key *key, const int *index, int n, Key limit, Key *key_out,
+                         int *index_out)
+{
+  int m = 0;
+  for (int k = 0; k < n; k++) {
+    const Key x = key[k];
+    index_out[m] = index[k];
+    key_out[m] = x;
+    m += x < limit;    // a coin toss that no branch predictor wins
+  }
+  return m;
+}
+
+#ifdef SPHCLOTH_X86_TARGETS
+
+__attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const float *key,
+                                                                      const int *index, int n,
+                                                                      float limit, float *key_out,
+                                                                      int *index_out)
+{
+  int m = 0;
+  for (int k = 0; k < n; k += 16) {
+    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __m512 x = _mm512_loadu_ps(key + k);
+    const __m512i j = _mm512_loadu_si512(index + k);
+    const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);
+    // a compressing store to memory is slow on some CPUs
+    _mm512_storeu_ps(key_out + m, _mm512_maskz_compress_ps(keep, x));
+    _mm512_storeu_si512(index_out + m, _mm512_maskz_compress_epi32(keep, j));
+    m += __builtin_popcount(keep);
+  }
+  return m;
+}
+
+__attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const double *key,
+                                                                      const int *index, int n,
+                                                                      double limit, double *key_out,
+                                                                      int *index_out)
+{
+  int m = 0;
+  for (int k = 0; k < n; k += 8) {
+    const __mmask8 here = n - k >= 8 ? 0xff : static_cast<__mmask8>((1u << (n - k)) - 1);
+    const __m512d x = _mm512_loadu_pd(key + k);
+    const __m256i j = _mm256_loadu_si256(reinterpret_cast<const __m256i *>(index + k));
+    const __mmask8 keep = _mm512_mask_cmp_pd_mask(here, x, _mm512_set1_pd(limit), _CMP_LT_OQ);
+    _mm512_storeu_pd(key_out + m, _mm512_maskz_compress_pd(keep, x));
+    _mm256_storeu_si256(reinterpret_cast<__m256i *>(index_out + m),
+                        _mm256_maskz_compress_epi32(keep, j));
+    m += __builtin_popcount(keep);
+  }
+  return m;
+}
+
+inline const bool HAVE_AVX512 =
+    __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
+
+template <class Key>
+inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_out, int *index_out)
+{
+  if (HAVE_AVX512) return compact_avx512(key, index, n, limit, key_out, index_out);
+  return compact_plain(key, index, n, limit, key_out, index_out);
+}
+
+#else
+
+template <class Key>
+inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_out, int *index_out)
+{
+  return compact_plain(key, index, n, limit, key_out, index_out);
+}
+
+#endif
 
 }    // namespace sphcloth
 

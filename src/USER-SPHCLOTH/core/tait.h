@@ -18,6 +18,11 @@ struct Tait {
 
   double pressure(double rho) const
   {
+    if (gamma == 7.0) {    // water: (1 + e)^7 - 1 expanded
+      const double e = (rho - rho0) / rho0;
+      return k * rho0 *
+          (e * (1.0 + e * (3.0 + e * (5.0 + e * (5.0 + e * (3.0 + e * (1.0 + e / 7.0)))))));
+    }
     const double ratio = rho / rho0;
     // gamma ln(ratio) keeps the digits of a small fluctuation that pow() - 1 would lose
     return k * rho0 / gamma * std::expm1(gamma * std::log(ratio));

@@ -1,0 +1,128 @@
+// The fluid of one rank: neighbours, density (1), momentum (2), boundary particles.
+//
+// A fluid particle sums over fluid neighbours (its mass m_j) and over boundary neighbours, walls
+// and cloth, which count with the mass rho0_i V_b that water in their volume V_b would have.
+// Akinci et al., ACM Trans. Graph. 31 (2012) 62.
+//
+// This is what the pair style sees; the loops, one set per kernel and precision, are in
+// core/fluid_loops.h.
+
+#ifndef SPHCLOTH_CORE_FLUID_H
+#define SPHCLOTH_CORE_FLUID_H
+
+#include <memory>
+#include <vector>
+
+#include "kernel.h"
+#include "neighbours.h"
+#include "tait.h"
+
+namespace sphcloth {
+
+enum class Role : int { NONE, FLUID, BOUNDARY };
+
+// MIXED: pair terms in single precision from integer coordinates, sums in double
+
+enum class Precision : int { DOUBLE, MIXED };
+
+enum class Friction : int { NONE, ARTIFICIAL, ANY };
+
+// one pair of types
+
+struct PairTerms {
+  KernelScale kernel;
+  double nu = 0.0;           // kinematic viscosity
+  double monaghan = 0.0;     // alpha c0 h_s of the artificial viscosity
+  double soft = 0.0;         // 0.01 h_s^2, keeps its mu finite
+  double rho0 = 0.0;         // rest density of the fluid partner of a boundary
+  double stiffness = 1.0;    // pressure on this boundary over the fluid's own pressure
+  double diffusion = 0.0;    // 2 delta c0 h_s of the density, two fluids of one type only
+};
+
+struct FluidModel {
+  int dimension = 3, n_types = 0;
+  Friction friction = Friction::NONE;
+  std::vector<Role> role;          // [n_types + 1]
+  std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
+  std::vector<PairTerms> terms;    // [(n_types + 1)^2]
+  const PairTerms &pair(int i, int j) const { return terms[i * (n_types + 1) + j]; }
+};
+
+// per-particle arrays, owned particles first; x, v and f are [n][3]
+
+struct Particles {
+  int n_owned = 0, n_all = 0;
+  const int *type = nullptr;
+  const double *x = nullptr, *v = nullptr;
+  const double *amount = nullptr;    // fluid: mass m; boundary: volume V_b
+  const double *pressure = nullptr;    // p / rho^2
+  double *rho = nullptr;
+  double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
+  int active_column = 0;
+
+  bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
+};
+
+// what the neighbours do to one particle, per mass of fluid or per volume of a boundary
+
+struct Acceleration {
+  double x = 0.0, y = 0.0, z = 0.0;
+  double drho = 0.0;    // d rho / dt
+  double virial[6] = {};    // half of sum r_ij f_ij: xx, yy, zz, xy, xz, yz
+};
+
+class Fluid {
+ public:
+  static std::unique_ptr<Fluid> create(KernelName, Precision);
+  virtual ~Fluid() = default;
+
+  FluidModel model;
+
+  // new neighbour lists; reach as in NeighbourLists
+  void list(const Particles &, const double *reach);
+
+  // Records the positions of all particles; mixed precision counts them in parts of span, which
+  // must hold all of them, around centre.
+  virtual void place(const Particles &, const double *centre, double span) = 0;
+
+  // amount = 1 / sum_k W_bk over the boundary particles of the same type, with itself
+  virtual void volumes(const Particles &, int type, double *amount) = 0;
+
+  // Neighbours inside the support of every active fluid particle and every boundary particle, and
+  // density by summation (1) if asked.
+  virtual void gather(const Particles &, bool sum) = 0;
+
+  // d rho/dt by continuity with diffusion, from the density and velocity of all
+  virtual void density_rates(const Particles &, double *rate) = 0;
+
+  // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
+  virtual void smooth_densities(const Particles &, double *smooth) = 0;
+
+  // Records density, volume, velocity and pressure of all particles.
+  virtual void record(const Particles &) = 0;
+
+  // (2) for all owned particles: receive(context, i, acceleration)
+  using Receiver = void (*)(void *context, int i, const Acceleration &);
+  virtual void forces(const Particles &, Receiver, void *context) = 0;
+  virtual void virials(const Particles &, Receiver, void *context) = 0;
+
+  // number density of a square or cubic lattice by summation (1)
+  virtual double lattice_sum(double support, double spacing) const = 0;
+  virtual double bytes() const;
+
+  // owned particles by type and in space, see NeighbourLists
+  const NeighbourLists &order() const { return lists; }
+  Stretch neighbours(int i, int type) const { return near(slot_of[i], type); }
+  std::int64_t listed() const { return lists.size(); }
+  std::int64_t evaluated() const { return near.size(); }
+
+ protected:
+  NeighbourLists lists;
+  Stretches near;
+  std::vector<int> slot_of;
+  int longest = 0;    // number of neighbours in a list
+};
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,625 @@
+// The loops over neighbours, for one kernel and one precision.
+//
+// Particles are read as records of four numbers, position with density and velocity with pressure,
+// which become columns of the neighbours of one particle; the terms are then plain SIMD loops.
+// Every loop writes one accumulator per particle and evaluates terms that are antisymmetric in the
+// two partners to the last bit, so the two halves of a pair cancel without a half list or a reverse
+// communication, in single precision too.
+
+#ifndef SPHCLOTH_CORE_FLUID_LOOPS_H
+#define SPHCLOTH_CORE_FLUID_LOOPS_H
+
+#include "fluid.h"
+
+namespace sphcloth {
+
+struct DoublePrecision {
+  using Real = double;
+  using Coordinate = double;
+  static Coordinate coordinate(double x, double) { return x; }
+  static Real difference(Coordinate a, Coordinate b, Real) { return a - b; }
+  static constexpr double quantum(double) { return 1.0; }
+};
+
+// Coordinates are integers: their differences are exact however far from the origin.
+
+struct MixedPrecision {
+  using Real = float;
+  using Coordinate = std::int32_t;
+  static Coordinate coordinate(double x, double per_quantum)
+  {
+    return static_cast<Coordinate>(x * per_quantum);
+  }
+  static Real difference(Coordinate a, Coordinate b, Real quantum)
+  {
+    return quantum * static_cast<Real>(a - b);
+  }
+  // a power of two, so that rounding does not depend on how large the box happens to be
+  static double quantum(double span) { return std::exp2(std::ceil(std::log2(span)) - 30.0); }
+};
+
+template <class K, class P> class FluidLoops : public Fluid {
+ public:
+  using Real = typename P::Real;
+  using Coordinate = typename P::Coordinate;
+
+  void place(const Particles &, const double *centre, double span) override;
+  void volumes(const Particles &, int type, double *amount) override;
+  void gather(const Particles &, bool sum) override;
+  void density_rates(const Particles &p, double *rate) override { all_density_rates(p, rate); }
+  void smooth_densities(const Particles &, double *smooth) override;
+  void record(const Particles &p) override { record_all(p); }
+  void forces(const Particles &, Receiver, void *context) override;
+  void virials(const Particles &, Receiver, void *context) override;
+  double lattice_sum(double support, double spacing) const override;
+  double bytes() const override;
+
+ private:
+  static constexpr int CHUNK = 64;    // neighbours in columns at a time
+
+  struct Site {
+    Coordinate x, y, z;
+    Real own;    // fluid: density; boundary: volume
+  };
+  struct Motion {
+    Real u, v, w, pressure;
+  };
+  struct Columns {
+    alignas(64) Coordinate x[CHUNK], y[CHUNK], z[CHUNK];
+    alignas(64) Real own[CHUNK], u[CHUNK], v[CHUNK], w[CHUNK], pressure[CHUNK];
+    alignas(64) double mass[CHUNK];
+    double equal = -1.0;    // the mass that all of mass[] hold
+  };
+
+  template <bool VIRIAL> struct Sums {
+    LaneSum x, y, z, drho, virial[VIRIAL ? 6 : 0];
+    Acceleration total() const
+    {
+      Acceleration a{x.total(), y.total(), z.total(), drho.total(), {}};
+      if (VIRIAL)
+        for (int m = 0; m < 6; m++) a.virial[m] = 0.5 * virial[m].total();
+      return a;
+    }
+  };
+
+  // PairTerms in the precision of the loops
+  struct Terms {
+    Real inv_support, f, nu, monaghan, soft, rho0, stiffness, diffusion;
+    explicit Terms(const PairTerms &t) :
+        inv_support(t.kernel.inv_support), f(t.kernel.f), nu(t.nu), monaghan(t.monaghan),
+        soft(t.soft), rho0(t.rho0), stiffness(t.stiffness), diffusion(t.diffusion)
+    {
+    }
+  };
+
+  Real quantum = 1;
+  AlignedVector<Site> sites;
+  AlignedVector<Motion> motions;
+  AlignedVector<Coordinate> cx, cy, cz;    // of one particle's list
+  AlignedVector<Real> unused, rsq;
+
+  std::vector<int> found_here;
+
+  bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
+
+  // virtual functions cannot be multiversioned, so these do their work
+  void place_all(const Particles &, const double *centre, double per_quantum);
+  void record_all(const Particles &);
+  void all_density_rates(const Particles &, double *rate);
+
+  void make_room();
+  int inside(int i, const Stretch &, double support_sq, int *near);
+  double kernel_sum(int n, Real inv_support);
+  double weighted_sum(const int *near, int n, Real inv_support, const double *amount);
+  void sum_up(const Particles &, bool sum);
+  void fill(Columns &, const Stretch &, int from, int n, Coordinate far) const;
+  void weigh(Columns &, const Particles &, const int *near, int n, double equal) const;
+  Coordinate beyond(const Site &, Real inv_support) const;
+
+  template <bool VIRIAL>
+  static void add(Sums<VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz, Real rate,
+                  Real dx, Real dy, Real dz);
+  template <Friction F, bool VIRIAL> void all_forces(const Particles &, Receiver, void *);
+  template <Friction F, bool VIRIAL>
+  void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
+                      Columns &, Sums<VIRIAL> &) const;
+  template <Friction F, bool VIRIAL, bool ON_BOUNDARY>
+  void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
+                       Columns &, Sums<VIRIAL> &) const;
+  template <bool FROM_BOUNDARY>
+  double density_rate(const Particles &, int i, const Stretch &, const Terms &, double equal,
+                      Columns &) const;
+};
+
+/* ----------------------------------------------------------------------
+   records
+------------------------------------------------------------------------- */
+
+template <class K, class P>
+void FluidLoops<K, P>::place(const Particles &p, const double *centre, double span)
+{
+  sites.resize(p.n_all + LANES);
+  motions.resize(p.n_all + LANES);
+  quantum = static_cast<Real>(P::quantum(span));
+  const double origin[3] = {0.0, 0.0, 0.0};
+  const bool absolute = std::is_same_v<Coordinate, double>;
+  place_all(p, absolute ? origin : centre, 1.0 / static_cast<double>(quantum));
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::place_all(const Particles &p, const double *centre,
+                                                       double per_quantum)
+{
+  for (int i = 0; i < p.n_all; i++) {
+    sites[i].x = P::coordinate(p.x[3 * i] - centre[0], per_quantum);
+    sites[i].y = P::coordinate(p.x[3 * i + 1] - centre[1], per_quantum);
+    sites[i].z = P::coordinate(p.x[3 * i + 2] - centre[2], per_quantum);
+  }
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::record_all(const Particles &p)
+{
+  for (int i = 0; i < p.n_all; i++) {
+    const bool fluid = is_fluid(p.type[i]);
+    sites[i].own = static_cast<Real>(fluid ? p.rho[i] : p.amount[i]);
+    motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
+                  static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.pressure[i])};
+  }
+}
+
+// A coordinate that is outside the support of a particle: what fills up the last group of columns.
+
+template <class K, class P>
+SPHCLOTH_INLINE typename P::Coordinate FluidLoops<K, P>::beyond(const Site &s,
+                                                                Real inv_support) const
+{
+  return s.x + static_cast<Coordinate>(Real(2) / (inv_support * quantum));
+}
+
+template <class K, class P>
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from, int n,
+                                            Coordinate far) const
+{
+  columns(&sites[0].x, near.of + from, n, c.x, c.y, c.z, c.own);
+  columns(&motions[0].u, near.of + from, n, c.u, c.v, c.w, c.pressure);
+  const int last = whole_groups(n);
+  for (int k = n; k < last; k++) c.x[k] = far;
+}
+
+// Masses of the neighbours: a constant column, written once, where all of a type are equal.
+
+template <class K, class P>
+SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, const int *near, int n,
+                                             double equal) const
+{
+  if (equal > 0.0 && c.equal == equal) return;
+  if (equal > 0.0)
+    for (double &m : c.mass) m = equal;
+  else
+    for (int k = 0; k < whole_groups(n); k++) c.mass[k] = p.amount[near[k]];
+  c.equal = equal;
+}
+
+/* ----------------------------------------------------------------------
+   neighbours and density (1)
+------------------------------------------------------------------------- */
+
+// Those of a list that are inside the support go to near, their squared distances to rsq.
+
+template <class K, class P>
+SPHCLOTH_INLINE int FluidLoops<K, P>::inside(int i, const Stretch &list, double support_sq,
+                                             int *near)
+{
+  const Site self = sites[i];
+  const Real scale = quantum;
+  Coordinate *x = cx.data(), *y = cy.data(), *z = cz.data();
+  Real *sq = rsq.data();
+  columns(&sites[0].x, list.of, list.n, x, y, z, unused.data());
+  const int n = whole_groups(list.n);
+  for (int group = 0; group < n; group += LANES)
+#pragma omp simd
+    for (int k = group; k < group + LANES; k++) {
+      const Real dx = P::difference(self.x, x[k], scale), dy = P::difference(self.y, y[k], scale),
+                 dz = P::difference(self.z, z[k], scale);
+      sq[k] = dx * dx + dy * dy + dz * dz;
+    }
+  return compact(sq, list.of, list.n, static_cast<Real>(support_sq), sq, near);
+}
+
+template <class K, class P>
+SPHCLOTH_INLINE double FluidLoops<K, P>::kernel_sum(int n, Real inv_support)
+{
+  Real *sq = rsq.data();
+  const int last = whole_groups(n);
+  for (int k = n; k < last; k++) sq[k] = Real(4) / (inv_support * inv_support);
+  LaneSum sum;
+  for (int group = 0; group < last; group += LANES)
+#pragma omp simd
+    for (int m = 0; m < LANES; m++) sum.of[m] += K::shape(std::sqrt(sq[group + m]) * inv_support);
+  return sum.total();
+}
+
+template <class K, class P>
+SPHCLOTH_INLINE double FluidLoops<K, P>::weighted_sum(const int *near, int n, Real inv_support,
+                                                      const double *amount)
+{
+  Real *sq = rsq.data();
+  const int last = whole_groups(n);
+  for (int group = 0; group < last; group += LANES)
+#pragma omp simd
+    for (int k = group; k < group + LANES; k++) sq[k] = K::shape(std::sqrt(sq[k]) * inv_support);
+  double sum = 0.0;
+  for (int k = 0; k < n; k++) sum += amount[near[k]] * sq[k];
+  return sum;
+}
+
+// Not a template of the caller's question but one function: `sum` is asked once per particle.
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum)
+{
+  const int n_types = model.n_types;
+  for (int t = 1; t <= n_types; t++) {
+    const bool fluid = is_fluid(t);
+    const PairTerms &own = model.pair(t, t);
+    const double at_self = own.kernel.w * K::shape(0.0);
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      const bool wanted = !fluid || p.is_active(i);
+      double rho = p.amount[i] * at_self;
+      for (int other = 1; other <= n_types; other++) {
+        const Stretch list = lists(slot, other);
+        if (list.n == 0 || !wanted || !(fluid || is_fluid(other))) {
+          near.close(0);
+          continue;
+        }
+        const PairTerms &terms = model.pair(t, other);
+        int *found = near.room(list.n);
+        const int n = inside(i, list, terms.kernel.support_sq, found);
+        near.close(n);
+        if (!sum || !fluid || n == 0) continue;
+        const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
+        const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : terms.rho0;
+        rho += terms.kernel.w *
+            (equal > 0.0 ? equal * kernel_sum(n, inv_support)
+                         : each * weighted_sum(found, n, inv_support, p.amount));
+      }
+      if (sum && fluid && wanted) p.rho[i] = rho;
+    }
+  }
+  near.finish();
+}
+
+template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
+{
+  make_room();
+  near.start(p.n_owned, model.n_types);
+  sum_up(p, sum);
+}
+
+// for the longest list, with the slack that whole groups and compaction need
+
+template <class K, class P> void FluidLoops<K, P>::make_room()
+{
+  const std::size_t room = whole_groups(longest) + 2 * LANES;
+  if (rsq.size() >= room) return;
+  for (auto *column : {&cx, &cy, &cz}) column->resize(2 * room);
+  unused.resize(2 * room);
+  rsq.resize(2 * room);
+  found_here.resize(2 * room);
+}
+
+// The wall's or the sheet's share of space
+
+template <class K, class P>
+void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
+{
+  const PairTerms &terms = model.pair(type, type);
+  const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
+  make_room();
+  for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+    const Stretch list = lists(slot, type);
+    const int i = lists.at(slot);
+    const int n = inside(i, list, terms.kernel.support_sq, found_here.data());
+    amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + kernel_sum(n, inv_support)));
+  }
+}
+
+/* ----------------------------------------------------------------------
+   momentum (2)
+------------------------------------------------------------------------- */
+
+// one pair: its force and rate per the amount of the neighbour, in lane m
+
+template <class K, class P>
+template <bool VIRIAL>
+SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<VIRIAL> &s, int m, double amount, Real fx, Real fy,
+                                           Real fz, Real rate, Real dx, Real dy, Real dz)
+{
+  const double x = amount * fx, y = amount * fy, z = amount * fz;
+  s.x.of[m] += x;
+  s.y.of[m] += y;
+  s.z.of[m] += z;
+  s.drho.of[m] += amount * rate;
+  if (VIRIAL) {
+    s.virial[0].of[m] += dx * x;
+    s.virial[1].of[m] += dy * y;
+    s.virial[2].of[m] += dz * z;
+    s.virial[3].of[m] += dx * y;
+    s.virial[4].of[m] += dx * z;
+    s.virial[5].of[m] += dy * z;
+  }
+}
+
+// Laminar viscosity: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
+// Artificial viscosity: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; it adds to the
+// pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
+
+template <class K, class P>
+template <Friction F, bool VIRIAL>
+SPHCLOTH_INLINE void
+FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near, const Terms &t,
+                                 double equal, Columns &c, Sums<VIRIAL> &sums) const
+{
+  const Site site = sites[i];
+  const Motion motion = motions[i];
+  const Coordinate far = beyond(site, t.inv_support);
+  const Real scale = quantum;
+
+  for (int from = 0; from < near.n; from += CHUNK) {
+    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
+    fill(c, near, from, n, far);
+    weigh(c, p, near.of + from, n, equal);
+    for (int group = 0; group < last; group += LANES)
+#pragma omp simd
+      for (int m = 0; m < LANES; m++) {
+        const int k = group + m;
+        const Real dx = P::difference(site.x, c.x[k], scale),
+                   dy = P::difference(site.y, c.y[k], scale),
+                   dz = P::difference(site.z, c.z[k], scale);
+        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+        const Real r_sq = dx * dx + dy * dy + dz * dz;
+        const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+        const Real v_dot_r = du * dx + dv * dy + dw * dz;
+
+        Real along = motion.pressure + c.pressure[k];
+        Real friction = 0;
+        if (F != Friction::NONE) {
+          const Real both = site.own + c.own[k];
+          along -= Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+          if (F == Friction::ANY) friction = slope * t.nu * both / (site.own * c.own[k]);
+        }
+        const Real push = -slope * along;
+        add<VIRIAL>(sums, m, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
+                    push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      }
+  }
+}
+
+// One fluid particle f and one boundary particle b: the force between them over m_f V_b.
+// The pressure term is the gradient of the fluid's energy with the density sum that the boundary
+// takes part in.  A boundary that mirrors the fluid's pressure, twice this term, holds the first
+// layer further off, but is not a gradient and heats resting water.
+// ON_BOUNDARY = false: i is fluid, the result is an acceleration.  ON_BOUNDARY = true: i is
+// boundary, its neighbours are fluid, the result is a force per volume.
+
+template <class K, class P>
+template <Friction F, bool VIRIAL, bool ON_BOUNDARY>
+SPHCLOTH_INLINE void
+FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near, const Terms &t,
+                                  double equal, Columns &c, Sums<VIRIAL> &sums) const
+{
+  const Site site = sites[i];
+  const Motion motion = motions[i];
+  const Coordinate far = beyond(site, t.inv_support);
+  const Real scale = quantum;
+
+  for (int from = 0; from < near.n; from += CHUNK) {
+    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
+    fill(c, near, from, n, far);
+    if (ON_BOUNDARY) weigh(c, p, near.of + from, n, equal);
+    for (int group = 0; group < last; group += LANES)
+#pragma omp simd
+      for (int m = 0; m < LANES; m++) {
+        const int k = group + m;
+        const Real dx = P::difference(site.x, c.x[k], scale),
+                   dy = P::difference(site.y, c.y[k], scale),
+                   dz = P::difference(site.z, c.z[k], scale);
+        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+        const Real r_sq = dx * dx + dy * dy + dz * dz;
+        const Real slope = t.rho0 * t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+        const Real v_dot_r = du * dx + dv * dy + dw * dz;
+        const Real rho = ON_BOUNDARY ? c.own[k] : site.own;
+
+        Real along = t.stiffness * (ON_BOUNDARY ? c.pressure[k] : motion.pressure);
+        Real friction = 0;
+        if (F != Friction::NONE) {
+          along -= t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+          if (F == Friction::ANY) friction = slope * t.nu * Real(2) / rho;
+        }
+        const Real push = -slope * along;
+        const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
+        add<VIRIAL>(sums, m, amount, push * dx + friction * du, push * dy + friction * dv,
+                    push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      }
+  }
+}
+
+template <class K, class P>
+template <Friction F, bool VIRIAL>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Receiver receive,
+                                                        void *context)
+{
+  Columns c;
+  for (int t = 1; t <= model.n_types; t++) {
+    const bool fluid = is_fluid(t);
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      if (fluid && !p.is_active(i)) continue;
+      Sums<VIRIAL> sums;
+      int met = 0;
+      for (int other = 1; other <= model.n_types; other++) {
+        const Stretch found = near(slot, other);
+        if (found.n == 0) continue;
+        met += found.n;
+        const Terms terms(model.pair(t, other));
+        const double equal = model.mass[other];
+        if (fluid && is_fluid(other))
+          fluid_on_fluid<F, VIRIAL>(p, i, found, terms, equal, c, sums);
+        else if (fluid)
+          across_boundary<F, VIRIAL, false>(p, i, found, terms, equal, c, sums);
+        else
+          across_boundary<F, VIRIAL, true>(p, i, found, terms, equal, c, sums);
+      }
+      if (met) receive(context, i, sums.total());
+    }
+  }
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::forces(const Particles &p, Receiver receive, void *context)
+{
+  switch (model.friction) {
+    case Friction::NONE: return all_forces<Friction::NONE, false>(p, receive, context);
+    case Friction::ARTIFICIAL: return all_forces<Friction::ARTIFICIAL, false>(p, receive, context);
+    case Friction::ANY: return all_forces<Friction::ANY, false>(p, receive, context);
+  }
+}
+
+// Beside the forces and only when asked: what is printed must not change, not even in the last
+// bit, what is computed.
+
+template <class K, class P>
+void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
+{
+  all_forces<Friction::ANY, true>(p, receive, context);
+}
+
+/* ----------------------------------------------------------------------
+   density by continuity: d rho_i/dt = sum_j m_j v_ij . grad W_ij and, between fluid particles,
+   diffusion, 2 delta c0 h_s sum_j m_j/rho_j (rho_j - rho_i) r_ji . grad W_ij / r^2
+   Molteni & Colagrossi, Comput. Phys. Commun. 180 (2009) 861.
+------------------------------------------------------------------------- */
+
+template <class K, class P>
+template <bool FROM_BOUNDARY>
+SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
+                                                      const Stretch &near, const Terms &t,
+                                                      double equal, Columns &c) const
+{
+  const Site site = sites[i];
+  const Motion motion = motions[i];
+  const Coordinate far = beyond(site, t.inv_support);
+  const Real scale = quantum;
+  LaneSum rate;
+  for (int from = 0; from < near.n; from += CHUNK) {
+    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
+    fill(c, near, from, n, far);
+    if (!FROM_BOUNDARY) weigh(c, p, near.of + from, n, equal);
+    for (int group = 0; group < last; group += LANES)
+#pragma omp simd
+      for (int m = 0; m < LANES; m++) {
+        const int k = group + m;
+        const Real dx = P::difference(site.x, c.x[k], scale),
+                   dy = P::difference(site.y, c.y[k], scale),
+                   dz = P::difference(site.z, c.z[k], scale);
+        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+        const Real r_sq = dx * dx + dy * dy + dz * dz;
+        const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+        const Real v_dot_r = du * dx + dv * dy + dw * dz;
+        if (FROM_BOUNDARY)
+          rate.of[m] += static_cast<double>(c.own[k]) * (t.rho0 * slope * v_dot_r);
+        else
+          rate.of[m] +=
+              c.mass[k] * (slope * (v_dot_r + t.diffusion * (site.own - c.own[k]) / c.own[k]));
+      }
+  }
+  return rate.total();
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &p, double *rate)
+{
+  Columns c;
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      if (!p.is_active(i)) continue;
+      double sum = 0.0;
+      for (int other = 1; other <= model.n_types; other++) {
+        const Stretch found = near(slot, other);
+        if (found.n == 0) continue;
+        const Terms terms(model.pair(t, other));
+        sum += is_fluid(other) ? density_rate<false>(p, i, found, terms, model.mass[other], c)
+                               : density_rate<true>(p, i, found, terms, model.mass[other], c);
+      }
+      rate[i] = sum;
+    }
+  }
+}
+
+// Shepard interpolation: constant densities stay, also at a free surface.  Boundary particles take
+// part with the rest density.
+
+template <class K, class P>
+void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
+{
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      if (!p.is_active(i)) continue;
+      const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
+      double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
+      for (int other = 1; other <= model.n_types; other++) {
+        const Stretch found = near(slot, other);
+        const PairTerms &terms = model.pair(t, other);
+        for (int k = 0; k < found.n; k++) {
+          const int j = found.of[k];
+          const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
+                       dz = p.x[3 * i + 2] - p.x[3 * j + 2];
+          const double q = std::sqrt(dx * dx + dy * dy + dz * dz) * terms.kernel.inv_support;
+          const double w = p.amount[j] * terms.kernel.w * K::shape(q);
+          mass += is_fluid(other) ? w : terms.rho0 * w;
+          volume += is_fluid(other) ? w / p.rho[j] : w;
+        }
+      }
+      smooth[i] = mass / volume;
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class K, class P>
+double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
+{
+  const KernelScale s = kernel_scale<K>(support, model.dimension);
+  const int reach = static_cast<int>(support / spacing);
+  const int reach_z = model.dimension == 3 ? reach : 0;
+  double sum = 0.0;
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++)
+      for (int k = -reach_z; k <= reach_z; k++)
+        sum += s.w *
+            K::shape(spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k)) / support);
+  return sum;
+}
+
+template <class K, class P> double FluidLoops<K, P>::bytes() const
+{
+  return Fluid::bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
+      static_cast<double>(motions.capacity()) * sizeof(Motion);
+}
+
+template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)
+{
+  if (precision == Precision::MIXED) return std::make_unique<FluidLoops<K, MixedPrecision>>();
+  return std::make_unique<FluidLoops<K, DoublePrecision>>();
+}
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,268 @@
+// Neighbour lists of short-ranged particles, by type of the neighbour.
+//
+// Particles are sorted by type and then by cell, cells in rows along x, so that the neighbours of a
+// particle lie in a few contiguous runs of single-precision coordinates: lists are built several
+// times faster than over linked bins.  A pair of types without a reach costs nothing, and the
+// neighbours of a particle come grouped by their type, so that a loop over one group has one set of
+// coefficients.
+
+#ifndef SPHCLOTH_CORE_NEIGHBOURS_H
+#define SPHCLOTH_CORE_NEIGHBOURS_H
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "simd.h"
+
+namespace sphcloth {
+
+// one group of neighbours; LANES indices past the end are readable and valid
+
+struct Stretch {
+  const int *of = nullptr;
+  int n = 0;
+};
+
+// for each slot and type a stretch of one long array that is filled in that order
+
+class Stretches {
+ public:
+  void start(std::size_t slots, int n_types)
+  {
+    types = n_types;
+    first.clear();
+    first.reserve(slots * n_types + 1);
+    first.push_back(0);
+  }
+  Stretch operator()(int slot, int type) const
+  {
+    const std::size_t s = static_cast<std::size_t>(slot) * types + type - 1;
+    return {entries.data() + first[s], static_cast<int>(first[s + 1] - first[s])};
+  }
+  // room for at most n more entries and the slack behind them
+  int *room(int n)
+  {
+    const std::size_t need = first.back() + n + SLACK;
+    if (entries.size() < need) entries.resize(std::max(need, entries.size() + entries.size() / 2));
+    return entries.data() + first.back();
+  }
+  void close(int n) { first.push_back(first.back() + n); }
+  // what loops over whole groups read behind the last stretch
+  void finish()
+  {
+    int *end = room(0);
+    std::fill(end, end + SLACK, 0);
+  }
+  std::int64_t size() const { return first.empty() ? 0 : first.back(); }
+  double bytes() const
+  {
+    return sizeof(int) * static_cast<double>(entries.capacity()) +
+        sizeof(std::int64_t) * static_cast<double>(first.capacity());
+  }
+
+ private:
+  static constexpr int SLACK = 16;
+  int types = 0;
+  std::vector<std::int64_t> first;
+  std::vector<int> entries;
+};
+
+class NeighbourLists {
+ public:
+  // x: [n_all][3], owned particles first; reach: [(n_types+1)^2], distance up to which the second
+  // type is listed as a neighbour of the first, 0: never
+  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach)
+  {
+    sort_into_cells(x, type, n_owned, n_all, n_types, reach);
+    lists.start(order.size(), n_types);
+    for (int t = 1; t <= n_types; t++)
+      for (int slot = begin(t); slot < begin(t + 1); slot++)
+        for (int other = 1; other <= n_types; other++)
+          list(slot, other, reach[t * (n_types + 1) + other], t == other);
+    lists.finish();
+  }
+
+  // owned particles by type and then in space: those of a type are the slots begin(t) to
+  // begin(t + 1)
+  int begin(int t) const { return slots_of[t]; }
+  int slots() const { return static_cast<int>(order.size()); }
+  int at(int slot) const { return order[slot]; }
+  Stretch operator()(int slot, int t) const { return lists(slot, t); }
+  std::int64_t size() const { return lists.size(); }
+  double bytes() const
+  {
+    return lists.bytes() + sizeof(float) * 3.0 * px.capacity() + sizeof(float) * key.capacity() +
+        sizeof(int) *
+        static_cast<double>(id.capacity() + order.capacity() + place.capacity() +
+                            cell_start.capacity() + cell.capacity() + candidate.capacity());
+  }
+
+ private:
+  struct Grid {
+    std::array<double, 3> lo, centre, inv_side;
+    std::array<int, 3> n;
+    double slack;    // what rounding to single precision may do to a distance
+    std::int64_t cells() const { return static_cast<std::int64_t>(n[0]) * n[1] * n[2]; }
+  };
+
+  Grid grid;
+  std::vector<int> slots_of, order;
+  std::vector<int> place;    // of a slot among the sorted particles
+  std::vector<int> cell;    // of each particle, with its type
+  std::vector<int> cell_start;    // [type][cell] and one more
+  std::vector<int> id;    // sorted particles: index, position
+  AlignedVector<float> px, py, pz;
+  std::vector<int> candidate;    // of one particle
+  std::vector<float> key;
+  Stretches lists;
+
+  void set_grid(const double *x, int n_all, double reach)
+  {
+    std::array<double, 3> lo, hi;
+    lo.fill(std::numeric_limits<double>::max());
+    hi.fill(std::numeric_limits<double>::lowest());
+    for (int i = 0; i < n_all; i++)
+      for (int d = 0; d < 3; d++) {
+        lo[d] = std::min(lo[d], x[3 * i + d]);
+        hi[d] = std::max(hi[d], x[3 * i + d]);
+      }
+    double side = 0.5 * reach, extent = 0.0;
+    const auto cells_along = [&](int d) { return 1.0 + std::floor((hi[d] - lo[d]) / side); };
+    // few particles far apart: larger cells, not more of them
+    while (cells_along(0) * cells_along(1) * cells_along(2) > 4.0 * n_all + 64.0) side *= 1.3;
+    for (int d = 0; d < 3; d++) {
+      grid.lo[d] = lo[d];
+      grid.centre[d] = 0.5 * (lo[d] + hi[d]);
+      grid.inv_side[d] = 1.0 / side;
+      grid.n[d] = static_cast<int>(cells_along(d));
+      extent = std::max(extent, hi[d] - lo[d]);
+    }
+    grid.slack = extent * 4.0 * std::numeric_limits<float>::epsilon();
+  }
+
+  int cell_along(int d, double x) const
+  {
+    const int c = static_cast<int>((x - grid.lo[d]) * grid.inv_side[d]);
+    return std::clamp(c, 0, grid.n[d] - 1);
+  }
+
+  // counting sort by type and cell
+
+  void sort_into_cells(const double *x, const int *type, int n_owned, int n_all, int n_types,
+                       const double *reach)
+  {
+    double longest = 0.0;
+    for (int k = 0; k < (n_types + 1) * (n_types + 1); k++) longest = std::max(longest, reach[k]);
+    order.clear();
+    place.clear();
+    slots_of.assign(n_types + 2, 0);
+    if (n_all == 0 || longest == 0.0) return;
+    set_grid(x, n_all, longest);
+
+    const std::int64_t cells = grid.cells();
+    cell.resize(n_all);
+    cell_start.assign(cells * n_types + 1, 0);
+    for (int i = 0; i < n_all; i++) {
+      const int cx = cell_along(0, x[3 * i]), cy = cell_along(1, x[3 * i + 1]);
+      const int cz = cell_along(2, x[3 * i + 2]);
+      cell[i] = static_cast<int>(cells * (type[i] - 1) +
+                                 (static_cast<std::int64_t>(cz) * grid.n[1] + cy) * grid.n[0] + cx);
+      cell_start[cell[i]]++;
+    }
+    int before = 0;
+    for (int &start : cell_start) {
+      const int count = start;
+      start = before;
+      before += count;
+    }
+    id.resize(n_all);
+    for (int i = 0; i < n_all; i++) id[cell_start[cell[i]]++] = i;
+    for (std::size_t c = cell_start.size() - 1; c > 0; c--) cell_start[c] = cell_start[c - 1];
+    cell_start[0] = 0;
+
+    px.resize(n_all + LANES);
+    py.resize(n_all + LANES);
+    pz.resize(n_all + LANES);
+    id.resize(n_all + LANES);
+    for (int p = 0; p < n_all; p++) {
+      const int i = id[p];
+      px[p] = static_cast<float>(x[3 * i] - grid.centre[0]);
+      py[p] = static_cast<float>(x[3 * i + 1] - grid.centre[1]);
+      pz[p] = static_cast<float>(x[3 * i + 2] - grid.centre[2]);
+      if (i >= n_owned) continue;
+      order.push_back(i);
+      place.push_back(p);
+      slots_of[type[i] + 1]++;
+    }
+    for (int t = 1; t <= n_types + 1; t++) slots_of[t] += slots_of[t - 1];
+  }
+
+  void list(int slot, int other, double reach, bool same_type)
+  {
+    if (reach == 0.0) {
+      lists.close(0);
+      return;
+    }
+    const double far = reach + grid.slack;
+    const int n = candidates(slot, other, far, same_type);
+    lists.close(compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
+                        lists.room(n)));
+  }
+
+  // everyone in the cells that the sphere around a particle touches, with the squared distance;
+  // returns how many
+
+  SPHCLOTH_MULTIVERSION int candidates(int slot, int other, double reach, bool same_type)
+  {
+    const int self = place[slot];
+    const float xi = px[self], yi = py[self], zi = pz[self];
+    std::array<int, 3> from, to;
+    const std::array<float, 3> at{xi, yi, zi};
+    for (int d = 0; d < 3; d++) {
+      const double x = at[d] + grid.centre[d];
+      from[d] = cell_along(d, x - reach);
+      to[d] = cell_along(d, x + reach);
+    }
+    const std::int64_t block = grid.cells() * (other - 1);
+    int n = 0;
+    for (int cz = from[2]; cz <= to[2]; cz++)
+      for (int cy = from[1]; cy <= to[1]; cy++) {
+        const std::int64_t row =
+            block + (static_cast<std::int64_t>(cz) * grid.n[1] + cy) * grid.n[0];
+        const int begin = cell_start[row + from[0]], end = cell_start[row + to[0] + 1];
+        const std::size_t need = n + whole_groups(end - begin) + 16;
+        if (key.size() < need) {
+          key.resize(2 * need);
+          candidate.resize(2 * need);
+        }
+        distances(begin, end - begin, xi, yi, zi, key.data() + n, candidate.data() + n);
+        if (same_type && begin <= self && self < end)
+          key[n + self - begin] = std::numeric_limits<float>::max();
+        n += end - begin;
+      }
+    return n;
+  }
+
+  SPHCLOTH_INLINE void distances(int begin, int n, float xi, float yi, float zi, float *rsq,
+                                 int *index) const
+  {
+    const float *x = px.data() + begin, *y = py.data() + begin, *z = pz.data() + begin;
+    const int *of = id.data() + begin;
+    for (int k = 0; k < n; k += LANES)
+#pragma omp simd
+      for (int m = k; m < k + LANES; m++) {
+        const float dx = xi - x[m], dy = yi - y[m], dz = zi - z[m];
+        rsq[m] = dx * dx + dy * dy + dz * dz;
+        index[m] = of[m];
+      }
+  }
+};
+
+}    // namespace sphcloth
+
+#endif

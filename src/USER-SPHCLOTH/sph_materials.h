@@ -1,0 +1,69 @@
+// What the user said of the types of pair_style sph/tait, and what follows from it for a pair.
+
+#ifndef LMP_SPH_MATERIALS_H
+#define LMP_SPH_MATERIALS_H
+
+#include "pointers.h"
+
+#include "core/fluid.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+
+class SPHMaterials : protected Pointers {
+ public:
+  SPHMaterials(class LAMMPS *lmp) : Pointers(lmp) {}
+
+  struct TypeData {
+    sphcloth::Role role = sphcloth::Role::NONE;
+    sphcloth::Tait eos;
+    double nu = 0.0, alpha = 0.0;
+    double volume = 0.0;    // of a boundary particle; 0: from the particles around it
+  };
+
+  // forgets everything
+  void allocate();
+
+  // pair_coeff I I fluid|boundary ... or pair_coeff I J ...; marks what is set
+  void read(int narg, char **arg, int **setflag);
+
+  const TypeData &type(int i) const { return types[i]; }
+  bool is_fluid(int i) const { return types[i].role == sphcloth::Role::FLUID; }
+  bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
+  double support(int i, int j) const;
+  // laminar and artificial together
+  double viscosity(int i) const;
+  // one pair, with the kernel's scale
+  sphcloth::PairTerms mix(int i, int j, sphcloth::KernelName) const;
+  // up to where i lists j, without the skin; 0: never
+  double reach(int i, int j) const;
+
+  void write_restart(FILE *) const;
+  void read_restart(FILE *);
+  // the words of pair_coeff I I, or of I J if anything was said of that pair
+  std::string words(int i, int j) const;
+
+  double default_support = 0.0;
+
+ private:
+  struct PairData {    // < 0: not said
+    double support = -1.0, nu = -1.0, alpha = -1.0, stiffness = -1.0;
+  };
+
+  std::vector<TypeData> types;
+  std::vector<PairData> pairs;    // (ntypes+1)^2, I <= J
+
+  const PairData &said(int i, int j) const;
+  TypeData read_fluid(ArgReader &, PairData &) const;
+  TypeData read_boundary(ArgReader &) const;
+  PairData read_pair(ArgReader &) const;
+  double read_stiffness(ArgReader &, const std::string &) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,85 @@
+#include "check.h"
+#include "core/neighbours.h"
+
+#include <random>
+#include <set>
+
+using namespace sphcloth;
+
+namespace {
+
+struct Cloud {
+  std::vector<double> x;
+  std::vector<int> type;
+};
+
+Cloud cloud(int n, int n_types, double a, double b, double c, unsigned seed)
+{
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<> u(-0.5, 0.5);
+  Cloud p;
+  for (int i = 0; i < n; i++) {
+    p.x.insert(p.x.end(), {a * u(generator), b * u(generator), c * u(generator)});
+    p.type.push_back(1 + i % n_types);
+  }
+  return p;
+}
+
+// all that is nearer than the reach is listed once, nothing that is clearly further
+
+void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<double> &reach)
+{
+  const int n = static_cast<int>(p.type.size());
+  NeighbourLists lists;
+  lists.build(p.x.data(), p.type.data(), n_owned, n, n_types, reach.data());
+  std::set<int> seen;
+  for (int t = 1; t <= n_types; t++)
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      seen.insert(i);
+      CHECK(p.type[i] == t && i < n_owned);
+      for (int other = 1; other <= n_types; other++) {
+        const double far = reach[t * (n_types + 1) + other];
+        std::multiset<int> listed;
+        const Stretch s = lists(slot, other);
+        listed.insert(s.of, s.of + s.n);
+        for (int j = 0; j < n; j++) {
+          double r_sq = 0.0;
+          for (int d = 0; d < 3; d++) r_sq += std::pow(p.x[3 * i + d] - p.x[3 * j + d], 2);
+          const std::size_t count = listed.count(j);
+          const bool candidate = j != i && p.type[j] == other && far > 0.0;
+          if (candidate && std::sqrt(r_sq) < far)
+            CHECK(count == 1);
+          else if (!candidate || std::sqrt(r_sq) > far * 1.0001 + 1e-5)
+            CHECK(count == 0);
+        }
+      }
+    }
+  CHECK(static_cast<int>(seen.size()) == n_owned);
+}
+
+}    // namespace
+
+CASE("lists of one type against all pairs")
+{
+  const std::vector<double> reach{0, 0, 0, 0.21};
+  for (unsigned seed : {1u, 2u, 3u}) check_lists(cloud(400, 1, 1, 1, 1, seed), 300, 1, reach);
+  check_lists(cloud(300, 1, 1, 1, 0, 4), 300, 1, reach);         // a plane
+  check_lists(cloud(200, 1, 300, 2, 0.1, 5), 150, 1, reach);     // far apart
+  check_lists(cloud(1, 1, 1, 1, 1, 6), 1, 1, reach);
+  check_lists(cloud(60, 1, 0.01, 0.01, 0.01, 7), 60, 1, reach);    // everyone everyone's neighbour
+}
+
+CASE("lists of several types, each pair with its reach")
+{
+  // type 3 lists type 1 but not itself, type 2 and 3 never meet
+  const std::vector<double> reach{0, 0, 0, 0, 0, 0.1, 0.15, 0.2, 0, 0.15, 0.25, 0, 0, 0.2, 0, 0};
+  check_lists(cloud(500, 3, 1, 1, 1, 8), 400, 3, reach);
+}
+
+CASE("no particle of one's own, or none at all")
+{
+  const std::vector<double> reach{0, 0, 0, 0.21};
+  check_lists(cloud(50, 1, 1, 1, 1, 9), 0, 1, reach);
+  check_lists(Cloud(), 0, 1, reach);
+}

@@ -54,13 +54,14 @@ class Parameter:
             value = type(self.default)(text)
         except ValueError:
             raise self._refusal(text) from None
-        if self.choices:
-            is_allowed = value in self.choices
-        else:
-            is_allowed = self.least <= value <= self.most
-        if not is_allowed:
+        if not self._allows(value):
             raise self._refusal(text)
         return value
+
+    def _allows(self, value: Value) -> bool:
+        if self.choices:
+            return value in self.choices
+        return self.least <= value <= self.most
 
     def _refusal(self, text: str) -> UserError:
         return UserError(f"--set {self.name}={text}: {self.description} must be {self.allowed}")

@@ -35,7 +35,7 @@ PARAMETERS = (
     Parameter("settle", 6.0, "sqrt(H/g)", "time of damping", 1.0, 1000.0),
     Parameter("time", 100.0, "s", "time of rest without damping", 0.1, 1e4, quick=10.0),
     MIRROR,
-    *numerics(alpha=0.5),
+    *numerics(alpha=0.5, courant=0.5),
 )
 
 QUANTITIES = (
@@ -77,7 +77,9 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     layers = [round(COARSE * values["layers"]), values["layers"]]
     coarse = _run(values, bench, "coarse", layers[0], min(COARSE_TIME, values["time"]))
     fine = _run(values, bench, "fine", layers[1], values["time"])
-    rest = [_state(run.trajectory[-1], values, n) for run, n in zip((coarse, fine), layers)]
+    rest = [
+        _state(run.trajectory[-1], values, n) for run, n in zip((coarse, fine), layers, strict=True)
+    ]
     errors = [compare.rms(state.error(column)[state.inside]) for state in rest]
     _plot(column, rest[-1], fine, bench.out / f"{bench.name}.png")
     return {
@@ -86,7 +88,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
         "base_force": _base_force(fine),
         "speed": _largest_speed(fine) / math.sqrt(column.gravity * column.height),
         "drift": _drift(fine) / column.height,
-        "settlement": _settlement(column, rest[-1], values) / column.height,
+        "settlement": _settlement(column, rest[-1]) / column.height,
         "settlement_reference": column.settlement / column.height,
         "order": compare.order(errors, layers),
     }
@@ -151,7 +153,7 @@ def _drift(run: Run) -> float:
     return float(last - first)
 
 
-def _settlement(column: TaitColumn, rest: State, values: Mapping[str, Value]) -> float:
+def _settlement(column: TaitColumn, rest: State) -> float:
     """Return how far the surface would have sunk, from the uppermost particles inside, m.
 
     The particles at the surface itself are no measure: they lie closer than elsewhere, since

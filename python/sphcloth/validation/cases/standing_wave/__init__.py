@@ -31,11 +31,11 @@ PARAMETERS = (
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
     Parameter("sound", 10.0, "sqrt(g H)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("steepness", 0.14, "1", "k A of the start, A the amplitude", 0.01, 0.3),
-    Parameter("layers", 60, "1", "particles over the depth", 12, 400, quick=40),
+    Parameter("layers", 60, "1", "particles over the depth", 12, 400, quick=32),
     Parameter("settle", 3.0, "sqrt(H/g)", "time of damping before the wave", 1.0, 100.0),
     Parameter("periods", 3.0, "T", "time of the wave", 1.0, 100.0, quick=2.0),
     MIRROR,
-    *numerics(alpha=0.1),
+    *numerics(alpha=0.1, courant=0.5),
 )
 
 QUANTITIES = (

@@ -266,6 +266,25 @@ def test_settings_change_the_physics_and_the_reference(tmp_path: Path) -> None:
     assert metrics["pressure"].value < 0.1
 
 
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("standing-wave", {"layers": "12", "periods": "1", "depth": "0.5", "length": "1.5"}),
+        ("oscillating-drop", {"across": "14", "sound": "10", "radius": "0.2", "omega": "3"}),
+    ],
+)
+def test_the_period_is_roughly_right_at_coarse_resolution(
+    tmp_path: Path, name: str, settings: dict[str, str]
+) -> None:
+    case, console = validate.find_case(name), Console(file=io.StringIO())
+    result = validate.validate(case, settings, 1, True, tmp_path, console)
+    assert abs(result.metrics["period"].value) < 0.3
+    assert result.metrics["period_reference"].value == pytest.approx(
+        result.metrics["period_measured"].value, rel=0.3
+    )
+    assert (tmp_path / f"{name}.png").is_file()
+
+
 def test_a_case_that_fails_has_exit_code_1(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     # lattice sums are 10 % off at this support, and with them all pressures
     options = ["layers=24", "across=8", "time=1", "support=2", "disorder=0"]

@@ -49,7 +49,6 @@ class Bench:
         out: output folder; each run has a folder of its own in it.
         ranks: number of MPI ranks.
         console: where the progress appears.
-        quick: whether the quick variant was asked for.
         runs: all finished runs, in order.
     """
 
@@ -57,7 +56,6 @@ class Bench:
     out: Path
     ranks: int
     console: Console
-    quick: bool = False
     runs: list[Run] = field(default_factory=list)
 
     @property

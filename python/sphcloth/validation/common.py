@@ -7,7 +7,12 @@ from sphcloth.validation.lattice import KERNELS
 
 
 def numerics(alpha: float, courant: float) -> tuple[Parameter, ...]:
-    """Return the parameters of the method; their names are those of the scripts' variables."""
+    """Return the parameters of the method; their names are those of the scripts' variables.
+
+    Args:
+        alpha: default of the artificial viscosity.
+        courant: default of the largest step over smoothing length / speed of sound.
+    """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
         Parameter("alpha", alpha, "1", "artificial viscosity", 0.0, 2.0),

@@ -111,7 +111,7 @@ def validate(
     out.mkdir(parents=True, exist_ok=True)
     for stale in (f"{case.name}.json", f"{case.name}.png"):
         (out / stale).unlink(missing_ok=True)
-    bench = Bench(case.script, out, ranks, console, quick)
+    bench = Bench(case.script, out, ranks, console)
     start = time.monotonic()
     metrics = case.judge(case.measure(values, bench), quick)
     result = Result(

@@ -162,7 +162,7 @@ def _plot(wave: StandingWave, seen: Mapping[str, Oscillation], path: Path) -> No
     phase = np.linspace(0, each.times[-1] / wave.period, 400)
     axes.plot(phase, np.cos(2 * math.pi * phase), "k--", lw=0.8, label="linear, without friction")
     axes.set(xlabel="time / period of linear theory", ylabel="strength of the first mode")
-    axes.legend()
+    axes.legend(loc="lower left")
     compare.save(figure, path)
 
 

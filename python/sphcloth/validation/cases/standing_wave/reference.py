@@ -37,7 +37,8 @@ class StandingWave:
     def second_order(self, amplitude: float) -> float:
         """Return the relative change of the period in second order of an amplitude in m.
 
-        That of deep water, omega = omega0 (1 - (k A)^2 / 8) (Rayleigh, Proc. R. Soc. A 91 (1915) 345).
+        That of deep water, omega = omega0 (1 - (k A)^2 / 8): Rayleigh, Proc. R. Soc. A 91
+        (1915) 345.
         """
         return (self.number * amplitude) ** 2 / 8
 

@@ -66,8 +66,8 @@ def run_example(
     t_end = _end_time(example.defaults() | variables)
     out.mkdir(parents=True, exist_ok=True)
     _remove_old_results(out, name)
-    command = _command(example.script.resolve(), ranks, variables)
-    outcome = _run_lammps(command, out, t_end, console)
+    command = lammps_command(example.script.resolve(), ranks, variables)
+    outcome = run_lammps(command, out, t_end, console)
     if outcome.interrupted:
         console.print("[yellow]stopped: the summary is of what was reached[/]")
     elif outcome.status != 0:
@@ -98,14 +98,14 @@ def _remove_old_results(out: Path, name: str) -> None:
         path.unlink(missing_ok=True)
 
 
-def _command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
+def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
     """Return the command line that runs a script with these variables."""
     launch = [str(program("mpiexec")), "-n", str(ranks), str(program("lmp"))]
     values = [text for name, value in variables.items() for text in ("-var", name, value)]
     return [*launch, "-in", str(script), "-log", LOG, *values]
 
 
-def _run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:
+def run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:
     """Run LAMMPS in ``out`` and show how far it is until it ends or the user stops it."""
     with _started(command, out) as process, _progress(console) as progress:
         task = progress.add_task("starting", total=t_end)

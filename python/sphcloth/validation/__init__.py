@@ -1,0 +1,1 @@
+"""Validation: cases with a known answer, run through LAMMPS and compared with it."""

@@ -1,0 +1,194 @@
+"""A column of water at rest, in two dimensions, on a base of particles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sphcloth.trajectory import Frame
+from sphcloth.validation import compare
+from sphcloth.validation.bench import Bench, Run
+from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
+from sphcloth.validation.common import MIRROR, numerics
+from sphcloth.validation.lattice import density_sum
+
+# rate of the damping while the column settles, in c0 / H
+DAMPING = 3.2
+# the coarse run of the order of convergence: share of the layers, and its free time in s
+COARSE, COARSE_TIME = 0.5, 10.0
+# last share of the free time in which the column should be at rest
+LATE = 0.1
+
+PARAMETERS = (
+    Parameter("height", 1.0, "m", "undisturbed height H", 1e-3, 100.0),
+    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    Parameter("sound", 10.0, "sqrt(g H)", "speed of sound at rest c0", 5.0, 100.0),
+    Parameter("layers", 50, "1", "particles over the height", 24, 400, quick=40),
+    Parameter("across", 10, "1", "particles over the periodic width", 8, 100),
+    Parameter("settle", 6.0, "sqrt(H/g)", "time of damping", 1.0, 1000.0),
+    Parameter("time", 100.0, "s", "time of rest without damping", 0.1, 1e4, quick=10.0),
+    MIRROR,
+    *numerics(alpha=0.5, courant=0.5),
+)
+
+QUANTITIES = (
+    Quantity("pressure", "rho0 g H", "L2 of p - rho0 g d, inside", 0.01, 0.01),
+    Quantity("pressure_everywhere", "rho0 g H", "the same with the free surface"),
+    Quantity("base_force", "1", "force on the base / weight - 1", 1e-3, 1e-3),
+    Quantity("speed", "sqrt(g H)", "largest speed of a particle at rest", 1e-3, 1e-3),
+    Quantity("drift", "H", "change of the mean height while at rest", 1e-4, 1e-3),
+    Quantity("settlement", "H", "how far the surface sinks"),
+    Quantity("settlement_reference", "H", "the same of the Tait column"),
+    Quantity("order", "1", "order of convergence of the pressure"),
+)
+
+
+@dataclass(frozen=True)
+class State:
+    """The column in one frame.
+
+    Attributes:
+        depth: undisturbed depth of each particle, m.
+        pressure: of each particle, Pa.
+        level: height of each particle, m.
+        inside: whether a particle and all of its neighbours have no free surface in reach.
+    """
+
+    depth: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    level: NDArray[np.float64]
+    inside: NDArray[np.bool_]
+
+    def error(self, column: TaitColumn) -> NDArray[np.float64]:
+        """Return p - rho0 g d of each particle over rho0 g H."""
+        return (self.pressure - column.pressure(self.depth)) / column.pressure(column.height)
+
+
+def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+    """Run two resolutions and compare the finer one with the Tait column."""
+    column = _column(values)
+    layers = [round(COARSE * values["layers"]), values["layers"]]
+    coarse = _run(values, bench, "coarse", layers[0], min(COARSE_TIME, values["time"]))
+    fine = _run(values, bench, "fine", layers[1], values["time"])
+    rest = [
+        _state(run.trajectory[-1], values, n) for run, n in zip((coarse, fine), layers, strict=True)
+    ]
+    errors = [compare.rms(state.error(column)[state.inside]) for state in rest]
+    _plot(column, rest[-1], fine, bench.out / f"{bench.name}.png")
+    return {
+        "pressure": errors[-1],
+        "pressure_everywhere": compare.rms(rest[-1].error(column)),
+        "base_force": _base_force(fine),
+        "speed": _largest_speed(fine) / math.sqrt(column.gravity * column.height),
+        "drift": _drift(fine) / column.height,
+        "settlement": _settlement(column, rest[-1]) / column.height,
+        "settlement_reference": column.settlement / column.height,
+        "order": compare.order(errors, layers),
+    }
+
+
+def _column(values: Mapping[str, Value]) -> TaitColumn:
+    sound = values["sound"] * math.sqrt(values["gravity"] * values["height"])
+    return TaitColumn(values["height"], values["rho0"], values["gravity"], sound, values["gamma"])
+
+
+def _run(values: Mapping[str, Value], bench: Bench, label: str, layers: int, time: float) -> Run:
+    """Run the script with so many layers and so much time without damping."""
+    sound = _column(values).sound
+    t_settle = values["settle"] * math.sqrt(values["height"] / values["gravity"])
+    shared = {name: values[name] for name in values if name not in ("sound", "settle", "time")}
+    return bench.run(
+        label,
+        t_settle + time,
+        shared
+        | {
+            "layers": layers,
+            "sound": sound,
+            "lattice": density_sum(values["kernel"], values["support"]),
+            "base": math.ceil(values["support"]) + 1,
+            "damping": DAMPING * sound / values["height"],
+            "t_settle": t_settle,
+        },
+    )
+
+
+def _state(frame: Frame, values: Mapping[str, Value], layers: int) -> State:
+    column = _column(values)
+    depth = column.height - frame.columns["y0"]
+    reach = values["support"] * column.height / layers
+    pressure = compare.tait_pressure(
+        frame.columns["rho"], column.rho0, column.sound, column.gamma, values["tension"] == "yes"
+    )
+    return State(depth, pressure, frame.positions[:, 1], depth > 2 * reach)
+
+
+def _base_force(run: Run) -> float:
+    """Return the relative excess of the force on the base over the weight, late in the run."""
+    late = _late(run.thermo["Time"])
+    return float(np.mean(run.thermo["v_base_force"][late] / run.thermo["v_weight"][late]) - 1)
+
+
+def _largest_speed(run: Run) -> float:
+    """Return the largest speed of a particle late in the run, m/s."""
+    late = np.flatnonzero(_late(run.trajectory.times))
+    return max(
+        float(np.max(np.linalg.norm(run.trajectory[frame].velocities, axis=1))) for frame in late
+    )
+
+
+def _late(times: NDArray) -> NDArray[np.bool_]:
+    return times >= times[-1] - LATE * (times[-1] - times[0])
+
+
+def _drift(run: Run) -> float:
+    """Return how much the mean height changes while the column should be at rest, m."""
+    first, last = (np.mean(run.trajectory[frame].positions[:, 1]) for frame in (0, -1))
+    return float(last - first)
+
+
+def _settlement(column: TaitColumn, rest: State) -> float:
+    """Return how far the surface would have sunk, from the uppermost particles inside, m.
+
+    The particles at the surface itself are no measure: they lie closer than elsewhere, since
+    the density sum lacks what would be above them.
+    """
+    below = np.min(rest.depth[rest.inside])
+    upper = rest.inside & (rest.depth < 2 * below)
+    excess = column.level(rest.depth[upper]) - rest.level[upper]
+    return column.settlement + float(np.mean(excess))
+
+
+def _plot(column: TaitColumn, rest: State, run: Run, path: Path) -> None:
+    """Draw pressure and its error over depth, and the force on the base over time."""
+    figure, (pressure, error, force) = compare.panels(1, 3)
+    depth = np.linspace(0, column.height, 100)
+    pressure.plot(column.pressure(depth), depth, "k-", label="rho0 g d")
+    pressure.plot(rest.pressure, rest.depth, ".", label="SPH")
+    pressure.set(xlabel="pressure (Pa)", ylabel="undisturbed depth (m)")
+    pressure.legend()
+    error.plot(100 * rest.error(column), rest.depth, ".", color="lightgrey", label="surface")
+    error.plot(100 * rest.error(column)[rest.inside], rest.depth[rest.inside], ".", label="inside")
+    error.set(xlabel="error of the pressure (% of rho0 g H)")
+    error.legend()
+    for axes in (pressure, error):
+        axes.invert_yaxis()
+    force.plot(run.thermo["Time"], run.thermo["v_base_force"] / run.thermo["v_weight"])
+    force.set(xlabel="time (s)", ylabel="force on the base / weight", ylim=(0.9, 1.1))
+    compare.save(figure, path)
+
+
+CASE = Case(
+    "hydrostatic",
+    "pressure, force on the base and rest of a column against the Tait column",
+    PARAMETERS,
+    QUANTITIES,
+    measure,
+    Path(__file__).parent,
+)

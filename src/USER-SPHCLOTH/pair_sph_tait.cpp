@@ -30,8 +30,8 @@ static const std::string COEFF = "pair_coeff (sph/tait)";
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
     Pair(lmp), kernel(Kernel::WENDLAND_C2), support_global(0.0), keep_tension(0), viscous(false),
-    several_fluids(false), several_roles(false), measure_volume(false), walls(nullptr), active(nullptr),
-    active_column(0), single_fluid(1), stage(Stage::DENSITY), densities_fn(nullptr),
+    several_fluids(false), several_roles(false), measure_volume(false), walls(nullptr),
+    active(nullptr), active_column(0), single_fluid(1), stage(Stage::DENSITY), densities_fn(nullptr),
     forces_fn(nullptr), virial_fn(nullptr), volumes_fn(nullptr)
 {
   restartinfo = 1;

@@ -54,9 +54,12 @@ class Example:
 
 
 def find_example(name: str) -> Example:
-    """Return a packaged example; UserError with the names there are if there is none."""
+    """Return a packaged example; UserError with the names there are if there is none.
+
+    An example without sizes has no summary either: it is a script for LAMMPS alone.
+    """
     folder = _examples_folder()
-    names = sorted(path.parent.name for path in folder.glob("*/in.*"))
+    names = sorted(path.parent.name for path in folder.glob("*/sizes.toml"))
     if name not in names:
         raise UserError(f"no example '{name}': {_listed(names)}")
     return Example(name, folder / name)

@@ -9,8 +9,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_wall_sph.h"
 #include "force.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "timer.h"
 #include "update.h"
@@ -26,8 +28,8 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), measure_volume(false), active(nullptr), active_column(0),
-    elapsed(0.0), stage(Stage::DENSITY)
+    Pair(lmp), materials(lmp), walls(nullptr), measure_volume(false), active(nullptr),
+    active_column(0), elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -113,12 +115,15 @@ void PairSPHTait::init_style()
                STYLE, atom->atom_style);
   if (!comm->ghost_velocity)
     error->all(FLERR, "{}: ghost atoms have no velocity: add 'comm_modify vel yes'", STYLE);
-  if (neighbor->nex_type || neighbor->nex_group || neighbor->nex_mol)
+  if (neighbor->nex_group || neighbor->nex_mol)
     error->all(FLERR,
-               "{}: neigh_modify exclude would hide neighbours from the sums: remove it; walls and "
-               "cloth leave each other out by their role",
+               "{}: neigh_modify exclude group or molecule would hide neighbours from the sums: "
+               "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
+
+  const auto found = modify->get_fix_by_style("^wall/sph$");
+  walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
 
   create_fluid();
   measure_volume = false;
@@ -146,6 +151,13 @@ double PairSPHTait::lattice_sum(int itype, double spacing) const
   return fluid->lattice_sum(support(itype), spacing);
 }
 
+WallTable PairSPHTait::wall_table() const
+{
+  return with_kernel(options.kernel, [&](auto kernel) {
+    return sphcloth::wall_table<decltype(kernel)>(domain->dimension);
+  });
+}
+
 double PairSPHTait::init_one(int i, int j)
 {
   const int n = atom->ntypes + 1;
@@ -165,9 +177,21 @@ double PairSPHTait::init_one(int i, int j)
   if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
   if (t.nu > 0.0) model.friction = Friction::ANY;
 
-  const double far = materials.reach(i, j);
+  const double far = excluded(i, j) ? 0.0 : materials.reach(i, j);
   reach[i * n + j] = reach[j * n + i] = far > 0.0 ? far + neighbor->skin : 0.0;
   return far;
+}
+
+// by neigh_modify exclude type; boundary particles that measure their volume still meet
+
+bool PairSPHTait::excluded(int i, int j) const
+{
+  if (!is_fluid(i) && !is_fluid(j)) return false;
+  for (int k = 0; k < neighbor->nex_type; k++) {
+    const int a = neighbor->ex1_type[k], b = neighbor->ex2_type[k];
+    if ((a == i && b == j) || (a == j && b == i)) return true;
+  }
+  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -184,15 +208,9 @@ void PairSPHTait::compute(int eflag, int vflag)
   }
   const Particles p = particles();
 
-  const double centre[3] = {0.5 * (domain->boxlo[0] + domain->boxhi[0]),
-                            0.5 * (domain->boxlo[1] + domain->boxhi[1]),
-                            0.5 * (domain->boxlo[2] + domain->boxhi[2])};
-  const double ghosts = comm->get_comm_cutoff() + neighbor->skin;
-  double span = 0.0;
-  for (int d = 0; d < 3; d++) span += domain->boxhi[d] - domain->boxlo[d] + 2.0 * ghosts;
-  fluid->place(p, centre, span);
-
+  fluid->place(p, box());
   measure_amounts(p, new_neighbours);
+  if (walls) walls->begin();
   densities(p);
   pressures(p);
   stage = Stage::DENSITY;
@@ -211,6 +229,7 @@ void PairSPHTait::compute(int eflag, int vflag)
         pair->atom->drho[i] += a.drho;
       },
       this);
+  if (walls) for_each_fluid(p, [&](int i, const Tait &) { walls->push(i, pressure[i]); });
   if (vflag_either)
     fluid->virials(
         p,
@@ -241,6 +260,15 @@ Particles PairSPHTait::particles()
   p.active = active;
   p.active_column = active_column;
   return p;
+}
+
+Fluid::Box PairSPHTait::box() const
+{
+  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+  const double tilt = std::fabs(domain->xy) + std::fabs(domain->xz) + std::fabs(domain->yz);
+  return {{lo[0], lo[1], lo[2]},
+          {domain->prd[0], domain->prd[1], domain->prd[2]},
+          comm->get_comm_cutoff() + neighbor->skin + tilt};
 }
 
 // Fixed until the next list build: neighbours, masses.
@@ -312,6 +340,7 @@ void PairSPHTait::densities(const Particles &p)
 {
   if (!options.continuity) {
     fluid->gather(p, true);
+    if (walls) for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += walls->density(i); });
     return;
   }
   check_densities();
@@ -328,6 +357,7 @@ void PairSPHTait::integrate_density(const Particles &p)
   rate.resize(atom->nmax);
   if (elapsed > 0.0) {
     fluid->density_rates(p, rate.data());
+    if (walls) for_each_fluid(p, [&](int i, const Tait &) { rate[i] += walls->density_rate(i); });
     for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {

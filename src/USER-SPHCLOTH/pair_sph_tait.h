@@ -11,12 +11,15 @@ PairStyle(sph/tait,PairSPHTait);
 
 #include "pair.h"
 
+#include "core/wall.h"
 #include "sph_materials.h"
 
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
+
+class FixWallSPH;
 
 class PairSPHTait : public Pair {
  public:
@@ -44,7 +47,11 @@ class PairSPHTait : public Pair {
   const sphcloth::Tait &equation_of_state(int itype) const { return materials.type(itype).eos; }
   double support(int itype) const { return materials.support(itype, itype); }
   double viscosity(int itype) const { return materials.viscosity(itype); }
+  double laminar_viscosity(int itype) const { return materials.type(itype).nu; }
   sphcloth::KernelName kernel() const { return options.kernel; }
+
+  // what a plane wall adds to the density, for the kernel in use
+  sphcloth::WallTable wall_table() const;
 
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
@@ -89,6 +96,7 @@ class PairSPHTait : public Pair {
   Options options;
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
+  FixWallSPH *walls;    // null without plane walls
   bool measure_volume;
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
@@ -103,7 +111,9 @@ class PairSPHTait : public Pair {
   void allocate();
   void read_density(class ArgReader &);
   void create_fluid();
+  bool excluded(int, int) const;
   sphcloth::Particles particles();
+  sphcloth::Fluid::Box box() const;
   void new_lists();
   void measure_amounts(const sphcloth::Particles &, bool);
   void densities(const sphcloth::Particles &);

@@ -72,8 +72,8 @@ CASES = [
     case("init: ghost velocities", SHEET + "comm_modify vel no\nrun 0", r"comm_modify vel yes"),
     case(
         "init: excluded pairs",
-        SHEET_FIX + "neigh_modify exclude type 1 2\nrun 0",
-        r"neigh_modify exclude would hide.*remove it",
+        SHEET_FIX + "neigh_modify exclude group cloth cloth\nrun 0",
+        r"neigh_modify exclude group or molecule would hide.*remove it",
     ),
     case(
         "run: continuity without a density",

@@ -81,9 +81,12 @@ class Fluid {
   // new neighbour lists; reach as in NeighbourLists
   void list(const Particles &, const double *reach);
 
-  // Records the positions of all particles; mixed precision counts them in parts of span, which
-  // must hold all of them, around centre.
-  virtual void place(const Particles &, const double *centre, double span) = 0;
+  // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
+  // in parts of the box lengths, so that periodic images are exact.
+  struct Box {
+    double lo[3], length[3], margin;
+  };
+  virtual void place(const Particles &, const Box &) = 0;
 
   // amount = 1 / sum_k W_bk over the boundary particles of the same type, with itself
   virtual void volumes(const Particles &, int type, double *amount) = 0;

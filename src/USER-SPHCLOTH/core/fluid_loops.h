@@ -11,31 +11,27 @@
 
 #include "fluid.h"
 
+#include <array>
+
 namespace sphcloth {
 
 struct DoublePrecision {
   using Real = double;
   using Coordinate = double;
-  static Coordinate coordinate(double x, double) { return x; }
+  static constexpr bool COUNTED = false;
   static Real difference(Coordinate a, Coordinate b, Real) { return a - b; }
-  static constexpr double quantum(double) { return 1.0; }
 };
 
-// Coordinates are integers: their differences are exact however far from the origin.
+// Coordinates are counted in a quantum: their differences are exact however far from the origin.
 
 struct MixedPrecision {
   using Real = float;
   using Coordinate = std::int32_t;
-  static Coordinate coordinate(double x, double per_quantum)
-  {
-    return static_cast<Coordinate>(x * per_quantum);
-  }
+  static constexpr bool COUNTED = true;
   static Real difference(Coordinate a, Coordinate b, Real quantum)
   {
     return quantum * static_cast<Real>(a - b);
   }
-  // a power of two, so that rounding does not depend on how large the box happens to be
-  static double quantum(double span) { return std::exp2(std::ceil(std::log2(span)) - 30.0); }
 };
 
 template <class K, class P> class FluidLoops : public Fluid {
@@ -43,7 +39,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   using Real = typename P::Real;
   using Coordinate = typename P::Coordinate;
 
-  void place(const Particles &, const double *centre, double span) override;
+  void place(const Particles &, const Box &) override;
   void volumes(const Particles &, int type, double *amount) override;
   void gather(const Particles &, bool sum) override;
   void density_rates(const Particles &p, double *rate) override { all_density_rates(p, rate); }
@@ -92,7 +88,7 @@ template <class K, class P> class FluidLoops : public Fluid {
     }
   };
 
-  Real quantum = 1;
+  std::array<Real, 3> quantum{1, 1, 1};
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Coordinate> cx, cy, cz;    // of one particle's list
@@ -103,7 +99,8 @@ template <class K, class P> class FluidLoops : public Fluid {
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
   // virtual functions cannot be multiversioned, so these do their work
-  void place_all(const Particles &, const double *centre, double per_quantum);
+  void place_all(const Particles &, const std::array<double, 3> &origin,
+                 const std::array<double, 3> &per_quantum);
   void record_all(const Particles &);
   void all_density_rates(const Particles &, double *rate);
 
@@ -135,25 +132,33 @@ template <class K, class P> class FluidLoops : public Fluid {
    records
 ------------------------------------------------------------------------- */
 
-template <class K, class P>
-void FluidLoops<K, P>::place(const Particles &p, const double *centre, double span)
+template <class K, class P> void FluidLoops<K, P>::place(const Particles &p, const Box &box)
 {
   sites.resize(p.n_all + LANES);
   motions.resize(p.n_all + LANES);
-  quantum = static_cast<Real>(P::quantum(span));
-  const double origin[3] = {0.0, 0.0, 0.0};
-  const bool absolute = std::is_same_v<Coordinate, double>;
-  place_all(p, absolute ? origin : centre, 1.0 / static_cast<double>(quantum));
+  std::array<double, 3> origin{0.0, 0.0, 0.0}, per_quantum{1.0, 1.0, 1.0};
+  if (P::COUNTED) {
+    const double longest = *std::max_element(box.length, box.length + 3) + 2.0 * box.margin;
+    for (int d = 0; d < 3; d++) {
+      origin[d] = box.lo[d] - box.margin;
+      per_quantum[d] = std::ceil(box.length[d] / longest * 0x1p30) / box.length[d];
+      quantum[d] = static_cast<Real>(1.0 / per_quantum[d]);
+    }
+  }
+  place_all(p, origin, per_quantum);
 }
 
 template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::place_all(const Particles &p, const double *centre,
-                                                       double per_quantum)
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::place_all(const Particles &p,
+                                                       const std::array<double, 3> &origin,
+                                                       const std::array<double, 3> &per_quantum)
 {
+  const double ox = origin[0], oy = origin[1], oz = origin[2];
+  const double qx = per_quantum[0], qy = per_quantum[1], qz = per_quantum[2];
   for (int i = 0; i < p.n_all; i++) {
-    sites[i].x = P::coordinate(p.x[3 * i] - centre[0], per_quantum);
-    sites[i].y = P::coordinate(p.x[3 * i + 1] - centre[1], per_quantum);
-    sites[i].z = P::coordinate(p.x[3 * i + 2] - centre[2], per_quantum);
+    sites[i].x = static_cast<Coordinate>((p.x[3 * i] - ox) * qx);
+    sites[i].y = static_cast<Coordinate>((p.x[3 * i + 1] - oy) * qy);
+    sites[i].z = static_cast<Coordinate>((p.x[3 * i + 2] - oz) * qz);
   }
 }
 
@@ -174,7 +179,7 @@ template <class K, class P>
 SPHCLOTH_INLINE typename P::Coordinate FluidLoops<K, P>::beyond(const Site &s,
                                                                 Real inv_support) const
 {
-  return s.x + static_cast<Coordinate>(Real(2) / (inv_support * quantum));
+  return s.x + static_cast<Coordinate>(Real(2) / (inv_support * quantum[0]));
 }
 
 template <class K, class P>
@@ -212,7 +217,7 @@ SPHCLOTH_INLINE int FluidLoops<K, P>::inside(int i, const Stretch &list, double 
                                              int *near)
 {
   const Site self = sites[i];
-  const Real scale = quantum;
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   Coordinate *x = cx.data(), *y = cy.data(), *z = cz.data();
   Real *sq = rsq.data();
   columns(&sites[0].x, list.of, list.n, x, y, z, unused.data());
@@ -220,8 +225,8 @@ SPHCLOTH_INLINE int FluidLoops<K, P>::inside(int i, const Stretch &list, double 
   for (int group = 0; group < n; group += LANES)
 #pragma omp simd
     for (int k = group; k < group + LANES; k++) {
-      const Real dx = P::difference(self.x, x[k], scale), dy = P::difference(self.y, y[k], scale),
-                 dz = P::difference(self.z, z[k], scale);
+      const Real dx = P::difference(self.x, x[k], qx), dy = P::difference(self.y, y[k], qy),
+                 dz = P::difference(self.z, z[k], qz);
       sq[k] = dx * dx + dy * dy + dz * dz;
     }
   return compact(sq, list.of, list.n, static_cast<Real>(support_sq), sq, near);
@@ -365,7 +370,7 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
   const Site site = sites[i];
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
-  const Real scale = quantum;
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
 
   for (int from = 0; from < near.n; from += CHUNK) {
     const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
@@ -375,9 +380,8 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 #pragma omp simd
       for (int m = 0; m < LANES; m++) {
         const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], scale),
-                   dy = P::difference(site.y, c.y[k], scale),
-                   dz = P::difference(site.z, c.z[k], scale);
+        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                   dz = P::difference(site.z, c.z[k], qz);
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
         const Real r_sq = dx * dx + dy * dy + dz * dz;
         const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
@@ -413,7 +417,7 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
   const Site site = sites[i];
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
-  const Real scale = quantum;
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
 
   for (int from = 0; from < near.n; from += CHUNK) {
     const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
@@ -423,9 +427,8 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
 #pragma omp simd
       for (int m = 0; m < LANES; m++) {
         const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], scale),
-                   dy = P::difference(site.y, c.y[k], scale),
-                   dz = P::difference(site.z, c.z[k], scale);
+        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                   dz = P::difference(site.z, c.z[k], qz);
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
         const Real r_sq = dx * dx + dy * dy + dz * dz;
         const Real slope = t.rho0 * t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
@@ -511,7 +514,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
   const Site site = sites[i];
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
-  const Real scale = quantum;
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   LaneSum rate;
   for (int from = 0; from < near.n; from += CHUNK) {
     const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
@@ -521,9 +524,8 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
 #pragma omp simd
       for (int m = 0; m < LANES; m++) {
         const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], scale),
-                   dy = P::difference(site.y, c.y[k], scale),
-                   dz = P::difference(site.z, c.z[k], scale);
+        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                   dz = P::difference(site.z, c.z[k], qz);
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
         const Real r_sq = dx * dx + dy * dy + dz * dz;
         const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);

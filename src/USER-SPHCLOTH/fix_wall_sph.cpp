@@ -1,0 +1,304 @@
+// Plane walls as half-spaces of fluid at rest density, core/wall.h.  pair_style sph/tait calls
+// this fix while it evaluates, since densities must be complete before the equation of state.
+
+#include "fix_wall_sph.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "atom_tools.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "input.h"
+#include "modify.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace sphcloth;
+
+static constexpr const char *FACES[6] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+
+static int face_of(const std::string &name)
+{
+  return static_cast<int>(std::find(FACES, FACES + 6, name) - FACES);
+}
+
+/* ----------------------------------------------------------------------
+   fix ID group wall/sph face position ... keyword values ...
+------------------------------------------------------------------------- */
+
+FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
+    any_variable(false), last_time(-1.0), summed(false)
+{
+  ArgReader args(lmp, label, narg, arg, 3);
+  read_walls(args);
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "slip") {
+      const std::string choice = args.word(keyword);
+      if (choice != "yes" && choice != "no") args.fail(keyword, choice, "use yes or no");
+      slip = choice == "yes";
+    } else if (keyword == "velocity")
+      read_velocity(args);
+    else
+      args.unknown(keyword, "xlo, xhi, ylo, yhi, zlo, zhi before the keywords slip, velocity");
+  }
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 3 * static_cast<int>(walls.size());
+  global_freq = 1;
+  extscalar = extvector = 1;
+  energy_global_flag = virial_global_flag = virial_peratom_flag = 1;
+  dynamic_group_allow = 1;
+  near.resize(walls.size());
+  mine.assign(size_vector + 1, 0.0);
+  all = mine;
+}
+
+void FixWallSPH::read_walls(ArgReader &args)
+{
+  while (args.more() && face_of(args.peek()) < 6) {
+    Wall wall = {};
+    const std::string name = args.word("face");
+    wall.face = face_of(name);
+    for (const Wall &other : walls)
+      if (other.face == wall.face) args.fail("face", name, "give each face once");
+    if (domain->dimension == 2 && wall.axis() == 2)
+      args.fail("face", name, "a 2-D simulation has walls in x and y only");
+    const std::string position = fmt::format("position of {}", name);
+    if (!args.more()) args.word(position);
+    const std::string value = args.peek();
+    if (value == "EDGE") {
+      wall.place = Place::EDGE;
+      args.word(position);
+    } else if (utils::strmatch(value, "^v_")) {
+      wall.place = Place::VARIABLE;
+      wall.variable = args.word(position).substr(2);
+      any_variable = true;
+    } else {
+      wall.place = Place::NUMBER;
+      wall.position = args.number(position);
+    }
+    walls.push_back(wall);
+  }
+  if (walls.empty()) {
+    const std::string name = args.word("face");
+    args.fail("face", name, "use one of xlo, xhi, ylo, yhi, zlo, zhi");
+  }
+}
+
+void FixWallSPH::read_velocity(ArgReader &args)
+{
+  const std::string name = args.word("face of the velocity");
+  const auto wall = std::find_if(walls.begin(), walls.end(),
+                                 [&](const Wall &w) { return w.face == face_of(name); });
+  if (wall == walls.end()) args.fail("face of the velocity", name, "give a face with a wall");
+  for (int d = 0; d < 3; d++) wall->velocity[d] = args.number(fmt::format("velocity of {}", name));
+  if (wall->velocity[wall->axis()] != 0.0)
+    args.fail(fmt::format("velocity of {} across the wall", name),
+              std::to_string(wall->velocity[wall->axis()]),
+              "give 0, and move the wall with a variable as its position");
+  if (domain->dimension == 2 && wall->velocity[2] != 0.0)
+    args.fail(fmt::format("velocity of {} in z", name), std::to_string(wall->velocity[2]),
+              "give 0 in a 2-D simulation");
+}
+
+int FixWallSPH::setmask() { return POST_FORCE; }
+
+void FixWallSPH::init()
+{
+  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  if (!pair)
+    error->all(FLERR,
+               "{}: pair_style {} has no density that a wall could add to: use 'pair_style "
+               "sph/tait'",
+               label, force->pair_style ? force->pair_style : "none");
+  if (modify->get_fix_by_style("^wall/sph$").size() > 1)
+    error->all(FLERR, "{}: there is another fix wall/sph: give all faces to one", label);
+  table = pair->wall_table();
+  for (Wall &wall : walls) {
+    check_face(wall);
+    if (wall.place != Place::VARIABLE) continue;
+    wall.variable_index = input->variable->find(wall.variable.c_str());
+    if (wall.variable_index < 0 || !input->variable->equalstyle(wall.variable_index))
+      error->all(FLERR, "{}: position of {} is 'v_{}': define an equal-style variable of this name",
+                 label, FACES[wall.face], wall.variable);
+  }
+}
+
+// The box must look the same from everywhere along the wall.
+
+void FixWallSPH::check_face(const Wall &wall) const
+{
+  const int axis = wall.axis();
+  if (domain->periodicity[axis])
+    error->all(FLERR, "{}: {} is a wall across a periodic dimension: use 'boundary f' there", label,
+               FACES[wall.face]);
+  if (wall.place == Place::EDGE && domain->boundary[axis][wall.face % 2] != 1)
+    error->all(FLERR,
+               "{}: position of {} is 'EDGE', which follows the particles at a shrink-wrapped "
+               "face: use 'boundary f' there, or a number",
+               label, FACES[wall.face]);
+  const bool tilted = domain->triclinic &&
+      ((axis == 0 && (domain->xy != 0.0 || domain->xz != 0.0)) || (axis == 1 && domain->yz != 0.0));
+  if (tilted)
+    error->all(FLERR,
+               "{}: the face of the box at {} is tilted: a wall must be parallel to its face, set "
+               "the tilt of that face to 0",
+               label, FACES[wall.face]);
+}
+
+/* ----------------------------------------------------------------------
+   one evaluation
+------------------------------------------------------------------------- */
+
+void FixWallSPH::begin()
+{
+  const double now = physical_time(update);
+  const double elapsed = last_time < 0.0 ? 0.0 : now - last_time;
+  if (any_variable) modify->clearstep_compute();
+  for (Wall &wall : walls) locate(wall, elapsed);
+  if (any_variable) modify->addstep_compute(update->ntimestep + 1);
+  last_time = now;
+  std::fill(mine.begin(), mine.end(), 0.0);
+  presses.clear();
+  summed = false;
+}
+
+// A moving plane has the velocity of its last step.
+
+void FixWallSPH::locate(Wall &wall, double elapsed)
+{
+  const double before = wall.position;
+  switch (wall.place) {
+    case Place::NUMBER: return;
+    case Place::EDGE:
+      wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
+      break;
+    case Place::VARIABLE:
+      wall.position = input->variable->compute_equal(wall.variable_index);
+      if (!std::isfinite(wall.position))
+        error->all(FLERR, "{}: position of {} is '{}' at step {}: correct variable {}", label,
+                   FACES[wall.face], wall.position, update->ntimestep, wall.variable);
+      break;
+  }
+  if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
+}
+
+// false if no wall is in reach of particle i; otherwise `near` holds what each wall is to it
+
+bool FixWallSPH::look(int i)
+{
+  if (!(atom->mask[i] & groupbit)) return false;
+  const double support = pair->support(atom->type[i]);
+  bool any = false;
+  for (std::size_t k = 0; k < walls.size(); k++) {
+    const double delta = walls[k].distance(atom->x[i]) / support;
+    if (delta < -1.0)
+      error->one(FLERR,
+                 "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
+                 "start it in front, or lower the time step",
+                 label, atom->tag[i], FACES[walls[k].face]);
+    near[k] = table(delta);
+    any = any || delta < 1.0;
+  }
+  return any;
+}
+
+double FixWallSPH::density(int i)
+{
+  if (!look(i)) return 0.0;
+  return pair->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
+}
+
+double FixWallSPH::density_rate(int i)
+{
+  if (!look(i)) return 0.0;
+  double rate = 0.0;
+  for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
+  return rate;
+}
+
+// d rho_i / d distance from wall k, beside the other walls
+
+double FixWallSPH::slope(int i, std::size_t k) const
+{
+  const int type = atom->type[i];
+  return joint_share(near, k) * pair->equation_of_state(type).rho0 * near[k].slope /
+      pair->support(type);
+}
+
+// velocity of particle i away from wall k
+
+double FixWallSPH::departure(int i, std::size_t k) const
+{
+  const int axis = walls[k].axis();
+  return walls[k].inwards() * (atom->v[i][axis] - walls[k].velocity[axis]);
+}
+
+// The pressure is the gradient of the fluid's energy with the density sum that the walls take part
+// in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
+
+void FixWallSPH::push(int i, double pressure_term)
+{
+  if (!look(i)) return;
+  const int type = atom->type[i];
+  const Tait &eos = pair->equation_of_state(type);
+  const double support = pair->support(type), nu = slip ? 0.0 : pair->laminar_viscosity(type);
+  const double mass = atom_mass(atom, i), to_force = mass / force->ftm2v;
+  const double *x = atom->x[i], *v = atom->v[i];
+
+  for (std::size_t k = 0; k < walls.size(); k++) {
+    const Wall &wall = walls[k];
+    const int axis = wall.axis();
+    const double delta = wall.distance(x) / support;
+    if (delta >= 1.0) continue;
+    const double share = joint_share(near, k);
+    const double strain = stop_strain(delta);
+    const double stop = eos.k * strain / (STOPPING_DEPTH * support);
+    const double friction =
+        nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support);
+
+    const double pressure = stop - pressure_term * slope(i, k);    // per mass, away from the wall
+    for (int d = 0; d < 3; d++) {
+      const double accel = d == axis ? wall.inwards() * pressure
+                                     : -friction * (v[d] - wall.velocity[d]);
+      atom->f[i][d] += to_force * accel;
+      mine[3 * k + d] -= to_force * accel;
+    }
+    atom->drho[i] += slope(i, k) * departure(i, k);
+    if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
+    mine.back() += 0.5 * mass * eos.k * strain * strain * force->mvv2e;
+  }
+}
+
+// LAMMPS asks fixes for their virial here; fluid and plane count as a pair of particles.
+
+void FixWallSPH::post_force(int vflag)
+{
+  v_init(vflag);
+  if (!evflag) return;
+  for (const Press &p : presses) v_tally(p.axis, p.particle, p.virial);
+}
+
+/* ----------------------------------------------------------------------
+   output: energy of what is behind the walls; force on each wall, x, y, z
+------------------------------------------------------------------------- */
+
+double FixWallSPH::output(int n)
+{
+  if (!summed) MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  summed = true;
+  return all[n];
+}
+
+double FixWallSPH::compute_scalar() { return output(size_vector); }
+
+double FixWallSPH::compute_vector(int n) { return output(n); }

@@ -1,0 +1,89 @@
+// fix wall/sph: plane walls without wall particles.
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(wall/sph,FixWallSPH);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_WALL_SPH_H
+#define LMP_FIX_WALL_SPH_H
+
+#include "fix.h"
+
+#include "core/wall.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+class PairSPHTait;
+
+class FixWallSPH : public Fix {
+ public:
+  FixWallSPH(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  // What pair_style sph/tait asks for while it evaluates, in this order: where the walls are now,
+  // what they add to the density of a fluid particle, and, once its pressure is known, the force.
+
+  void begin();
+  double density(int i);
+  double density_rate(int i);
+  void push(int i, double pressure_term);
+
+ private:
+  enum class Place { NUMBER, EDGE, VARIABLE };
+
+  struct Wall {
+    int face;             // 0 to 5: xlo, xhi, ylo, yhi, zlo, zhi
+    Place place;
+    std::string variable;
+    int variable_index;
+    double position;
+    double velocity[3];    // along the plane as given, across it from the motion of the plane
+
+    int axis() const { return face / 2; }
+    double inwards() const { return face % 2 == 0 ? 1.0 : -1.0; }
+    double distance(const double *x) const { return inwards() * (x[axis()] - position); }
+  };
+
+  struct Press {    // of a wall on a particle
+    int particle, axis;
+    double virial;
+  };
+
+  std::string label;
+  PairSPHTait *pair;
+  std::vector<Wall> walls;
+  bool slip, any_variable;
+  double last_time;    // of the positions, < 0: none yet
+  sphcloth::WallTable table;
+
+  std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall
+  std::vector<Press> presses;    // kept only for fix_modify virial yes
+  std::vector<double> mine, all;    // force on each wall, x, y, z, then the energy; of all ranks
+  bool summed;
+
+  void read_walls(ArgReader &);
+  void read_velocity(ArgReader &);
+  void check_face(const Wall &) const;
+  void locate(Wall &, double);
+  bool look(int);
+  double slope(int, std::size_t) const;
+  double departure(int, std::size_t) const;
+  double output(int);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,681 @@
+"""fix wall/sph against quadrature of the kernel, invariants, and exact flows."""
+
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from harness import by_id, instance, last_frame, run, write
+
+H = 0.1
+RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
+NU = 1e-2
+
+KERNELS = {
+    "wendland/c2": (
+        {2: 7 / math.pi, 3: 21 / (2 * math.pi)},
+        lambda q: (1 - q) ** 4 * (1 + 4 * q),
+        lambda q: -20 * (1 - q) ** 3,
+        [0.0, 1.0],
+    ),
+    "cubic": (
+        {2: 40 / (7 * math.pi), 3: 8 / math.pi},
+        lambda q: np.where(q < 0.5, 6 * q**3 - 6 * q**2 + 1, 2 * (1 - q) ** 3),
+        lambda q: np.where(q < 0.5, 18 * q - 12, -6 * (1 - q) ** 2 / q),
+        [0.0, 0.5, 1.0],
+    ),
+}
+
+
+def behind(kernel, dim, delta, term):
+    """Integral of ``term(q, z)`` over the half-space z > delta, in units of H, by Gauss's rule.
+
+    Spherical shells around the particle, from one kink of the kernel to the next.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(80)
+    kinks = [max(delta, q) for q in KERNELS[kernel][3]]
+    total = 0.0
+    for low, high in pairwise(kinks):
+        # q = low + (high-low) s^2 takes away the root at q = delta
+        s = 0.5 * (nodes + 1)
+        q = low + (high - low) * s**2
+        dq = (high - low) * s * weights
+        for qi, dqi in zip(q, dq, strict=True):
+            half = math.acos(min(1.0, delta / qi))  # the cap reaches to this angle
+            angle = 0.5 * half * (nodes + 1)
+            area = 2 * qi if dim == 2 else 2 * math.pi * qi**2 * np.sin(angle)
+            total += dqi * np.sum(0.5 * half * weights * area * term(qi, qi * np.cos(angle)))
+    return total
+
+
+def half_space(kernel, dim, d):
+    """Lambda, its slope over the distance, and the integral of Morris's term, friction."""
+    norm, shape, slope, _ = KERNELS[kernel]
+    c, delta = norm[dim], d / H
+    lam = behind(kernel, dim, delta, lambda q, z: c * shape(q) * np.ones_like(z))
+    push = behind(kernel, dim, delta, lambda q, z: c * slope(q) * z) / H
+    drag = behind(kernel, dim, delta, lambda q, z: -c * slope(q) * (1 + (z - delta) / delta))
+    return lam, push, drag / H**2
+
+
+def tait(rho):
+    return C0**2 * RHO0 / GAMMA * ((rho / RHO0) ** GAMMA - 1)
+
+
+def particle(place, wall, dim=3, setting="", velocity="0 0 0", mass=None, more="run 0", **box):
+    """One fluid particle beside walls in a box from -1 to 1 with fixed faces."""
+    boundary = box.get("boundary", "f f f" if dim == 3 else "f f p")
+    mass = mass or 1.5 * RHO0 * (H / 2) ** dim
+    depth = "-1 1" if dim == 3 else "-0.05 0.05"
+    lmp = instance()
+    lmp.commands_string(f"""
+        units {box.get("units", "si")}
+        dimension {dim}
+        atom_style sph
+        atom_modify map yes
+        comm_modify vel yes
+        boundary {boundary}
+        region box block -1 1 -1 1 {depth}
+        create_box 1 box
+        mass 1 {mass}
+        create_atoms 1 single {place} units box
+        set type 1 vx {velocity.split()[0]} vy {velocity.split()[1]} vz {velocity.split()[2]}
+        pair_style sph/tait {H} {setting}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0} nu {NU}
+        neighbor 0.02 bin
+        thermo_modify norm no
+        fix wall all wall/sph {wall}
+        {more}""")
+    return lmp
+
+
+def place_at(face, d, dim):
+    """Coordinates of a particle at distance d from a wall at 0.2, and the direction off the wall"""
+    axis, sign = "xyz".index(face[0]), 1 if face[1:] == "lo" else -1
+    x = np.zeros(3)
+    x[axis] = 0.2 + sign * d
+    return " ".join(map(str, x)), axis, sign
+
+
+# ---------------------------------------------------------------------- one particle
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("d", [0.014, 0.043, 0.055, 0.09])
+def test_density_force_and_friction_against_quadrature(kernel, dim, d):
+    u = [0.3, -0.2, 0.1 if dim == 3 else 0.0]
+    for face in ("xlo", "xhi", "ylo", "yhi", "zlo", "zhi")[: 2 * dim]:
+        place, axis, sign = place_at(face, d, dim)
+        velocity = " ".join(map(str, u))
+        setting = f"kernel {kernel} tension yes"
+        lmp = particle(place, f"{face} 0.2", dim, setting, velocity)
+        norm, shape, _, _ = KERNELS[kernel]
+        mass = 1.5 * RHO0 * (H / 2) ** dim
+        lam, slope, drag = half_space(kernel, dim, d)
+        rho = mass * norm[dim] / H**dim * float(shape(np.float64(0.0))) + RHO0 * lam
+        force = -mass * 2 * NU * RHO0 / rho * drag * np.array(u)
+        force[axis] = -sign * mass * tait(rho) / rho**2 * RHO0 * slope
+        np.testing.assert_allclose(by_id(lmp, "rho"), rho, rtol=1e-9)
+        np.testing.assert_allclose(by_id(lmp, "f")[0], force, rtol=1e-6)
+        np.testing.assert_allclose(by_id(lmp, "drho"), RHO0 * slope * sign * u[axis], rtol=1e-6)
+        reaction = [lmp.extract_fix("wall", 0, 1, k) for k in range(3)]
+        np.testing.assert_allclose(reaction, -by_id(lmp, "f")[0], rtol=1e-14)
+
+
+def test_out_of_reach_and_in_the_plane():
+    far = particle("0.2 0 0", "xlo 0.1")
+    assert np.all(by_id(far, "f") == 0)
+    alone = by_id(far, "rho")[0]
+    plane = particle("0.1 0 0", "xlo 0.1")
+    assert by_id(plane, "rho")[0] == pytest.approx(alone + 0.5 * RHO0, rel=1e-13)
+    behind_it = particle("0.06 0 0", "xlo 0.1")
+    mirror = particle("0.14 0 0", "xlo 0.1")
+    both = by_id(behind_it, "rho")[0] + by_id(mirror, "rho")[0]
+    assert both == pytest.approx(2 * alone + RHO0, rel=1e-13)
+    assert by_id(behind_it, "f")[0, 0] > by_id(mirror, "f")[0, 0]
+
+
+@pytest.mark.parametrize(("dx", "dy"), [(0.0, 0.0), (0.02, 0.05), (0.05, 0.05), (0.04, 0.11)])
+def test_edge_of_two_walls(dx, dy):
+    """The product of two walls against the exact three quadrants behind them."""
+    lmp = particle(f"{dx} {dy} 0", "xlo 0 ylo 0", dim=2)
+    norm, shape, _, _ = KERNELS["wendland/c2"]
+    n = 800
+    x = (np.arange(n) + 0.5) / n * 2 - 1
+    q = np.hypot(x[:, None], x[None])
+    outside = (x[:, None] * H < -dx) | (x[None] * H < -dy)
+    exact = norm[2] * np.sum(np.where((q < 1) & outside, shape(np.minimum(q, 1)), 0)) * (2 / n) ** 2
+    own = 1.5 / 4 * RHO0 * norm[2]
+    assert (by_id(lmp, "rho")[0] - own) / RHO0 == pytest.approx(exact, abs=1.5e-3)
+
+
+def test_units_are_those_of_the_script():
+    si = particle("0.03 0 0", "xlo 0", velocity="-0.1 0.2 0")
+    real = particle("0.03 0 0", "xlo 0", velocity="-0.1 0.2 0", units="real")
+    ftm2v = 4184e-7  # (kcal/mol/Angstrom)/(g/mol) in Angstrom/fs^2
+    np.testing.assert_allclose(by_id(real, "f") * ftm2v, by_id(si, "f"), rtol=2e-4)
+
+
+def test_only_the_group_meets_the_wall():
+    more = "group nobody empty\nunfix wall\nfix wall nobody wall/sph xlo 0\nrun 0"
+    lmp = particle("0.03 0 0", "xlo 0", more=more)
+    assert np.all(by_id(lmp, "f") == 0)
+
+
+def test_slip_and_the_speed_of_the_wall():
+    at = {"place": "0.03 0 0", "velocity": "0 0.2 0.1"}
+    assert np.all(by_id(particle(wall="xlo 0 slip yes", **at), "f")[0, 1:] == 0)
+    rest = by_id(particle(wall="xlo 0", **at), "f")[0]
+    moving = particle("0.03 0 0", "xlo 0 velocity xlo 0 -0.2 -0.1")
+    np.testing.assert_allclose(by_id(moving, "f")[0], rest, rtol=1e-13)
+    along = particle(wall="xlo 0 velocity xlo 0 0.2 0.1", **at)
+    assert np.all(by_id(along, "f")[0, 1:] == 0)
+
+
+def test_an_inactive_particle_is_left_alone():
+    more = "fix step all sph/integrate constant\ntimestep 1e-5\nrun 0"
+    lmp = particle("0.03 0 0", "xlo 0", more=more, velocity="-1 0 0")
+    before = by_id(lmp, "rho")[0]
+    lmp.numpy.extract_fix("step", 1, 2)[0, 2] = 0.0
+    lmp.command("run 5 pre no")
+    assert by_id(lmp, "rho")[0] == before
+
+
+# ---------------------------------------------------------------------- moving walls
+
+
+def test_drho_is_the_rate_of_the_density():
+    """A particle that flies beside a wall that a variable moves, and one beside a wall at rest."""
+    dt = 1e-6
+    for wall in ("xhi v_place", "xhi 0.1"):
+        moves = "variable place equal 0.1-3.0*time\nfix fly all nve/noforce\n"
+        more = f"timestep {dt}\n{moves}run 1"
+        lmp = particle("0.06 0 0", wall, velocity="0.8 0 0", more=more)
+        rho = [by_id(lmp, "rho")[0]]
+        lmp.command("run 1")
+        drho = by_id(lmp, "drho")[0]
+        lmp.command("run 1")
+        rho.append(by_id(lmp, "rho")[0])
+        assert drho == pytest.approx((rho[1] - rho[0]) / (2 * dt), rel=1e-4)
+        assert drho > 0
+
+
+def channel(walls, extra="", ratio=3.0, alpha=0.0, setting="tension yes", size=(8, 20)):
+    """2-D fluid between two walls in y, periodic in x; its lattice has rest density by summation"""
+    dx = H / ratio
+    n = np.arange(-5, 6)
+    q = np.hypot(n[:, None], n[None]) / ratio
+    norm, shape, _, _ = KERNELS["wendland/c2"]
+    lattice_sum = norm[2] / ratio**2 * np.where(q < 1, shape(np.minimum(q, 1)), 0).sum()
+    lx, ly = size[0] * dx, size[1] * dx
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        dimension 2
+        atom_style sph
+        comm_modify vel yes
+        boundary p f p
+        region box block 0 {lx} {-H} {ly + H} {-dx} {dx}
+        create_box 1 box
+        mass 1 {RHO0 * dx * dx / lattice_sum}
+        lattice sq {dx} origin 0.5 0.5 0
+        region water block INF INF 0 {ly} INF INF units box
+        create_atoms 1 region water
+        pair_style sph/tait {H} {setting}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha {alpha}
+        neighbor {0.4 * dx} bin
+        thermo_modify norm no
+        variable ly equal {ly}
+        fix wall all wall/sph {walls.format(ly=ly)}
+        {extra}""")
+    return lmp, lx, ly
+
+
+def test_piston():
+    """A slow piston compresses by 4 %: both walls carry the pressure that the fluid has."""
+    lmp, lx, ly = channel(
+        "ylo 0 yhi v_place slip yes",
+        alpha=1.0,
+        size=(8, 40),
+        extra="""
+        variable place equal v_ly*(1-0.04*ramp(0,1)^2*(3-2*ramp(0,1)))
+        timestep 2e-4
+        fix step all sph/integrate constant
+        run 4000
+        variable place equal v_ly*0.96
+        fix mean all ave/time 1 2000 2000 f_wall[2] f_wall[5]
+        run 4000""",
+    )
+    bottom, top = (lmp.extract_fix("mean", 0, 1, k) / lx for k in range(2))
+    y, rho = by_id(lmp, "x")[:, 1], by_id(lmp, "rho")
+    inside = (y > H) & (y < 0.96 * ly - H)
+    assert tait(rho[inside]).mean() > 0.5 * C0**2 * RHO0 * 0.04
+    assert top == pytest.approx(-bottom, rel=5e-3)
+    assert top == pytest.approx(tait(rho[inside]).mean(), rel=2e-2)
+
+
+def test_work_of_a_piston():
+    """What the piston gives is what the fluid's energy gains (no viscosity)."""
+    lmp, _, ly = channel(
+        "ylo 0 yhi v_place slip yes",
+        size=(8, 9),
+        extra="""
+        variable place equal v_ly*(1-0.5*time)
+        thermo_style custom step pe ke etotal
+        fix_modify wall energy yes
+        timestep 5e-5
+        fix move all nve
+        run 0 post no""",
+    )
+    energy, force = [lmp.get_thermo("etotal")], [lmp.extract_fix("wall", 0, 1, 4)]
+    for _ in range(400):
+        lmp.command("run 1 pre no post no")
+        force.append(lmp.extract_fix("wall", 0, 1, 4))
+        energy.append(lmp.get_thermo("etotal"))
+    path = -ly * 0.5 * 5e-5
+    work = -path * np.sum(0.5 * (np.array(force[1:]) + force[:-1]))
+    assert work > energy[0]
+    assert energy[-1] - energy[0] == pytest.approx(work, rel=2e-3)
+
+
+# ---------------------------------------------------------------------- invariants
+
+SHAKEN = f"""
+variable dump index end.txt
+units si
+atom_style sph
+comm_modify vel yes
+boundary f f f
+read_data shaken.data
+pair_style sph/tait {H}
+pair_coeff 1 1 fluid {RHO0} c0 {C0} nu {NU} alpha 0.1
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+timestep 1e-3
+variable lid equal 0.45-0.4*time
+fix gravity all gravity 9.81 vector 0 0 -1
+fix wall all wall/sph xlo 0 xhi 0.4 ylo 0 yhi 0.4 zlo 0 zhi v_lid velocity zlo 1 0.5 0
+fix step all sph/integrate global
+thermo_style custom step time f_wall f_wall[1] f_wall[3] f_wall[18]
+thermo_modify norm no
+compute sum all reduce sum fx fy fz
+"""
+
+MAKE_SHAKEN = f"""
+units si
+atom_style sph
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.5 -0.1 0.5 -0.1 0.6
+create_box 1 box
+mass 1 0.125
+lattice sc 0.05 origin 0.5 0.5 0.5
+region water block 0 0.4 0 0.4 0 0.4 units box
+create_atoms 1 region water
+displace_atoms all random 0.01 0.01 0.01 77 units box
+velocity all set 1 -2 -1 units box
+pair_style sph/tait {H}
+pair_coeff 1 1 fluid {RHO0} c0 {C0}
+write_data shaken.data nocoeff
+"""
+
+END = "run 100\nwrite_dump all custom ${dump} id x y z vx vy vz modify sort id format float %.17g\n"
+
+
+def test_the_walls_get_what_the_fluid_gives(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run(write(tmp_path, MAKE_SHAKEN, "in.make"))
+    lmp = instance()
+    lmp.commands_string(SHAKEN + "unfix gravity\nrun 40")
+    on_fluid = by_id(lmp, "f").sum(axis=0)
+    on_walls = np.array([lmp.extract_fix("wall", 0, 1, k) for k in range(18)]).reshape(6, 3)
+    np.testing.assert_allclose(on_walls.sum(axis=0), -on_fluid, rtol=1e-10)
+    assert np.abs(on_walls).min(axis=0).max() > 0  # every wall is touched in every direction
+    # each wall is pushed out of the fluid
+    outwards = on_walls[np.arange(6), np.arange(6) // 2] * [-1, 1, -1, 1, -1, 1]
+    assert np.all(outwards > 0)
+
+
+def test_ranks(tmp_path):
+    run(write(tmp_path, MAKE_SHAKEN, "in.make"))
+    script = write(tmp_path, SHAKEN + END, "in.shaken")
+    tables = {}
+    for ranks in (1, 2, 4):
+        out = run(script, ranks=ranks, dump=f"end{ranks}.txt")
+        tables[ranks] = np.array(out.split("Loop time")[0].splitlines()[-2].split(), dtype=float)
+        difference = last_frame(tmp_path / f"end{ranks}.txt") - last_frame(tmp_path / "end1.txt")
+        assert np.abs(difference).max() < 1e-10
+        np.testing.assert_allclose(tables[ranks], tables[1], rtol=1e-7)
+
+
+def bounce(dt):
+    """Largest change of the energy while a block of 2-D water falls on the wall and bounces."""
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        dimension 2
+        atom_style sph
+        comm_modify vel yes
+        boundary p f p
+        region box block -1 1 -0.2 1 -0.05 0.05
+        create_box 1 box
+        lattice sq 0.05 origin 0.5 0.27 0
+        region drop block -0.1 0.1 0.1 0.3 INF INF units box
+        create_atoms 1 region drop
+        mass 1 2.1
+        displace_atoms all random 0.01 0.01 0 77 units box
+        velocity all set 0 -3 0 units box
+        pair_style sph/tait {H} tension yes
+        pair_coeff 1 1 fluid {RHO0} c0 {C0}
+        neighbor 0.03 bin
+        neigh_modify every 1 delay 0 check yes
+        fix move all nve
+        fix wall all wall/sph ylo 0
+        fix_modify wall energy yes
+        thermo_modify norm no
+        thermo_style custom step pe ke etotal
+        timestep {dt}
+        run 0""")
+    energy, force = [lmp.get_thermo("etotal")], 0.0
+    for _ in range(40):
+        lmp.command(f"run {round(1e-3 / dt)} post no")
+        energy.append(lmp.get_thermo("etotal"))
+        force = min(force, lmp.extract_fix("wall", 0, 1, 1))
+    assert force < -1e3  # it did meet the wall
+    return np.abs(np.array(energy) - energy[0]).max() / energy[0]
+
+
+def test_energy_is_kept_to_second_order():
+    coarse, fine = bounce(2e-4), bounce(1e-4)
+    assert coarse < 1e-2
+    assert coarse / fine == pytest.approx(4.0, abs=1.0)
+
+
+def test_virial_is_the_derivative_of_the_energy():
+    """The box shrinks in y with its content and the walls at its edges; pressure along y."""
+    lmp, lx, ly = channel("ylo EDGE yhi EDGE slip yes", size=(8, 9))
+    dx = H / 3
+    lmp.commands_string(f"""
+        mass 1 {1.1 * RHO0 * dx**2}
+        change_box all y final -0.003 {ly} units box
+        displace_atoms all random {0.2 * dx} {0.1 * dx} 0 5 units box
+        fix_modify wall virial yes
+        velocity all set 0 0 0
+        thermo_style custom pe pyy
+        run 0""")
+    pressure, size, energy = lmp.get_thermo("pyy"), 1e-5, []
+    for scale in (1 + size, (1 - size) / (1 + size)):
+        lmp.command(f"change_box all y scale {scale} remap")
+        lmp.command("run 0")
+        energy.append(lmp.get_thermo("pe"))
+    area = lx * (ly + 0.003)
+    assert pressure == pytest.approx(-(energy[0] - energy[1]) / (2 * size * area), rel=1e-4)
+    lmp.command("fix_modify wall virial no")
+    lmp.command("run 0")
+    assert lmp.get_thermo("pyy") < 0.97 * pressure
+
+
+# ---------------------------------------------------------------------- nothing passes
+
+
+@pytest.mark.parametrize("ratio", [2.0, 3.0])
+@pytest.mark.parametrize("speed", [0.1, 0.5, 0.95])
+@pytest.mark.parametrize("what", ["region drop", "single 0 0.1 0.3 units box"])
+def test_what_is_slower_than_sound_is_turned_back(what, speed, ratio):
+    """A drop, and a lone particle, whose own density would not stop it."""
+    dx = H / ratio
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        atom_style sph
+        comm_modify vel yes
+        boundary f f f
+        region box block -4 4 -4 4 -0.3 4
+        create_box 1 box
+        mass 1 {RHO0 * dx**3}
+        lattice sc {dx} origin 0.31 0.12 0.17
+        region drop sphere 0 0 0.2 0.1 units box
+        create_atoms 1 {what}
+        velocity all set 0 0 {-speed * C0} units box
+        pair_style sph/tait {H}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0}
+        neighbor 0.03 bin
+        timestep 1e-3
+        fix step all sph/integrate global
+        fix wall all wall/sph zlo 0
+        run 0 post no""")
+    lowest, start = math.inf, lmp.get_natoms()
+    for _ in range(round(20 + 40 / speed)):
+        lmp.command("run 1 pre no post no")
+        lowest = min(lowest, by_id(lmp, "x")[:, 2].min())
+    assert lmp.get_natoms() == start
+    # what is pushed from behind gets deeper than its own speed carries it
+    assert -H * (0.5 if speed < 0.9 else 1.0) < lowest < 0.5 * H
+    assert by_id(lmp, "v")[:, 2].mean() > 0
+
+
+def test_a_particle_far_behind_the_wall_is_an_error():
+    with pytest.raises(Exception, match=r"fix wall wall/sph: particle 1 is behind the wall xlo"):
+        particle("-0.11 0 0", "xlo 0")
+
+
+# ---------------------------------------------------------------------- flows
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_floor_carries_the_weight(dim):
+    dx = 0.05
+    up = "y" if dim == 2 else "z"
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        dimension {dim}
+        atom_style sph
+        comm_modify vel yes
+        boundary {"p f p" if dim == 2 else "p p f"}
+        region box block 0 0.2 {"-0.2 0.6 -0.025 0.025" if dim == 2 else "0 0.2 -0.2 0.6"}
+        create_box 1 box
+        mass 1 {RHO0 * dx**dim}
+        lattice {"sq" if dim == 2 else "sc"} {dx} origin 0.5 0.5 {0 if dim == 2 else 0.5}
+        region water block INF INF {"0 0.4 INF INF" if dim == 2 else "INF INF 0 0.4"} units box
+        create_atoms 1 region water
+        pair_style sph/tait {3 * dx}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha 0.5
+        neighbor 0.03 bin
+        timestep 0.002
+        fix gravity all gravity 9.81 vector {"0 -1 0" if dim == 2 else "0 0 -1"}
+        fix step all sph/integrate global
+        fix wall all wall/sph {up}lo 0
+        fix mean all ave/time 1 1000 1000 f_wall[{dim}]
+        run 4000""")
+    weight = by_id(lmp, "x").shape[0] * RHO0 * dx**dim * 9.81
+    assert -lmp.extract_fix("mean", 0, 0) == pytest.approx(weight, rel=1e-3)
+    height = by_id(lmp, "x")[:, dim - 1]
+    # the layer may settle on the plane itself
+    assert -0.1 * dx < height.min() < 0.5 * dx
+
+
+L, NU_MORRIS, V0, BODY = 1e-3, 1e-6, 1.25e-5, 1e-4
+
+
+def couette(y, t):
+    u = V0 * y / L
+    for n in range(1, 200):
+        decay = math.exp(-NU_MORRIS * (n * math.pi / L) ** 2 * t)
+        u = u + 2 * V0 / (n * math.pi) * (-1) ** n * np.sin(n * math.pi * y / L) * decay
+    return u
+
+
+def poiseuille(y, t):
+    u = BODY / (2 * NU_MORRIS) * y * (L - y)
+    for n in range(1, 200, 2):
+        decay = math.exp(-NU_MORRIS * (n * math.pi / L) ** 2 * t)
+        u = (
+            u
+            - 4
+            * BODY
+            * L**2
+            / (NU_MORRIS * (n * math.pi) ** 3)
+            * np.sin(n * math.pi * y / L)
+            * decay
+        )
+    return u
+
+
+@pytest.mark.parametrize(("exact", "limit"), [(couette, 0.005), (poiseuille, 0.01)])
+def test_start_up_between_walls(exact, limit):
+    """Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214, with 40 particles across."""
+    dx = L / 40
+    lid = f"velocity yhi {V0} 0 0" if exact is couette else ""
+    drive = "" if exact is couette else f"fix drive all gravity {BODY} vector 1 0 0"
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        dimension 2
+        atom_style sph
+        comm_modify vel yes
+        boundary p f p
+        region box block 0 {8 * dx} {-3 * dx} {L + 3 * dx} {-dx} {dx}
+        create_box 1 box
+        lattice sq {dx} origin 0.5 0.5 0
+        region water block INF INF 0 {L} INF INF units box
+        create_atoms 1 region water
+        mass 1 {RHO0 * dx**2}
+        pair_style sph/tait {3 * dx} tension yes
+        pair_coeff 1 1 fluid {RHO0} c0 {20 * V0} nu {NU_MORRIS}
+        neighbor {0.5 * dx} bin
+        timestep 1
+        fix step all sph/integrate global
+        fix wall all wall/sph ylo 0 yhi {L} {lid}
+        {drive}""")
+    for t in (0.0225, 0.045, 0.1125, 0.225, 1.0):
+        lmp.commands_string(f"""
+            variable reached equal time>={t}
+            fix stop all halt 1 v_reached >= 1 error continue message no
+            run 100000 post no
+            unfix stop""")
+        y, u = by_id(lmp, "x")[:, 1], by_id(lmp, "v")[:, 0]
+        expected = exact(y, lmp.get_thermo("time"))
+        assert np.linalg.norm(u - expected) < limit * np.linalg.norm(expected)
+
+
+@pytest.mark.parametrize("flow", [{}, {"lid": 0.0, "drive": 1e-4}])
+def test_drag_in_the_example(flow, tmp_path):
+    """The plates take up what viscosity carries: the last line of the log of in.couette."""
+    example = Path(__file__).parents[2] / "examples" / "couette" / "in.couette"
+    script = write(tmp_path, example.read_text(), "in.couette")
+    run(script, ranks=2, n=20, **flow)
+    line = re.findall(r"^  - \[(.*)\]", (tmp_path / "log.lammps").read_text(), re.MULTILINE)[-1]
+    time, _, lower, steady_lower, upper, steady_upper = map(float, line.strip(", ").split(",")[1:])
+    assert time > 0.85  # all but 2e-4 of the transient is over
+    assert lower == pytest.approx(steady_lower, rel=1e-2)
+    assert upper == pytest.approx(steady_upper, rel=1e-2)
+
+
+def test_slip_walls_leave_a_uniform_flow_alone():
+    lmp, _, _ = channel(
+        "ylo 0 yhi {ly} slip yes",
+        extra="""
+        pair_coeff 1 1 fluid 1000 c0 20 nu 0.01
+        velocity all set 1 0 0 units box
+        timestep 1e-4
+        fix step all sph/integrate constant
+        run 500""",
+    )
+    np.testing.assert_allclose(by_id(lmp, "v")[:, 0], 1.0, rtol=1e-12)
+
+
+# ---------------------------------------------------------------------- errors
+
+BOX = f"""
+units si
+dimension {{dim}}
+atom_style sph
+comm_modify vel yes
+boundary {{boundary}}
+region box {{box}}
+create_box 1 box
+mass 1 0.1
+pair_style sph/tait {H}
+pair_coeff 1 1 fluid 1000 c0 20
+"""
+
+
+def box(dim=3, boundary="f f f", box="block -1 1 -1 1 -1 1"):
+    if dim == 2:
+        boundary, box = "f f p", "block -1 1 -1 1 -0.05 0.05"
+    return BOX.format(dim=dim, boundary=boundary, box=box)
+
+
+WALL = "fix wall all wall/sph "
+PRISM = "prism -1 1 -1 1 -1 1 "
+ERRORS = {
+    "no face": (box() + WALL, r"fix wall wall/sph: face is missing"),
+    "no such face": (box() + WALL + "left 0", r"face is 'left'.*xlo, xhi"),
+    "face twice": (box() + WALL + "xlo 0 xlo 0.5", r"face is 'xlo': give each face once"),
+    "no position": (box() + WALL + "xlo", r"position of xlo is missing"),
+    "position": (box() + WALL + "xlo edge", r"position of xlo is 'edge': give a finite number"),
+    "z in 2-D": (box(2) + WALL + "ylo 0 zlo 0", r"face is 'zlo'.*2-D"),
+    "keyword": (box() + WALL + "xlo 0 friction 3", r"unknown keyword 'friction'.*slip, velocity"),
+    "face behind a keyword": (box() + WALL + "xlo 0 slip no ylo 0", r"'ylo'.*before the keywords"),
+    "slip": (box() + WALL + "xlo 0 slip half", r"slip is 'half': use yes or no"),
+    "velocity of no wall": (box() + WALL + "xlo 0 velocity ylo 1 0 0", r"'ylo'.*face with a wall"),
+    "velocity short": (box() + WALL + "xlo 0 velocity xlo 0 1", r"velocity of xlo is missing"),
+    "velocity across": (
+        box() + WALL + "xlo 0 velocity xlo 1 0 0",
+        r"across the wall is '1.*give 0",
+    ),
+    "velocity in z": (box(2) + WALL + "xlo 0 velocity xlo 0 0 1", r"in z is '1.*2-D"),
+    "no variable": (box() + WALL + "xlo v_who\nrun 0", r"'v_who': define an equal-style variable"),
+    "variable style": (
+        box() + "variable who atom x\n" + WALL + "xlo v_who\nrun 0",
+        r"'v_who': define an equal-style variable",
+    ),
+    "variable not finite": (
+        box() + "variable who equal exp(1e9)\n" + WALL + "xlo v_who\nrun 0",
+        r"position of xlo is 'inf'.*correct variable who",
+    ),
+    "periodic": (
+        box(boundary="p f f") + WALL + "xlo 0\nrun 0",
+        r"xlo is a wall across a periodic dimension.*boundary f",
+    ),
+    "shrink-wrapped edge": (
+        box(boundary="f s f") + WALL + "ylo EDGE\nrun 0",
+        r"'EDGE', which follows the particles.*boundary f",
+    ),
+    "no pair style": (
+        box().replace("sph/tait 0.1", "zero 0.1").replace("fluid 1000 c0 20", "")
+        + WALL
+        + "xlo 0\nrun 0",
+        r"pair_style zero has no density.*sph/tait",
+    ),
+    "second fix": (
+        box() + WALL + "xlo 0\nfix more all wall/sph ylo 0\nrun 0",
+        r"another fix wall/sph: give all faces to one",
+    ),
+    "tilted x": (
+        box(boundary="f p p", box=PRISM + "0.2 0 0") + WALL + "xlo 0\nrun 0",
+        r"face of the box at xlo is tilted.*0",
+    ),
+    "tilted y": (
+        box(boundary="p f p", box=PRISM + "0 0 0.2") + WALL + "yhi 0\nrun 0",
+        r"face of the box at yhi is tilted",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ERRORS)
+def test_errors(name):
+    script, message = ERRORS[name]
+    lmp = instance()
+    with pytest.raises(Exception, match=message):
+        lmp.commands_string(script)
+
+
+def test_a_box_that_is_tilted_along_the_wall_is_fine():
+    lmp = instance()
+    # z faces stay level, x and y are periodic and slanted
+    lmp.commands_string(box(boundary="p p f", box=PRISM + "0.3 0 0") + WALL + "zlo 0\nrun 0")

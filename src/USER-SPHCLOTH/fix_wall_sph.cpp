@@ -35,7 +35,7 @@ static int face_of(const std::string &name)
 
 FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
-    any_variable(false), last_time(-1.0), summed(false)
+    any_variable(false), reflection(1.0), last_time(-1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
@@ -45,10 +45,13 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
       const std::string choice = args.word(keyword);
       if (choice != "yes" && choice != "no") args.fail(keyword, choice, "use yes or no");
       slip = choice == "yes";
-    } else if (keyword == "velocity")
+    } else if (keyword == "pressure")
+      reflection = args.choice(keyword, {"own", "mirror"}) ? 2.0 : 1.0;
+    else if (keyword == "velocity")
       read_velocity(args);
     else
-      args.unknown(keyword, "xlo, xhi, ylo, yhi, zlo, zhi before the keywords slip, velocity");
+      args.unknown(keyword,
+                   "xlo, xhi, ylo, yhi, zlo, zhi before the keywords slip, pressure, velocity");
   }
 
   scalar_flag = vector_flag = 1;
@@ -266,7 +269,7 @@ void FixWallSPH::push(int i, double pressure_term)
     const double friction =
         nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support);
 
-    const double pressure = stop - pressure_term * slope(i, k);    // per mass, away from the wall
+    const double pressure = stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
                                      : -friction * (v[d] - wall.velocity[d]);

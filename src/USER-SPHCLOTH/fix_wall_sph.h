@@ -65,6 +65,7 @@ class FixWallSPH : public Fix {
   PairSPHTait *pair;
   std::vector<Wall> walls;
   bool slip, any_variable;
+  double reflection;    // 1, and the pressure behind the plane over the particle's own
   double last_time;    // of the positions, < 0: none yet
   sphcloth::WallTable table;
 

@@ -28,7 +28,8 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), walls(nullptr), measure_volume(false), active(nullptr),
+    Pair(lmp), materials(lmp), walls(nullptr), measure_volume(false),
+    extrapolate(false), active(nullptr),
     active_column(0), elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
@@ -126,9 +127,11 @@ void PairSPHTait::init_style()
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
 
   create_fluid();
-  measure_volume = false;
-  for (int i = 1; i <= atom->ntypes; i++)
+  measure_volume = extrapolate = false;
+  for (int i = 1; i <= atom->ntypes; i++) {
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
+    if (materials.extrapolates(i)) extrapolate = true;
+  }
 }
 
 void PairSPHTait::create_fluid()
@@ -215,6 +218,7 @@ void PairSPHTait::compute(int eflag, int vflag)
   pressures(p);
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
+  if (extrapolate) boundary_pressures(p);
   fluid->record(p);
 
   fluid->forces(
@@ -391,6 +395,13 @@ void PairSPHTait::pressures(const Particles &p)
     if (!options.tension) pressure_i = std::max(pressure_i, 0.0);
     pressure[i] = pressure_i / (rho * rho);
   });
+}
+
+void PairSPHTait::boundary_pressures(const Particles &p)
+{
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (materials.extrapolates(t)) fluid->boundary_pressures(p, t, pressure.data());
+  comm->forward_comm(this, 2);
 }
 
 // internal energy of the fluid: what compression has stored

@@ -97,7 +97,7 @@ class PairSPHTait : public Pair {
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
   FixWallSPH *walls;    // null without plane walls
-  bool measure_volume;
+  bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
   // scratch, kept from step to step
@@ -120,6 +120,7 @@ class PairSPHTait : public Pair {
   void integrate_density(const sphcloth::Particles &);
   void pressures(const sphcloth::Particles &);
   void check_densities() const;
+  void boundary_pressures(const sphcloth::Particles &);
   void tally_energy(const sphcloth::Particles &);
   template <class F> void for_each_fluid(const sphcloth::Particles &, F &&) const;
 };

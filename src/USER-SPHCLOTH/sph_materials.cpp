@@ -17,6 +17,8 @@ using namespace sphcloth;
 
 static const std::string COEFF = "pair_coeff (sph/tait)";
 
+static const std::vector<std::string> PRESSURES = {"own", "mirror", "extrapolate"};
+
 void SPHMaterials::allocate()
 {
   const int n = atom->ntypes + 1;
@@ -114,12 +116,15 @@ SPHMaterials::TypeData SPHMaterials::read_boundary(ArgReader &args) const
   t.role = Role::BOUNDARY;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword != "volume") args.unknown(keyword, "volume");
-    if (std::strcmp(args.more() ? args.peek() : "", "auto") == 0) {
+    if (keyword == "volume" && args.more() && std::strcmp(args.peek(), "auto") == 0) {
       args.word("volume");
       t.volume = 0.0;
-    } else
+    } else if (keyword == "volume")
       t.volume = args.positive("volume");
+    else if (keyword == "pressure")
+      t.pressure = static_cast<Pressure>(args.choice(keyword, PRESSURES));
+    else
+      args.unknown(keyword, "volume, pressure");
   }
   return t;
 }
@@ -190,6 +195,8 @@ PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
   t.soft = 0.01 * smoothing * smoothing;
   t.rho0 = a.eos.rho0;
   t.stiffness = own.stiffness > 0.0 ? own.stiffness / a.eos.k : 1.0;
+  for (int k : {i, j})
+    if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;
   return t;
 }
 
@@ -229,9 +236,11 @@ std::string SPHMaterials::words(int i, int j) const
   const auto add = [&](const char *keyword, double value) {
     text += fmt::format(" {} {:.17g}", keyword, value);
   };
-  if (i == j && is_boundary(i))
-    return types[i].volume > 0.0 ? fmt::format("boundary volume {:.17g}", types[i].volume)
-                                 : "boundary volume auto";
+  if (i == j && is_boundary(i)) {
+    text = "boundary pressure " + PRESSURES[static_cast<int>(types[i].pressure)];
+    if (types[i].volume > 0.0) add("volume", types[i].volume);
+    return text;
+  }
   if (i == j) {
     const TypeData &t = types[i];
     text = "fluid";

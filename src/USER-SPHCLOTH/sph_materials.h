@@ -18,11 +18,15 @@ class SPHMaterials : protected Pointers {
  public:
   SPHMaterials(class LAMMPS *lmp) : Pointers(lmp) {}
 
+  // of a boundary: none of its own; as much as each fluid particle; the mean of the fluid around it
+  enum class Pressure : int { OWN, MIRROR, EXTRAPOLATE };
+
   struct TypeData {
     sphcloth::Role role = sphcloth::Role::NONE;
     sphcloth::Tait eos;
     double nu = 0.0, alpha = 0.0;
     double volume = 0.0;    // of a boundary particle; 0: from the particles around it
+    Pressure pressure = Pressure::EXTRAPOLATE;
   };
 
   // forgets everything
@@ -34,6 +38,10 @@ class SPHMaterials : protected Pointers {
   const TypeData &type(int i) const { return types[i]; }
   bool is_fluid(int i) const { return types[i].role == sphcloth::Role::FLUID; }
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
+  bool extrapolates(int i) const
+  {
+    return is_boundary(i) && types[i].pressure == Pressure::EXTRAPOLATE;
+  }
   double support(int i, int j) const;
   // laminar and artificial together
   double viscosity(int i) const;

@@ -122,12 +122,14 @@ def test_kernel_choice():
     np.testing.assert_allclose(by_id(lmp, "rho")[0], cubic * (1.0 + 1.5 * 0.25), rtol=1e-14)
 
 
-def test_boundary_counts_with_its_own_volume_and_pushes_back():
+@pytest.mark.parametrize(("pressure", "factor"), [("own", 1), ("mirror", 2), ("extrapolate", 2)])
+def test_boundary_counts_with_its_own_volume_and_pushes_back(pressure, factor):
     volume, r = 2e-4, 0.03
     coeff = f"fluid {RHO0} c0 {C0}"
-    lmp = two_particles(r, coeff=coeff, second=f"pair_coeff 2 2 boundary volume {volume}")
+    second = f"pair_coeff 2 2 boundary volume {volume} pressure {pressure}"
+    lmp = two_particles(r, coeff=coeff, second=second)
     rho = wendland(0) + RHO0 * volume * wendland(r)
-    force = -RHO0 * volume * tait(rho) / rho**2 * wendland_slope(r)
+    force = -factor * RHO0 * volume * tait(rho) / rho**2 * wendland_slope(r)
     np.testing.assert_allclose(by_id(lmp, "rho")[0], rho, rtol=1e-14)
     np.testing.assert_allclose(by_id(lmp, "f")[:, 0], [-force, force], rtol=1e-12)
 
@@ -399,3 +401,33 @@ def test_mixed_precision_does_not_depend_on_where_the_box_is():
 
     near, far = forces(0.0), forces(1000.0)
     np.testing.assert_allclose(far, near, atol=1e-5 * np.abs(near).max())
+
+
+def test_boundary_takes_the_mean_pressure_of_the_fluid_around_it():
+    """Two fluid particles of unequal density at unequal distances of one wall particle."""
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        atom_style sph
+        comm_modify vel yes
+        region box block -1 1 -1 1 -1 1
+        create_box 3 box
+        mass * 1.0
+        mass 2 1.4
+        create_atoms 1 single 0.04 0 0
+        create_atoms 2 single -0.07 0 0
+        create_atoms 3 single 0 0 0
+        pair_style sph/tait {H}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0}
+        pair_coeff 2 2 fluid {RHO0} c0 {C0}
+        pair_coeff 3 3 boundary volume 1e-4
+        neighbor 0.02 bin
+        run 0""")
+    rho = by_id(lmp, "rho")[:2]
+    p = tait(rho) / rho**2
+    w = wendland(np.array([0.04, 0.07]))
+    at_wall = (w * p).sum() / w.sum()
+    slope = wendland_slope(np.array([0.04, 0.07]))
+    force = -np.array([1.0, 1.4]) * 1e-4 * RHO0 * (p + at_wall) * slope * np.array([1, -1])
+    np.testing.assert_allclose(by_id(lmp, "f")[:2, 0], force, rtol=1e-12)
+    np.testing.assert_allclose(by_id(lmp, "f")[2, 0], -force.sum(), rtol=1e-12)

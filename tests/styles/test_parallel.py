@@ -56,6 +56,7 @@ def test_contact_between_ranks(scene):
     script = DROP.replace("c0 30 alpha 0.1 nu 1e-3", "c0 1e-3") + END
     script = script.replace("sph/integrate global", "sph/integrate constant")
     script = script.replace("timestep 0.002", "timestep 5e-4").replace("0.015", "0.02")
+    script = script.replace("2 2 boundary", "2 2 boundary pressure own")
     out = run(write(scene, script, "in.rain"), dump="rain1.txt")
     contacts, crossed = out.split("Loop time")[0].split("\n")[-2].split()[-2:]
     assert float(contacts) > 100 and float(crossed) == 0

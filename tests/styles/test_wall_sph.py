@@ -619,7 +619,10 @@ ERRORS = {
     "no position": (box() + WALL + "xlo", r"position of xlo is missing"),
     "position": (box() + WALL + "xlo edge", r"position of xlo is 'edge': give a finite number"),
     "z in 2-D": (box(2) + WALL + "ylo 0 zlo 0", r"face is 'zlo'.*2-D"),
-    "keyword": (box() + WALL + "xlo 0 friction 3", r"unknown keyword 'friction'.*slip, velocity"),
+    "keyword": (
+        box() + WALL + "xlo 0 friction 3",
+        r"unknown keyword 'friction'.*slip, pressure, velocity",
+    ),
     "face behind a keyword": (box() + WALL + "xlo 0 slip no ylo 0", r"'ylo'.*before the keywords"),
     "slip": (box() + WALL + "xlo 0 slip half", r"slip is 'half': use yes or no"),
     "velocity of no wall": (box() + WALL + "xlo 0 velocity ylo 1 0 0", r"'ylo'.*face with a wall"),

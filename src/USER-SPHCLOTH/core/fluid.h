@@ -101,6 +101,9 @@ class Fluid {
   // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
   virtual void smooth_densities(const Particles &, double *smooth) = 0;
 
+  // p/rho^2 of the boundary particles of a type: the mean of the fluid around each, weighted with W
+  virtual void boundary_pressures(const Particles &, int type, double *pressure) = 0;
+
   // Records density, volume, velocity and pressure of all particles.
   virtual void record(const Particles &) = 0;
 

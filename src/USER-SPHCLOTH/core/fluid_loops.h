@@ -44,6 +44,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void gather(const Particles &, bool sum) override;
   void density_rates(const Particles &p, double *rate) override { all_density_rates(p, rate); }
   void smooth_densities(const Particles &, double *smooth) override;
+  void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
   void forces(const Particles &, Receiver, void *context) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -104,6 +105,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void record_all(const Particles &);
   void all_density_rates(const Particles &, double *rate);
 
+  static double weight(const Particles &, int i, int j, const KernelScale &);
   void make_room();
   int inside(int i, const Stretch &, double support_sq, int *near);
   double kernel_sum(int n, Real inv_support);
@@ -402,9 +404,8 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 }
 
 // One fluid particle f and one boundary particle b: the force between them over m_f V_b.
-// The pressure term is the gradient of the fluid's energy with the density sum that the boundary
-// takes part in.  A boundary that mirrors the fluid's pressure, twice this term, holds the first
-// layer further off, but is not a gradient and heats resting water.
+// The pressure of the boundary particle is 0 unless it was given one.  Without it the term is the
+// gradient of the fluid's energy with the density sum that the boundary takes part in.
 // ON_BOUNDARY = false: i is fluid, the result is an acceleration.  ON_BOUNDARY = true: i is
 // boundary, its neighbours are fluid, the result is a force per volume.
 
@@ -435,7 +436,7 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
         const Real v_dot_r = du * dx + dv * dy + dw * dz;
         const Real rho = ON_BOUNDARY ? c.own[k] : site.own;
 
-        Real along = t.stiffness * (ON_BOUNDARY ? c.pressure[k] : motion.pressure);
+        Real along = t.stiffness * (motion.pressure + c.pressure[k]);
         Real friction = 0;
         if (F != Friction::NONE) {
           along -= t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
@@ -580,10 +581,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
         const PairTerms &terms = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
-          const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
-                       dz = p.x[3 * i + 2] - p.x[3 * j + 2];
-          const double q = std::sqrt(dx * dx + dy * dy + dz * dz) * terms.kernel.inv_support;
-          const double w = p.amount[j] * terms.kernel.w * K::shape(q);
+          const double w = p.amount[j] * weight(p, i, j, terms.kernel);
           mass += is_fluid(other) ? w : terms.rho0 * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }
@@ -591,6 +589,37 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       smooth[i] = mass / volume;
     }
   }
+}
+
+// Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, without the weight of the fluid between.
+
+template <class K, class P>
+void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *pressure)
+{
+  for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+    const int i = lists.at(slot);
+    double sum = 0.0, weights = 0.0;
+    for (int other = 1; other <= model.n_types; other++) {
+      if (!is_fluid(other)) continue;
+      const Stretch found = near(slot, other);
+      for (int k = 0; k < found.n; k++) {
+        const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
+        sum += w * p.pressure[found.of[k]];
+        weights += w;
+      }
+    }
+    pressure[i] = weights > 0.0 ? sum / weights : 0.0;
+  }
+}
+
+// W of a pair, for what is not evaluated at every step or for every particle
+
+template <class K, class P>
+double FluidLoops<K, P>::weight(const Particles &p, int i, int j, const KernelScale &s)
+{
+  const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
+               dz = p.x[3 * i + 2] - p.x[3 * j + 2];
+  return s.w * K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * s.inv_support);
 }
 
 /* ---------------------------------------------------------------------- */

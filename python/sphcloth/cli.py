@@ -113,6 +113,30 @@ def validate(
     raise typer.Exit(0 if result.passed else 1)
 
 
+@app.command()
+def bench(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: pair.")],
+    rounds: Annotated[int, typer.Option(min=1, help="How often everything is measured.")] = 5,
+    across: Annotated[
+        int, typer.Option(min=8, max=200, help="Particles along an edge of the block.")
+    ] = 48,
+    steps: Annotated[int, typer.Option(min=5, help="Length of a timed run.")] = 30,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the figures here.")
+    ] = None,
+) -> None:
+    """Measure speed as ratios, side by side in one run, with the spread."""
+    import json
+
+    from sphcloth.bench.pair import bench_pair
+
+    if name != "pair":
+        raise UserError(f"no benchmark '{name}': use pair")
+    figures = bench_pair(rounds, across, steps, Console())
+    if json_file is not None:
+        json_file.write_text(json.dumps(figures, indent=2) + "\n")
+
+
 def main() -> None:
     """Run the command line; a mistake of the user's is one line and exit code 2."""
     try:

@@ -42,6 +42,28 @@ template <class Key> void check_compact()
   }
 }
 
+// in front those below the limit, behind them the others, both in order; the rest is not touched
+
+template <class Key, class Partition> void check_partition(const Partition &part)
+{
+  for (int n = 0; n < 70; n++) {
+    std::vector<Key> key(n + 32);
+    std::vector<int> index(n + 32), spare(n + 32), kept, others;
+    const Key limit = static_cast<Key>(0.6);
+    for (int k = 0; k < n + 32; k++) {
+      key[k] = static_cast<Key>(uniform());
+      index[k] = 100 + k;
+      if (k < n) (key[k] < limit ? kept : others).push_back(index[k]);
+    }
+    const std::vector<Key> before = key;
+    const int m = part(key.data(), index.data(), n, limit, spare.data());
+    kept.insert(kept.end(), others.begin(), others.end());
+    CHECK(m == n - static_cast<int>(others.size()));
+    for (int k = 0; k < n + 32; k++) CHECK(index[k] == (k < n ? kept[k] : 100 + k));
+    for (int k = 0; k < m; k++) CHECK(key[k] == before[kept[k] - 100]);
+  }
+}
+
 template <class Lane, class Last> void check_columns()
 {
   struct Record {
@@ -71,6 +93,14 @@ CASE("compaction keeps what is below the limit, in order")
 {
   check_compact<float>();
   check_compact<double>();
+}
+
+CASE("partition of a list in place")
+{
+  check_partition<float>([](auto... a) { return partition(a...); });
+  check_partition<double>([](auto... a) { return partition(a...); });
+  check_partition<float>([](auto... a) { return partition_plain(a...); });
+  check_partition<double>([](auto... a) { return partition_plain(a...); });
 }
 
 CASE("columns of records")

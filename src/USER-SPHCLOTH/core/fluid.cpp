@@ -22,12 +22,13 @@ void Fluid::list(const Particles &p, const double *reach)
     slot_of[lists.at(slot)] = slot;
     for (int t = 1; t <= model.n_types; t++) longest = std::max(longest, lists(slot, t).n);
   }
-  near.start(0, model.n_types);
+  inside.assign(static_cast<std::size_t>(lists.slots()) * model.n_types, 0);
 }
 
 double Fluid::bytes() const
 {
-  return lists.bytes() + near.bytes() + sizeof(int) * static_cast<double>(slot_of.capacity());
+  return lists.bytes() +
+      sizeof(int) * static_cast<double>(inside.capacity() + slot_of.capacity());
 }
 
 }    // namespace sphcloth

@@ -120,11 +120,16 @@ class Fluid {
   const NeighbourLists &order() const { return lists; }
   Stretch neighbours(int i, int type) const { return near(slot_of[i], type); }
   std::int64_t listed() const { return lists.size(); }
-  std::int64_t evaluated() const { return near.size(); }
 
  protected:
+  // the neighbours inside the support, in the last evaluation
+  Stretch near(int slot, int type) const
+  {
+    return {lists(slot, type).of, inside[static_cast<std::size_t>(slot) * model.n_types + type - 1]};
+  }
+
   NeighbourLists lists;
-  Stretches near;
+  std::vector<int> inside;    // [slot][type]: so many from the front of each list are near
   std::vector<int> slot_of;
   int longest = 0;    // number of neighbours in a list
 };

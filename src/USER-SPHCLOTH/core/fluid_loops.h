@@ -95,7 +95,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   AlignedVector<Coordinate> cx, cy, cz;    // of one particle's list
   AlignedVector<Real> unused, rsq;
 
-  std::vector<int> found_here;
+  std::vector<int> spare;
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
@@ -107,7 +107,7 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   static double weight(const Particles &, int i, int j, const KernelScale &);
   void make_room();
-  int inside(int i, const Stretch &, double support_sq, int *near);
+  void distances(int i, const Stretch &);
   double kernel_sum(int n, Real inv_support);
   double weighted_sum(const int *near, int n, Real inv_support, const double *amount);
   void sum_up(const Particles &, bool sum);
@@ -212,11 +212,10 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, con
    neighbours and density (1)
 ------------------------------------------------------------------------- */
 
-// Those of a list that are inside the support go to near, their squared distances to rsq.
+// squared distances of those in a list go to rsq
 
 template <class K, class P>
-SPHCLOTH_INLINE int FluidLoops<K, P>::inside(int i, const Stretch &list, double support_sq,
-                                             int *near)
+SPHCLOTH_INLINE void FluidLoops<K, P>::distances(int i, const Stretch &list)
 {
   const Site self = sites[i];
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
@@ -231,7 +230,6 @@ SPHCLOTH_INLINE int FluidLoops<K, P>::inside(int i, const Stretch &list, double 
                  dz = P::difference(self.z, z[k], qz);
       sq[k] = dx * dx + dy * dy + dz * dz;
     }
-  return compact(sq, list.of, list.n, static_cast<Real>(support_sq), sq, near);
 }
 
 template <class K, class P>
@@ -273,18 +271,17 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
     const double at_self = own.kernel.w * K::shape(0.0);
     for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
       const int i = lists.at(slot);
-      const bool wanted = !fluid || p.is_active(i);
+      if (fluid && !p.is_active(i)) continue;
       double rho = p.amount[i] * at_self;
       for (int other = 1; other <= n_types; other++) {
         const Stretch list = lists(slot, other);
-        if (list.n == 0 || !wanted || !(fluid || is_fluid(other))) {
-          near.close(0);
-          continue;
-        }
+        if (list.n == 0 || !(fluid || is_fluid(other))) continue;
         const PairTerms &terms = model.pair(t, other);
-        int *found = near.room(list.n);
-        const int n = inside(i, list, terms.kernel.support_sq, found);
-        near.close(n);
+        int *found = lists.open(slot, other);
+        distances(i, list);
+        const int n = partition(rsq.data(), found, list.n,
+                                static_cast<Real>(terms.kernel.support_sq), spare.data());
+        inside[static_cast<std::size_t>(slot) * n_types + other - 1] = n;
         if (!sum || !fluid || n == 0) continue;
         const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
         const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : terms.rho0;
@@ -292,16 +289,14 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
             (equal > 0.0 ? equal * kernel_sum(n, inv_support)
                          : each * weighted_sum(found, n, inv_support, p.amount));
       }
-      if (sum && fluid && wanted) p.rho[i] = rho;
+      if (sum && fluid) p.rho[i] = rho;
     }
   }
-  near.finish();
 }
 
 template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
 {
   make_room();
-  near.start(p.n_owned, model.n_types);
   sum_up(p, sum);
 }
 
@@ -314,7 +309,7 @@ template <class K, class P> void FluidLoops<K, P>::make_room()
   for (auto *column : {&cx, &cy, &cz}) column->resize(2 * room);
   unused.resize(2 * room);
   rsq.resize(2 * room);
-  found_here.resize(2 * room);
+  spare.resize(2 * room);
 }
 
 // The wall's or the sheet's share of space
@@ -328,7 +323,9 @@ void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const Stretch list = lists(slot, type);
     const int i = lists.at(slot);
-    const int n = inside(i, list, terms.kernel.support_sq, found_here.data());
+    distances(i, list);
+    const int n = compact(rsq.data(), list.of, list.n,
+                          static_cast<Real>(terms.kernel.support_sq), rsq.data(), spare.data());
     amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + kernel_sum(n, inv_support)));
   }
 }

@@ -43,11 +43,19 @@ class Stretches {
     const std::size_t s = static_cast<std::size_t>(slot) * types + type - 1;
     return {entries.data() + first[s], static_cast<int>(first[s + 1] - first[s])};
   }
+  int *open(int slot, int type)
+  {
+    return entries.data() + first[static_cast<std::size_t>(slot) * types + type - 1];
+  }
   // room for at most n more entries and the slack behind them
   int *room(int n)
   {
     const std::size_t need = first.back() + n + SLACK;
-    if (entries.size() < need) entries.resize(std::max(need, entries.size() + entries.size() / 2));
+    // lists are most of the memory: grow by little
+    if (entries.size() < need) {
+      entries.reserve(need + need / 16);
+      entries.resize(need + need / 16);
+    }
     return entries.data() + first.back();
   }
   void close(int n) { first.push_back(first.back() + n); }
@@ -93,6 +101,8 @@ class NeighbourLists {
   int slots() const { return static_cast<int>(order.size()); }
   int at(int slot) const { return order[slot]; }
   Stretch operator()(int slot, int t) const { return lists(slot, t); }
+  // a stretch whose order may be changed
+  int *open(int slot, int t) { return lists.open(slot, t); }
   std::int64_t size() const { return lists.size(); }
   double bytes() const
   {

@@ -131,7 +131,67 @@ inline int compact_plain(const Key *key, const int *index, int n, Key limit, Key
   return m;
 }
 
+// Partition: the same, but the indices stay in place, those kept in front and the others, for which
+// `spare` has room, behind them.  Nothing behind index[n - 1] is written.
+
+template <class Key>
+inline int partition_plain(Key *key, int *index, int n, Key limit, int *spare)
+{
+  int m = 0;
+  for (int k = 0; k < n; k++) {
+    const Key x = key[k];
+    const int j = index[k];
+    spare[k - m] = j;
+    index[m] = j;
+    key[m] = x;
+    m += x < limit;
+  }
+  std::memcpy(index + m, spare, (n - m) * sizeof(int));
+  return m;
+}
+
 #ifdef SPHCLOTH_X86_TARGETS
+
+__attribute__((target("avx512f,avx512vl"))) inline int
+partition_avx512(float *key, int *index, int n, float limit, int *spare)
+{
+  int m = 0;
+  for (int k = 0; k < n; k += 16) {
+    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __m512 x = _mm512_loadu_ps(key + k);
+    const __m512i j = _mm512_maskz_loadu_epi32(here, index + k);
+    const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);
+    const int kept = __builtin_popcount(keep);
+    _mm512_storeu_ps(key + m, _mm512_maskz_compress_ps(keep, x));
+    _mm512_storeu_si512(spare + k - m, _mm512_maskz_compress_epi32(here & ~keep, j));
+    _mm512_mask_storeu_epi32(index + m, static_cast<__mmask16>((1u << kept) - 1),
+                             _mm512_maskz_compress_epi32(keep, j));
+    m += kept;
+  }
+  std::memcpy(index + m, spare, (n - m) * sizeof(int));
+  return m;
+}
+
+__attribute__((target("avx512f,avx512vl"))) inline int
+partition_avx512(double *key, int *index, int n, double limit, int *spare)
+{
+  int m = 0;
+  for (int k = 0; k < n; k += 8) {
+    const __mmask8 here = n - k >= 8 ? 0xff : static_cast<__mmask8>((1u << (n - k)) - 1);
+    const __m512d x = _mm512_loadu_pd(key + k);
+    const __m256i j = _mm256_maskz_loadu_epi32(here, index + k);
+    const __mmask8 keep = _mm512_mask_cmp_pd_mask(here, x, _mm512_set1_pd(limit), _CMP_LT_OQ);
+    const int kept = __builtin_popcount(keep);
+    _mm512_storeu_pd(key + m, _mm512_maskz_compress_pd(keep, x));
+    _mm256_storeu_si256(reinterpret_cast<__m256i *>(spare + k - m),
+                        _mm256_maskz_compress_epi32(here & ~keep, j));
+    _mm256_mask_storeu_epi32(index + m, static_cast<__mmask8>((1u << kept) - 1),
+                             _mm256_maskz_compress_epi32(keep, j));
+    m += kept;
+  }
+  std::memcpy(index + m, spare, (n - m) * sizeof(int));
+  return m;
+}
 
 __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const float *key,
                                                                       const int *index, int n,
@@ -181,7 +241,18 @@ inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_
   return compact_plain(key, index, n, limit, key_out, index_out);
 }
 
+template <class Key> inline int partition(Key *key, int *index, int n, Key limit, int *spare)
+{
+  if (HAVE_AVX512) return partition_avx512(key, index, n, limit, spare);
+  return partition_plain(key, index, n, limit, spare);
+}
+
 #else
+
+template <class Key> inline int partition(Key *key, int *index, int n, Key limit, int *spare)
+{
+  return partition_plain(key, index, n, limit, spare);
+}
 
 template <class Key>
 inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_out, int *index_out)

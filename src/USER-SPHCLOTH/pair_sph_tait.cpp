@@ -459,10 +459,8 @@ void PairSPHTait::write_data(FILE *fp)
 void PairSPHTait::write_data_all(FILE *fp)
 {
   for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      const std::string words = materials.words(i, j);
-      if (!words.empty()) utils::print(fp, "{} {} {}\n", i, j, words);
-    }
+    for (int j = i; j <= atom->ntypes; j++)
+      utils::print(fp, "{} {} {}\n", i, j, materials.words(i, j));
 }
 
 double PairSPHTait::memory_usage()

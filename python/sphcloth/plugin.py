@@ -19,7 +19,9 @@ STYLES = (
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),
+    ("compute", "sph/atom"),
     ("command", "create_cloth"),
+    ("command", "sph_write"),
     ("run", "sph/adaptive"),
 )
 

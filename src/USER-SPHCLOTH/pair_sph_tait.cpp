@@ -63,6 +63,7 @@ void PairSPHTait::allocate()
 void PairSPHTait::settings(int narg, char **arg)
 {
   ArgReader args(lmp, STYLE, narg, arg);
+  forget_evaluation();
   options = Options();
   options.support = args.positive("support radius H");
   while (args.more()) {
@@ -120,22 +121,29 @@ void PairSPHTait::init_style()
                STYLE);
   active = nullptr;    // until a fix says who is
 
-  create_fluid();
+  // lists outlive init(): 'run pre no' goes on with them
+  if (!fluid) fluid = Fluid::create(options.kernel, options.precision);
+  set_model();
   measure_volume = false;
   for (int i = 1; i <= atom->ntypes; i++)
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
 }
 
-void PairSPHTait::create_fluid()
+void PairSPHTait::forget_evaluation()
 {
-  fluid = Fluid::create(options.kernel, options.precision);
+  fluid.reset();
+  evaluated_ids.clear();
+}
+
+void PairSPHTait::set_model()
+{
   FluidModel &model = fluid->model;
   const int n = atom->ntypes + 1;
   model.dimension = domain->dimension;
   model.n_types = atom->ntypes;
   model.friction = Friction::NONE;
   model.role.assign(n, Role::NONE);
-  model.mass.assign(n, 0.0);
+  model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
   reach.assign(n * n, 0.0);
   for (int i = 1; i < n; i++) model.role[i] = materials.type(i).role;
@@ -177,6 +185,7 @@ double PairSPHTait::init_one(int i, int j)
 void PairSPHTait::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
+  evaluated_ids.clear();
   const bool new_neighbours = neighbor->ago == 0;
   if (new_neighbours) {
     new_lists();
@@ -224,6 +233,7 @@ void PairSPHTait::compute(int eflag, int vflag)
         },
         this);
   if (eflag_either) tally_energy(p);
+  evaluated_ids.assign(atom->tag, atom->tag + atom->nlocal);
 }
 
 Particles PairSPHTait::particles()
@@ -353,12 +363,11 @@ void PairSPHTait::pressures(const Particles &p)
 {
   for_each_fluid(p, [&](int i, const Tait &eos) {
     const double rho = p.rho[i];
-    double pressure_i = eos.pressure(rho);
+    const double pressure_i = acting_pressure(eos, rho);
     if (!std::isfinite(pressure_i))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
-    if (!options.tension) pressure_i = std::max(pressure_i, 0.0);
     pressure[i] = pressure_i / (rho * rho);
   });
 }
@@ -368,11 +377,41 @@ void PairSPHTait::pressures(const Particles &p)
 void PairSPHTait::tally_energy(const Particles &p)
 {
   for_each_fluid(p, [&](int i, const Tait &eos) {
-    if (p.rho[i] < eos.rho0 && !options.tension) return;
-    const double e = amount[i] * eos.energy(p.rho[i]) * force->mvv2e;
+    const double e = amount[i] * stored_energy(eos, p.rho[i]) * force->mvv2e;
     if (eflag_global) eng_vdwl += e;
     if (eflag_atom) eatom[i] += e;
   });
+}
+
+double PairSPHTait::acting_pressure(const Tait &eos, double rho) const
+{
+  const double p = eos.pressure(rho);
+  return options.tension ? p : std::max(p, 0.0);
+}
+
+double PairSPHTait::stored_energy(const Tait &eos, double rho) const
+{
+  return rho < eos.rho0 && !options.tension ? 0.0 : eos.energy(rho);
+}
+
+/* ----------------------------------------------------------------------
+   what the last evaluation found
+------------------------------------------------------------------------- */
+
+bool PairSPHTait::evaluated() const
+{
+  return fluid &&
+      std::equal(evaluated_ids.begin(), evaluated_ids.end(), atom->tag, atom->tag + atom->nlocal);
+}
+
+double PairSPHTait::pressure_of(int i) const { return pressure[i] * atom->rho[i] * atom->rho[i]; }
+
+int PairSPHTait::count_neighbours(int i) const
+{
+  if (fluid->order().slots() == 0) return 0;    // a scene without fluid has no lists
+  int n = 0;
+  for (int t = 1; t <= atom->ntypes; t++) n += fluid->neighbours(i, t).n;
+  return n;
 }
 
 PairSPHTait::Wetting PairSPHTait::wetting(int i) const
@@ -428,6 +467,7 @@ void PairSPHTait::read_restart_settings(FILE *fp)
 {
   if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
   MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
+  forget_evaluation();
   materials.default_support = options.support;
 }
 

@@ -42,9 +42,18 @@ class PairSPHTait : public Pair {
 
   bool is_fluid(int itype) const { return materials.is_fluid(itype); }
   const sphcloth::Tait &equation_of_state(int itype) const { return materials.type(itype).eos; }
-  double support(int itype) const { return materials.support(itype, itype); }
+  double support(int itype) const { return support(itype, itype); }
+  double support(int itype, int jtype) const { return materials.support(itype, jtype); }
+  // was it said what this type is?
+  bool has_role(int itype) const { return allocated && setflag[itype][itype]; }
+  // do particles of these types look at each other at all?
+  bool interact(int itype, int jtype) const { return materials.reach(itype, jtype) > 0.0; }
   double viscosity(int itype) const { return materials.viscosity(itype); }
   sphcloth::KernelName kernel() const { return options.kernel; }
+
+  // what acts and what is stored, per mass, at a density: nothing below rest without tension
+  double acting_pressure(const sphcloth::Tait &, double rho) const;
+  double stored_energy(const sphcloth::Tait &, double rho) const;
 
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
@@ -55,6 +64,15 @@ class PairSPHTait : public Pair {
     double fluid_mass = 0.0, sound = 0.0;
   };
   Wetting wetting(int boundary_atom) const;
+
+  // Are the owned atoms those of the last evaluation?  Only then the following may be asked.
+  bool evaluated() const;
+
+  // mass or volume of an owned atom
+  double amount_of(int i) const { return amount[i]; }
+  double pressure_of(int i) const;
+  // of all roles that matter to it, inside the support; 0 if it was not active
+  int count_neighbours(int i) const;
 
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
@@ -98,11 +116,13 @@ class PairSPHTait : public Pair {
   double elapsed;
   std::vector<double> amount, pressure;    // per atom, owned and ghost
   std::vector<double> rate;
+  std::vector<tagint> evaluated_ids;    // of the owned atoms, none while there is no evaluation
   Stage stage;
 
   void allocate();
   void read_density(class ArgReader &);
-  void create_fluid();
+  void forget_evaluation();
+  void set_model();
   sphcloth::Particles particles();
   void new_lists();
   void measure_amounts(const sphcloth::Particles &, bool);

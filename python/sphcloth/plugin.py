@@ -20,7 +20,9 @@ STYLES = (
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),
     ("fix", "wall/sph"),
+    ("compute", "sph/atom"),
     ("command", "create_cloth"),
+    ("command", "sph_write"),
     ("run", "sph/adaptive"),
 )
 

@@ -74,6 +74,12 @@ class ArgReader : protected Pointers {
     return std::stoi(text);
   }
 
+  // nothing may be left
+  void end()
+  {
+    if (more()) error->all(FLERR, "{}: '{}' is one word too many: remove it", style, peek());
+  }
+
   // index of the word among those that are allowed
   int choice(const std::string &what, const std::vector<std::string> &allowed)
   {

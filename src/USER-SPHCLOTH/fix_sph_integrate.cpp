@@ -282,6 +282,12 @@ void FixSPHIntegrate::post_run()
   utils::logmesg(lmp, "{}: steps by limit:{}\n", label, line);
 }
 
+double FixSPHIntegrate::own_step(int i) const
+{
+  // nobody asks for limits where the step is constant
+  return scheme == SteppingScheme::CONSTANT ? update->dt : state[i][OWN_STEP];
+}
+
 double FixSPHIntegrate::compute_scalar() { return update->dt; }
 
 // limit in force, active fraction, particle updates, largest compression, steps clamped at min,

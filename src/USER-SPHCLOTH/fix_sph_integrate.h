@@ -47,6 +47,10 @@ class FixSPHIntegrate : public Fix {
   int unpack_exchange(int, double *) override;
   double memory_usage() override;
 
+  // the step that this particle allows, whatever the others need
+  double own_step(int i) const;
+  bool is_active(int i) const { return state[i][ACTIVE] != 0.0; }
+
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();
 

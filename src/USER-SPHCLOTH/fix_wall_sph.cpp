@@ -269,7 +269,8 @@ void FixWallSPH::push(int i, double pressure_term)
     const double friction =
         nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support);
 
-    const double pressure = stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
+    const double pressure =
+        stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
                                      : -friction * (v[d] - wall.velocity[d]);

@@ -28,9 +28,8 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), walls(nullptr), measure_volume(false),
-    extrapolate(false), active(nullptr),
-    active_column(0), elapsed(0.0), stage(Stage::DENSITY)
+    Pair(lmp), materials(lmp), walls(nullptr), is_evaluated(false), measure_volume(false),
+    extrapolate(false), active(nullptr), active_column(0), elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -66,6 +65,7 @@ void PairSPHTait::allocate()
 void PairSPHTait::settings(int narg, char **arg)
 {
   ArgReader args(lmp, STYLE, narg, arg);
+  forget_evaluation();
   options = Options();
   options.support = args.positive("support radius H");
   while (args.more()) {
@@ -126,7 +126,9 @@ void PairSPHTait::init_style()
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
 
-  create_fluid();
+  // lists outlive init(): 'run pre no' goes on with them
+  if (!fluid) fluid = Fluid::create(options.kernel, options.precision);
+  set_model();
   measure_volume = extrapolate = false;
   for (int i = 1; i <= atom->ntypes; i++) {
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
@@ -134,16 +136,21 @@ void PairSPHTait::init_style()
   }
 }
 
-void PairSPHTait::create_fluid()
+void PairSPHTait::forget_evaluation()
 {
-  fluid = Fluid::create(options.kernel, options.precision);
+  fluid.reset();
+  is_evaluated = false;
+}
+
+void PairSPHTait::set_model()
+{
   FluidModel &model = fluid->model;
   const int n = atom->ntypes + 1;
   model.dimension = domain->dimension;
   model.n_types = atom->ntypes;
   model.friction = Friction::NONE;
   model.role.assign(n, Role::NONE);
-  model.mass.assign(n, 0.0);
+  model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
   reach.assign(n * n, 0.0);
   for (int i = 1; i < n; i++) model.role[i] = materials.type(i).role;
@@ -204,6 +211,7 @@ bool PairSPHTait::excluded(int i, int j) const
 void PairSPHTait::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
+  is_evaluated = false;
   const bool new_neighbours = neighbor->ago == 0;
   if (new_neighbours) {
     new_lists();
@@ -247,6 +255,7 @@ void PairSPHTait::compute(int eflag, int vflag)
         },
         this);
   if (eflag_either) tally_energy(p);
+  is_evaluated = true;
 }
 
 Particles PairSPHTait::particles()
@@ -292,6 +301,7 @@ void PairSPHTait::new_lists()
       error->one(FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
                  atom->tag[i], v[0], v[1], v[2]);
   }
+  evaluated_ids.assign(atom->tag, atom->tag + atom->nlocal);
   fluid->list(particles(), reach.data());
 }
 
@@ -385,16 +395,16 @@ void PairSPHTait::check_densities() const
 
 void PairSPHTait::pressures(const Particles &p)
 {
-  for_each_fluid(p, [&](int i, const Tait &eos) {
+  for (int i = 0; i < p.n_owned; i++) {
+    if (!is_fluid(p.type[i]) || !p.is_active(i)) continue;
     const double rho = p.rho[i];
-    double pressure_i = eos.pressure(rho);
-    if (!std::isfinite(pressure_i))
+    const double term = acting_pressure(equation_of_state(p.type[i]), rho) / (rho * rho);
+    if (!std::isfinite(term))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
-    if (!options.tension) pressure_i = std::max(pressure_i, 0.0);
-    pressure[i] = pressure_i / (rho * rho);
-  });
+    pressure[i] = term;
+  }
 }
 
 void PairSPHTait::boundary_pressures(const Particles &p)
@@ -409,11 +419,41 @@ void PairSPHTait::boundary_pressures(const Particles &p)
 void PairSPHTait::tally_energy(const Particles &p)
 {
   for_each_fluid(p, [&](int i, const Tait &eos) {
-    if (p.rho[i] < eos.rho0 && !options.tension) return;
-    const double e = amount[i] * eos.energy(p.rho[i]) * force->mvv2e;
+    const double e = amount[i] * stored_energy(eos, p.rho[i]) * force->mvv2e;
     if (eflag_global) eng_vdwl += e;
     if (eflag_atom) eatom[i] += e;
   });
+}
+
+double PairSPHTait::acting_pressure(const Tait &eos, double rho) const
+{
+  const double p = eos.pressure(rho);
+  return options.tension ? p : std::max(p, 0.0);
+}
+
+double PairSPHTait::stored_energy(const Tait &eos, double rho) const
+{
+  return rho < eos.rho0 && !options.tension ? 0.0 : eos.energy(rho);
+}
+
+/* ----------------------------------------------------------------------
+   what the last evaluation found
+------------------------------------------------------------------------- */
+
+bool PairSPHTait::evaluated() const
+{
+  return is_evaluated &&
+      std::equal(evaluated_ids.begin(), evaluated_ids.end(), atom->tag, atom->tag + atom->nlocal);
+}
+
+double PairSPHTait::pressure_of(int i) const { return pressure[i] * atom->rho[i] * atom->rho[i]; }
+
+int PairSPHTait::count_neighbours(int i) const
+{
+  if (fluid->order().slots() == 0) return 0;    // a scene without fluid has no lists
+  int n = 0;
+  for (int t = 1; t <= atom->ntypes; t++) n += fluid->neighbours(i, t).n;
+  return n;
 }
 
 PairSPHTait::Wetting PairSPHTait::wetting(int i) const
@@ -469,6 +509,7 @@ void PairSPHTait::read_restart_settings(FILE *fp)
 {
   if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
   MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
+  forget_evaluation();
   materials.default_support = options.support;
 }
 
@@ -500,10 +541,8 @@ void PairSPHTait::write_data(FILE *fp)
 void PairSPHTait::write_data_all(FILE *fp)
 {
   for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) {
-      const std::string words = materials.words(i, j);
-      if (!words.empty()) utils::print(fp, "{} {} {}\n", i, j, words);
-    }
+    for (int j = i; j <= atom->ntypes; j++)
+      utils::print(fp, "{} {} {}\n", i, j, materials.words(i, j));
 }
 
 double PairSPHTait::memory_usage()

@@ -45,13 +45,21 @@ class PairSPHTait : public Pair {
 
   bool is_fluid(int itype) const { return materials.is_fluid(itype); }
   const sphcloth::Tait &equation_of_state(int itype) const { return materials.type(itype).eos; }
-  double support(int itype) const { return materials.support(itype, itype); }
+  double support(int itype) const { return support(itype, itype); }
+  double support(int itype, int jtype) const { return materials.support(itype, jtype); }
+  // was it said what this type is?
+  bool has_role(int itype) const { return allocated && setflag[itype][itype]; }
+  // do particles of these types look at each other at all?
+  bool interact(int itype, int jtype) const { return materials.reach(itype, jtype) > 0.0; }
   double viscosity(int itype) const { return materials.viscosity(itype); }
   double laminar_viscosity(int itype) const { return materials.type(itype).nu; }
   sphcloth::KernelName kernel() const { return options.kernel; }
 
   // what a plane wall adds to the density, for the kernel in use
   sphcloth::WallTable wall_table() const;
+  // what acts and what is stored, per mass, at a density: nothing below rest without tension
+  double acting_pressure(const sphcloth::Tait &, double rho) const;
+  double stored_energy(const sphcloth::Tait &, double rho) const;
 
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
@@ -62,6 +70,15 @@ class PairSPHTait : public Pair {
     double fluid_mass = 0.0, sound = 0.0;
   };
   Wetting wetting(int boundary_atom) const;
+
+  // Are the owned atoms those of the last evaluation?  Only then the following may be asked.
+  bool evaluated() const;
+
+  // mass or volume of an owned atom
+  double amount_of(int i) const { return amount[i]; }
+  double pressure_of(int i) const;
+  // of all roles that matter to it, inside the support; 0 if it was not active
+  int count_neighbours(int i) const;
 
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
@@ -97,6 +114,7 @@ class PairSPHTait : public Pair {
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
   FixWallSPH *walls;    // null without plane walls
+  bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
@@ -106,11 +124,13 @@ class PairSPHTait : public Pair {
   double elapsed;
   std::vector<double> amount, pressure;    // per atom, owned and ghost
   std::vector<double> rate;
+  std::vector<tagint> evaluated_ids;    // of the owned atoms, in the order of the arrays
   Stage stage;
 
   void allocate();
   void read_density(class ArgReader &);
-  void create_fluid();
+  void forget_evaluation();
+  void set_model();
   bool excluded(int, int) const;
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;

@@ -173,11 +173,22 @@ double SPHMaterials::viscosity(int i) const
 
 // What the user did not say of a pair: the mean of two fluids, the fluid's own at a boundary.
 
+double SPHMaterials::nu(int i, int j) const
+{
+  const double own = said(i, j).nu;
+  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).nu + fluid_of(j, i).nu);
+}
+
+double SPHMaterials::alpha(int i, int j) const
+{
+  const double own = said(i, j).alpha;
+  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).alpha + fluid_of(j, i).alpha);
+}
+
 PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
 {
   const PairData &own = said(i, j);
-  const TypeData &a = is_fluid(i) ? types[i] : types[j];
-  const TypeData &b = is_fluid(j) ? types[j] : a;
+  const TypeData &a = fluid_of(i, j), &b = fluid_of(j, i);
   if (own.stiffness > 0.0 && types[i].role == types[j].role)
     error->all(FLERR,
                "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
@@ -186,12 +197,11 @@ PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
 
   PairTerms t;
   const double radius = support(i, j), smoothing = 0.5 * radius;
-  const double alpha = own.alpha >= 0.0 ? own.alpha : 0.5 * (a.alpha + b.alpha);
   const double sound = 0.5 * (a.eos.sound_speed() + b.eos.sound_speed());
   t.kernel = with_kernel(
       kernel, [&](auto k) { return kernel_scale<decltype(k)>(radius, domain->dimension); });
-  t.nu = own.nu >= 0.0 ? own.nu : 0.5 * (a.nu + b.nu);
-  t.monaghan = alpha * sound * smoothing;
+  t.nu = nu(i, j);
+  t.monaghan = alpha(i, j) * sound * smoothing;
   t.soft = 0.01 * smoothing * smoothing;
   t.rho0 = a.eos.rho0;
   t.stiffness = own.stiffness > 0.0 ? own.stiffness / a.eos.k : 1.0;
@@ -229,31 +239,23 @@ void SPHMaterials::read_restart(FILE *fp)
   MPI_Bcast(pairs.data(), static_cast<int>(pairs.size() * sizeof(PairData)), MPI_BYTE, 0, world);
 }
 
+// All digits, so that a data file gives the same forces.  Data files want a line for every pair; a
+// stiffness is there only if it was said, for there is none to mix.
+
 std::string SPHMaterials::words(int i, int j) const
 {
-  const PairData &own = said(i, j);
-  std::string text;
-  const auto add = [&](const char *keyword, double value) {
-    text += fmt::format(" {} {:.17g}", keyword, value);
+  const auto only_if = [](double value, const char *keyword) {
+    return value > 0.0 ? fmt::format(" {} {}", keyword, value) : "";
   };
-  if (i == j && is_boundary(i)) {
-    text = "boundary pressure " + PRESSURES[static_cast<int>(types[i].pressure)];
-    if (types[i].volume > 0.0) add("volume", types[i].volume);
-    return text;
-  }
-  if (i == j) {
-    const TypeData &t = types[i];
-    text = "fluid";
-    add("", t.eos.rho0);
-    add("k", t.eos.k);
-    add("gamma", t.eos.gamma);
-    add("nu", t.nu);
-    add("alpha", t.alpha);
-  } else {
-    if (own.stiffness > 0.0) add("k", own.stiffness);
-    if (own.nu >= 0.0) add("nu", own.nu);
-    if (own.alpha >= 0.0) add("alpha", own.alpha);
-  }
-  if (own.support > 0.0) add("support", own.support);
-  return text;
+  const TypeData &t = types[i];
+  const PairData &own = said(i, j);
+  if (i != j)
+    return fmt::format("support {} nu {} alpha {}", support(i, j), nu(i, j), alpha(i, j)) +
+        only_if(own.stiffness, "k");
+  if (is_boundary(i))
+    return "boundary pressure " + PRESSURES[static_cast<int>(t.pressure)] +
+        only_if(t.volume, "volume");
+  return fmt::format("fluid {} k {} gamma {} nu {} alpha {}", t.eos.rho0, t.eos.k, t.eos.gamma,
+                     t.nu, t.alpha) +
+      only_if(own.support, "support");
 }

@@ -45,6 +45,8 @@ class SPHMaterials : protected Pointers {
   double support(int i, int j) const;
   // laminar and artificial together
   double viscosity(int i) const;
+  double nu(int i, int j) const;
+  double alpha(int i, int j) const;
   // one pair, with the kernel's scale
   sphcloth::PairTerms mix(int i, int j, sphcloth::KernelName) const;
   // up to where i lists j, without the skin; 0: never
@@ -52,7 +54,7 @@ class SPHMaterials : protected Pointers {
 
   void write_restart(FILE *) const;
   void read_restart(FILE *);
-  // the words of pair_coeff I I, or of I J if anything was said of that pair
+  // the words of pair_coeff I I, or of I J with what follows from mixing
   std::string words(int i, int j) const;
 
   double default_support = 0.0;
@@ -66,6 +68,8 @@ class SPHMaterials : protected Pointers {
   std::vector<PairData> pairs;    // (ntypes+1)^2, I <= J
 
   const PairData &said(int i, int j) const;
+  // the fluid of a pair: its own, or the partner's of a boundary
+  const TypeData &fluid_of(int i, int j) const { return types[is_fluid(i) ? i : j]; }
   TypeData read_fluid(ArgReader &, PairData &) const;
   TypeData read_boundary(ArgReader &) const;
   PairData read_pair(ArgReader &) const;

@@ -6,6 +6,7 @@
 #include "library.h"
 
 #include "bond_pbd.h"
+#include "compute_sph_atom.h"
 #include "create_cloth.h"
 #include "dihedral_pbd.h"
 #include "fix_cloth_contact.h"
@@ -16,6 +17,7 @@
 #include "fix_wall_sph.h"
 #include "pair_sph_tait.h"
 #include "sph_adaptive.h"
+#include "sph_write.h"
 
 #include <cstdio>
 
@@ -87,6 +89,10 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "sph/drain", "outflow of SPH particles");
   plugin.creator.v2 = &create_with_args<FixWallSPH>;
   add("fix", "wall/sph", "plane walls without particles");
+  plugin.creator.v2 = &create_with_args<ComputeSPHAtom>;
+  add("compute", "sph/atom", "per-atom quantities of SPH particles");
+  plugin.creator.v1 = &create<SPHWrite>;
+  add("command", "sph_write", "tables of a kernel or an equation of state");
   plugin.creator.v1 = &create<CreateCloth>;
   add("command", "create_cloth", "sheet of vertices, bonds, triangles and hinges");
   plugin.creator.v2 = &create_with_args<SPHAdaptive>;

@@ -112,3 +112,25 @@ fix sheet cloth pbd/cloth iterations 5 damping 1.0
 fix contact fluid cloth/contact 0.03
 """
 )
+
+# Two fluids over a floor, jittered, all moving alike.
+TWO_FLUIDS = """
+units si
+atom_style hybrid sph molecular
+comm_modify vel yes
+boundary p p f
+region box block 0 0.3 0 0.3 -0.2 0.5
+create_box 3 box
+mass 1 0.125
+mass 2 0.15
+mass 3 1
+lattice sc 0.05 origin 0.5 0.5 0.5
+region floor block INF INF INF INF -0.026 0.0 units box
+create_atoms 3 region floor
+region water block INF INF INF INF 0.0 0.15 units box
+create_atoms 1 region water
+region oil block INF INF INF INF 0.15 0.3 units box
+create_atoms 2 region oil
+displace_atoms all random 0.01 0.01 0.01 77 units box
+velocity all set 0.1 0.2 -0.3
+"""

@@ -27,8 +27,7 @@ void Fluid::list(const Particles &p, const double *reach)
 
 double Fluid::bytes() const
 {
-  return lists.bytes() +
-      sizeof(int) * static_cast<double>(inside.capacity() + slot_of.capacity());
+  return lists.bytes() + sizeof(int) * static_cast<double>(inside.capacity() + slot_of.capacity());
 }
 
 }    // namespace sphcloth

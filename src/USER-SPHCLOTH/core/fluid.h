@@ -125,7 +125,8 @@ class Fluid {
   // the neighbours inside the support, in the last evaluation
   Stretch near(int slot, int type) const
   {
-    return {lists(slot, type).of, inside[static_cast<std::size_t>(slot) * model.n_types + type - 1]};
+    return {lists(slot, type).of,
+            inside[static_cast<std::size_t>(slot) * model.n_types + type - 1]};
   }
 
   NeighbourLists lists;

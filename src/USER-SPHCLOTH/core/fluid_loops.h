@@ -52,8 +52,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   double bytes() const override;
 
  private:
-  static constexpr int CHUNK = 64;    // neighbours in columns at a time
-
   struct Site {
     Coordinate x, y, z;
     Real own;    // fluid: density; boundary: volume
@@ -61,10 +59,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   struct Motion {
     Real u, v, w, pressure;
   };
+  // one group of neighbours
   struct Columns {
-    alignas(64) Coordinate x[CHUNK], y[CHUNK], z[CHUNK];
-    alignas(64) Real own[CHUNK], u[CHUNK], v[CHUNK], w[CHUNK], pressure[CHUNK];
-    alignas(64) double mass[CHUNK];
+    alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
+    alignas(64) Real own[LANES], u[LANES], v[LANES], w[LANES], pressure[LANES];
+    alignas(64) double mass[LANES];
     double equal = -1.0;    // the mass that all of mass[] hold
   };
 
@@ -92,8 +91,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   std::array<Real, 3> quantum{1, 1, 1};
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
-  AlignedVector<Coordinate> cx, cy, cz;    // of one particle's list
-  AlignedVector<Real> unused, rsq;
+  AlignedVector<Real> rsq;
 
   std::vector<int> spare;
 
@@ -111,8 +109,8 @@ template <class K, class P> class FluidLoops : public Fluid {
   double kernel_sum(int n, Real inv_support);
   double weighted_sum(const int *near, int n, Real inv_support, const double *amount);
   void sum_up(const Particles &, bool sum);
-  void fill(Columns &, const Stretch &, int from, int n, Coordinate far) const;
-  void weigh(Columns &, const Particles &, const int *near, int n, double equal) const;
+  void fill(Columns &, const Stretch &, int from, Coordinate far) const;
+  void weigh(Columns &, const Particles &, const int *near, double equal) const;
   Coordinate beyond(const Site &, Real inv_support) const;
 
   template <bool VIRIAL>
@@ -185,26 +183,30 @@ SPHCLOTH_INLINE typename P::Coordinate FluidLoops<K, P>::beyond(const Site &s,
 }
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from, int n,
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from,
                                             Coordinate far) const
 {
-  columns(&sites[0].x, near.of + from, n, c.x, c.y, c.z, c.own);
-  columns(&motions[0].u, near.of + from, n, c.u, c.v, c.w, c.pressure);
-  const int last = whole_groups(n);
-  for (int k = n; k < last; k++) c.x[k] = far;
+  columns(&sites[0].x, near.of + from, LANES, c.x, c.y, c.z, c.own);
+  columns(&motions[0].u, near.of + from, LANES, c.u, c.v, c.w, c.pressure);
+  // what fills up the last group lies outside the support
+  const int n = near.n - from;
+  if (P::COUNTED) {    // a blend is the faster way with integers, a branch with doubles
+#pragma omp simd
+    for (int m = 0; m < LANES; m++) c.x[m] = m < n ? c.x[m] : far;
+  } else if (n < LANES) {
+#pragma GCC unroll 1
+    for (int m = LANES - 1; m >= n; m--) c.x[m] = far;
+  }
 }
 
 // Masses of the neighbours: a constant column, written once, where all of a type are equal.
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, const int *near, int n,
+SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, const int *near,
                                              double equal) const
 {
   if (equal > 0.0 && c.equal == equal) return;
-  if (equal > 0.0)
-    for (double &m : c.mass) m = equal;
-  else
-    for (int k = 0; k < whole_groups(n); k++) c.mass[k] = p.amount[near[k]];
+  for (int m = 0; m < LANES; m++) c.mass[m] = equal > 0.0 ? equal : p.amount[near[m]];
   c.equal = equal;
 }
 
@@ -219,17 +221,17 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::distances(int i, const Stretch &list)
 {
   const Site self = sites[i];
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
-  Coordinate *x = cx.data(), *y = cy.data(), *z = cz.data();
-  Real *sq = rsq.data();
-  columns(&sites[0].x, list.of, list.n, x, y, z, unused.data());
-  const int n = whole_groups(list.n);
-  for (int group = 0; group < n; group += LANES)
+  alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
+  for (int group = 0; group < list.n; group += LANES) {
+    columns(&sites[0].x, list.of + group, LANES, x, y, z, static_cast<Real *>(nullptr));
+    Real *sq = rsq.data() + group;
 #pragma omp simd
-    for (int k = group; k < group + LANES; k++) {
+    for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(self.x, x[k], qx), dy = P::difference(self.y, y[k], qy),
                  dz = P::difference(self.z, z[k], qz);
       sq[k] = dx * dx + dy * dy + dz * dz;
     }
+  }
 }
 
 template <class K, class P>
@@ -306,8 +308,6 @@ template <class K, class P> void FluidLoops<K, P>::make_room()
 {
   const std::size_t room = whole_groups(longest) + 2 * LANES;
   if (rsq.size() >= room) return;
-  for (auto *column : {&cx, &cy, &cz}) column->resize(2 * room);
-  unused.resize(2 * room);
   rsq.resize(2 * room);
   spare.resize(2 * room);
 }
@@ -324,8 +324,8 @@ void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
     const Stretch list = lists(slot, type);
     const int i = lists.at(slot);
     distances(i, list);
-    const int n = compact(rsq.data(), list.of, list.n,
-                          static_cast<Real>(terms.kernel.support_sq), rsq.data(), spare.data());
+    const int n = compact(rsq.data(), list.of, list.n, static_cast<Real>(terms.kernel.support_sq),
+                          rsq.data(), spare.data());
     amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + kernel_sum(n, inv_support)));
   }
 }
@@ -371,32 +371,29 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
 
-  for (int from = 0; from < near.n; from += CHUNK) {
-    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
-    fill(c, near, from, n, far);
-    weigh(c, p, near.of + from, n, equal);
-    for (int group = 0; group < last; group += LANES)
+  for (int from = 0; from < near.n; from += LANES) {
+    fill(c, near, from, far);
+    weigh(c, p, near.of + from, equal);
 #pragma omp simd
-      for (int m = 0; m < LANES; m++) {
-        const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
-                   dz = P::difference(site.z, c.z[k], qz);
-        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-        const Real r_sq = dx * dx + dy * dy + dz * dz;
-        const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
-        const Real v_dot_r = du * dx + dv * dy + dw * dz;
+    for (int k = 0; k < LANES; k++) {
+      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                 dz = P::difference(site.z, c.z[k], qz);
+      const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+      const Real r_sq = dx * dx + dy * dy + dz * dz;
+      const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+      const Real v_dot_r = du * dx + dv * dy + dw * dz;
 
-        Real along = motion.pressure + c.pressure[k];
-        Real friction = 0;
-        if (F != Friction::NONE) {
-          const Real both = site.own + c.own[k];
-          along -= Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
-          if (F == Friction::ANY) friction = slope * t.nu * both / (site.own * c.own[k]);
-        }
-        const Real push = -slope * along;
-        add<VIRIAL>(sums, m, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
-                    push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      Real along = motion.pressure + c.pressure[k];
+      Real friction = 0;
+      if (F != Friction::NONE) {
+        const Real both = site.own + c.own[k];
+        along -= Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+        if (F == Friction::ANY) friction = slope * t.nu * both / (site.own * c.own[k]);
       }
+      const Real push = -slope * along;
+      add<VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
+                  push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+    }
   }
 }
 
@@ -417,33 +414,30 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
 
-  for (int from = 0; from < near.n; from += CHUNK) {
-    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
-    fill(c, near, from, n, far);
-    if (ON_BOUNDARY) weigh(c, p, near.of + from, n, equal);
-    for (int group = 0; group < last; group += LANES)
+  for (int from = 0; from < near.n; from += LANES) {
+    fill(c, near, from, far);
+    if (ON_BOUNDARY) weigh(c, p, near.of + from, equal);
 #pragma omp simd
-      for (int m = 0; m < LANES; m++) {
-        const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
-                   dz = P::difference(site.z, c.z[k], qz);
-        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-        const Real r_sq = dx * dx + dy * dy + dz * dz;
-        const Real slope = t.rho0 * t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
-        const Real v_dot_r = du * dx + dv * dy + dw * dz;
-        const Real rho = ON_BOUNDARY ? c.own[k] : site.own;
+    for (int k = 0; k < LANES; k++) {
+      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                 dz = P::difference(site.z, c.z[k], qz);
+      const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+      const Real r_sq = dx * dx + dy * dy + dz * dz;
+      const Real slope = t.rho0 * t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+      const Real v_dot_r = du * dx + dv * dy + dw * dz;
+      const Real rho = ON_BOUNDARY ? c.own[k] : site.own;
 
-        Real along = t.stiffness * (motion.pressure + c.pressure[k]);
-        Real friction = 0;
-        if (F != Friction::NONE) {
-          along -= t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
-          if (F == Friction::ANY) friction = slope * t.nu * Real(2) / rho;
-        }
-        const Real push = -slope * along;
-        const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
-        add<VIRIAL>(sums, m, amount, push * dx + friction * du, push * dy + friction * dv,
-                    push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      Real along = t.stiffness * (motion.pressure + c.pressure[k]);
+      Real friction = 0;
+      if (F != Friction::NONE) {
+        along -= t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+        if (F == Friction::ANY) friction = slope * t.nu * Real(2) / rho;
       }
+      const Real push = -slope * along;
+      const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
+      add<VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
+                  push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+    }
   }
 }
 
@@ -514,26 +508,23 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   LaneSum rate;
-  for (int from = 0; from < near.n; from += CHUNK) {
-    const int n = std::min(CHUNK, near.n - from), last = whole_groups(n);
-    fill(c, near, from, n, far);
-    if (!FROM_BOUNDARY) weigh(c, p, near.of + from, n, equal);
-    for (int group = 0; group < last; group += LANES)
+  for (int from = 0; from < near.n; from += LANES) {
+    fill(c, near, from, far);
+    if (!FROM_BOUNDARY) weigh(c, p, near.of + from, equal);
 #pragma omp simd
-      for (int m = 0; m < LANES; m++) {
-        const int k = group + m;
-        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
-                   dz = P::difference(site.z, c.z[k], qz);
-        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-        const Real r_sq = dx * dx + dy * dy + dz * dz;
-        const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
-        const Real v_dot_r = du * dx + dv * dy + dw * dz;
-        if (FROM_BOUNDARY)
-          rate.of[m] += static_cast<double>(c.own[k]) * (t.rho0 * slope * v_dot_r);
-        else
-          rate.of[m] +=
-              c.mass[k] * (slope * (v_dot_r + t.diffusion * (site.own - c.own[k]) / c.own[k]));
-      }
+    for (int k = 0; k < LANES; k++) {
+      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                 dz = P::difference(site.z, c.z[k], qz);
+      const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+      const Real r_sq = dx * dx + dy * dy + dz * dz;
+      const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+      const Real v_dot_r = du * dx + dv * dy + dw * dz;
+      if (FROM_BOUNDARY)
+        rate.of[k] += static_cast<double>(c.own[k]) * (t.rho0 * slope * v_dot_r);
+      else
+        rate.of[k] +=
+            c.mass[k] * (slope * (v_dot_r + t.diffusion * (site.own - c.own[k]) / c.own[k]));
+    }
   }
   return rate.total();
 }

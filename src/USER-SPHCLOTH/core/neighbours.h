@@ -73,7 +73,7 @@ class Stretches {
   }
 
  private:
-  static constexpr int SLACK = 16;
+  static constexpr int SLACK = 2 * LANES;
   int types = 0;
   std::vector<std::int64_t> first;
   std::vector<int> entries;
@@ -245,7 +245,7 @@ class NeighbourLists {
         const std::int64_t row =
             block + (static_cast<std::int64_t>(cz) * grid.n[1] + cy) * grid.n[0];
         const int begin = cell_start[row + from[0]], end = cell_start[row + to[0] + 1];
-        const std::size_t need = n + whole_groups(end - begin) + 16;
+        const std::size_t need = n + whole_groups(end - begin) + 2 * LANES;
         if (key.size() < need) {
           key.resize(2 * need);
           candidate.resize(2 * need);

@@ -67,7 +67,8 @@ struct LaneSum {
 
 // Columns of records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k], for k
 // up to n rounded up to whole groups; indices past n must be valid.  A record is four numbers of
-// sizeof(Lane) bytes, the last of which may be of another type than the first three.
+// sizeof(Lane) bytes, the last of which may be of another type than the first three, or is left out
+// if w is null.
 
 template <class Lane, class Last>
 SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane *x, Lane *y,
@@ -99,8 +100,9 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane 
         __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
     *reinterpret_cast<Group *>(z + k) =
         __builtin_shufflevector(zw01, zw23, 0, 1, 8, 9, 4, 5, 12, 13);
-    *reinterpret_cast<Group *>(w + k) =
-        __builtin_shufflevector(zw01, zw23, 2, 3, 10, 11, 6, 7, 14, 15);
+    if (w)
+      *reinterpret_cast<Group *>(w + k) =
+          __builtin_shufflevector(zw01, zw23, 2, 3, 10, 11, 6, 7, 14, 15);
   }
 #else
   for (int k = 0; k < n; k++) {
@@ -108,7 +110,7 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane 
     x[k] = r[0];
     y[k] = r[1];
     z[k] = r[2];
-    std::memcpy(w + k, r + 3, sizeof(Lane));
+    if (w) std::memcpy(w + k, r + 3, sizeof(Lane));
   }
 #endif
 }
@@ -134,8 +136,7 @@ inline int compact_plain(const Key *key, const int *index, int n, Key limit, Key
 // Partition: the same, but the indices stay in place, those kept in front and the others, for which
 // `spare` has room, behind them.  Nothing behind index[n - 1] is written.
 
-template <class Key>
-inline int partition_plain(Key *key, int *index, int n, Key limit, int *spare)
+template <class Key> inline int partition_plain(Key *key, int *index, int n, Key limit, int *spare)
 {
   int m = 0;
   for (int k = 0; k < n; k++) {
@@ -151,6 +152,15 @@ inline int partition_plain(Key *key, int *index, int n, Key limit, int *spare)
 }
 
 #ifdef SPHCLOTH_X86_TARGETS
+
+__attribute__((target("avx512f,avx512vl"))) inline void append_avx512(const int *from, int n,
+                                                                      int *to)
+{
+  for (int k = 0; k < n; k += 16) {
+    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    _mm512_mask_storeu_epi32(to + k, here, _mm512_loadu_si512(from + k));
+  }
+}
 
 __attribute__((target("avx512f,avx512vl"))) inline int
 partition_avx512(float *key, int *index, int n, float limit, int *spare)
@@ -168,7 +178,7 @@ partition_avx512(float *key, int *index, int n, float limit, int *spare)
                              _mm512_maskz_compress_epi32(keep, j));
     m += kept;
   }
-  std::memcpy(index + m, spare, (n - m) * sizeof(int));
+  append_avx512(spare, n - m, index + m);
   return m;
 }
 
@@ -189,7 +199,7 @@ partition_avx512(double *key, int *index, int n, double limit, int *spare)
                              _mm256_maskz_compress_epi32(keep, j));
     m += kept;
   }
-  std::memcpy(index + m, spare, (n - m) * sizeof(int));
+  append_avx512(spare, n - m, index + m);
   return m;
 }
 

@@ -1,0 +1,141 @@
+#include "compute_sph_atom.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "error.h"
+#include "fix_sph_integrate.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+/* ----------------------------------------------------------------------
+   compute ID group sph/atom keyword ...
+------------------------------------------------------------------------- */
+
+ComputeSPHAtom::ComputeSPHAtom(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0), pair(nullptr),
+    stepper(nullptr)
+{
+  ArgReader args(lmp, label, narg, arg, 3);
+  do columns.push_back(read_column(args));
+  while (args.more());
+
+  peratom_flag = 1;
+  size_peratom_cols = columns.size() == 1 ? 0 : static_cast<int>(columns.size());
+}
+
+ComputeSPHAtom::~ComputeSPHAtom()
+{
+  memory->destroy(vector_atom);
+  memory->destroy(array_atom);
+}
+
+ComputeSPHAtom::Column ComputeSPHAtom::read_column(ArgReader &args) const
+{
+  static const std::vector<std::string> NAMES = {"density", "pressure",  "energy", "sound",
+                                                 "volume",  "neighbors", "dt",     "active"};
+  const std::string name = args.word("keyword");
+  const auto found = std::find(NAMES.begin(), NAMES.end(), name);
+  if (found == NAMES.end()) args.unknown(name, utils::join_words(NAMES, ", "));
+  return static_cast<Column>(found - NAMES.begin());
+}
+
+bool ComputeSPHAtom::asks_for(Column column) const
+{
+  return std::find(columns.begin(), columns.end(), column) != columns.end();
+}
+
+void ComputeSPHAtom::init() { find_styles(); }
+
+// Also before every use: the user may have replaced a style since init().
+
+void ComputeSPHAtom::find_styles()
+{
+  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  if (!pair)
+    error->all(FLERR, "{}: pair_style {} knows nothing of fluid: use 'pair_style sph/tait'", label,
+               force->pair_style ? force->pair_style : "none");
+  if (!asks_for(Column::DT) && !asks_for(Column::ACTIVE)) return;
+  const auto fixes = modify->get_fix_by_style("^sph/integrate$");
+  if (fixes.empty())
+    error->all(FLERR,
+               "{}: dt and active are known to fix sph/integrate alone: add that fix, or leave "
+               "the two keywords out",
+               label);
+  stepper = dynamic_cast<FixSPHIntegrate *>(fixes[0]);
+}
+
+void ComputeSPHAtom::check_evaluated() const
+{
+  int mine = pair->evaluated(), all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, world);
+  if (!all)
+    error->all(FLERR,
+               "{}: the pair style has not evaluated these particles: use it in or after a run, "
+               "'run 0' at least",
+               label);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeSPHAtom::compute_peratom()
+{
+  invoked_peratom = update->ntimestep;
+  find_styles();
+  check_evaluated();
+  make_room();
+  const int n = static_cast<int>(columns.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *row = n == 1 ? vector_atom + i : array_atom[i];
+    for (int k = 0; k < n; k++) row[k] = atom->mask[i] & groupbit ? value(columns[k], i) : 0.0;
+  }
+}
+
+void ComputeSPHAtom::make_room()
+{
+  if (atom->nmax <= nmax) return;
+  nmax = atom->nmax;
+  if (size_peratom_cols == 0)
+    memory->grow(vector_atom, nmax, "sph/atom:vector");
+  else
+    memory->grow(array_atom, nmax, size_peratom_cols, "sph/atom:array");
+}
+
+double ComputeSPHAtom::value(Column column, int i) const
+{
+  const bool integrated = stepper && atom->mask[i] & stepper->groupbit;
+  switch (column) {
+    case Column::NEIGHBORS: return pair->count_neighbours(i);
+    case Column::DT: return integrated ? stepper->own_step(i) : 0.0;
+    case Column::ACTIVE: return integrated && stepper->is_active(i);
+    default: break;
+  }
+  if (pair->is_fluid(atom->type[i])) return value_of_fluid(column, i);
+  return column == Column::VOLUME && pair->has_role(atom->type[i]) ? pair->amount_of(i) : 0.0;
+}
+
+double ComputeSPHAtom::value_of_fluid(Column column, int i) const
+{
+  const Tait &eos = pair->equation_of_state(atom->type[i]);
+  const double rho = atom->rho[i];
+  switch (column) {
+    case Column::DENSITY: return rho;
+    case Column::PRESSURE: return pair->pressure_of(i) * force->mvv2e * force->nktv2p;
+    case Column::ENERGY: return pair->amount_of(i) * pair->stored_energy(eos, rho) * force->mvv2e;
+    case Column::SOUND: return eos.sound_speed(rho);
+    case Column::VOLUME: return pair->amount_of(i) / rho;
+    default: return 0.0;
+  }
+}
+
+double ComputeSPHAtom::memory_usage()
+{
+  return sizeof(double) * static_cast<double>(nmax) * static_cast<double>(columns.size());
+}

@@ -1,0 +1,38 @@
+// sph_write: tables of a kernel or of an equation of state, as the pair style uses them.
+
+#ifdef COMMAND_CLASS
+// clang-format off
+CommandStyle(sph_write,SPHWrite);
+// clang-format on
+#else
+
+#ifndef LMP_SPH_WRITE_H
+#define LMP_SPH_WRITE_H
+
+#include "command.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+class PairSPHTait;
+
+class SPHWrite : public Command {
+ public:
+  SPHWrite(class LAMMPS *lmp) : Command(lmp), pair(nullptr) {}
+  void command(int, char **) override;
+
+ private:
+  PairSPHTait *pair;
+
+  void write_kernel(ArgReader &);
+  void write_state(ArgReader &);
+  int read_type(ArgReader &, const std::string &) const;
+  void append(const std::string &file, const std::string &table) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

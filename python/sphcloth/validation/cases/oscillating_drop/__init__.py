@@ -15,8 +15,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
-from sphcloth.validation.common import numerics
-from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.common import lattice_density, numerics
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega
 DAMPING, SETTLE = 10.0, 2.0
@@ -126,7 +125,7 @@ def _run(
             "across": across,
             "sigma": drop.sigma,
             "sound": values["sound"] * drop.omega * values["radius"],
-            "lattice": density_sum(values["kernel"], values["support"]),
+            "lattice": lattice_density(values),
             "room": ROOM * drop.largest,
             "damping": DAMPING * drop.omega,
             "t_settle": t_settle,

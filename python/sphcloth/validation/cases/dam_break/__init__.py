@@ -30,6 +30,8 @@ PARAMETERS = (
     Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
     Parameter("sound", 20.0, "sqrt(2 g a)", "speed of sound at rest c0", 5.0, 100.0),
+    Parameter("nu", 1e-6, "m^2/s", "kinematic viscosity", 0.0, 1.0),
+    Parameter("slip", "yes", "1", "whether the walls are smooth", choices=("yes", "no")),
     Parameter("across", 64, "1", "particles over the width", 24, 400, quick=32),
     Parameter("settle", 3.0, "sqrt(2 a/g)", "time of damping behind the gate", 1.0, 100.0),
     *numerics(alpha=0.1, courant=0.5),
@@ -69,7 +71,7 @@ class Front:
 
     def difference(self, other: Front) -> float:
         """Return the rms difference of two fronts at the times that experiments cover."""
-        times = np.linspace(reference.FIRST, reference.LAST, 50)
+        times = reference.COMPARED
         mine = np.interp(times, self.times, self.places)
         return compare.rms(mine - np.interp(times, other.times, other.places))
 
@@ -149,7 +151,7 @@ def _plot(column: Column, seen: Mapping[str, Front], run: Run, shift: float, pat
         front.plot(each.times, each.places, style, color="C0", lw=1, label=label)
     fine = seen["fine"]
     front.plot(fine.times + shift, fine.places, "C3-", lw=1, label=f"fine, shifted by {shift:.2f}")
-    times = np.linspace(reference.FIRST, reference.LAST, 100)
+    times = reference.COMPARED
     lower, upper = reference.band(times)
     front.fill_between(times, 0.95 * lower, 1.05 * upper, color="grey", alpha=0.2, label="limit")
     for marker, (name, points) in zip("os", reference.EXPERIMENTS.items(), strict=True):

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import minimize_scalar
 
 # largest shift in time that is allowed, in units of sqrt(a / 2 g)
 LARGEST_SHIFT = 0.15
+# how many shifts are tried
+SHIFTS = 301
 
 # T, Z
 MARTIN_MOYCE = np.array(
@@ -40,6 +41,7 @@ EXPERIMENTS = {"Martin & Moyce 1952": MARTIN_MOYCE, "Koshizuka & Oka 1996": KOSH
 # times T that both experiments cover
 FIRST = max(points[0, 0] for points in EXPERIMENTS.values())
 LAST = min(points[-1, 0] for points in EXPERIMENTS.values())
+COMPARED = np.linspace(FIRST, LAST, 100)
 
 
 @dataclass(frozen=True)
@@ -80,20 +82,18 @@ def outside(times: NDArray, fronts: NDArray, shift: float) -> NDArray[np.float64
         shift: added to the times before the comparison.
 
     Returns:
-        One value for each time that both experiments cover after the shift, positive ahead of the
-        band and negative behind it.
+        One value for each of ``COMPARED``, positive ahead of the band and negative behind it.
     """
-    covered = (times + shift >= FIRST) & (times + shift <= LAST)
-    lower, upper = band(times[covered] + shift)
-    z = fronts[covered]
+    lower, upper = band(COMPARED)
+    z = np.interp(COMPARED - shift, times, fronts)
     return np.maximum(z / upper - 1, 0) + np.minimum(z / lower - 1, 0)
 
 
 def best_shift(times: NDArray, fronts: NDArray) -> float:
     """Return the allowed shift of time with which the fronts lie nearest to the band."""
-    found = minimize_scalar(
-        lambda shift: float(np.sum(outside(times, fronts, shift) ** 2)),
-        bounds=(-LARGEST_SHIFT, LARGEST_SHIFT),
-        method="bounded",
-    )
-    return float(found.x)
+
+    def distance(shift: float) -> tuple[float, float]:
+        largest = np.max(np.abs(outside(times, fronts, shift)))
+        return float(largest), abs(shift)
+
+    return float(min(np.linspace(-LARGEST_SHIFT, LARGEST_SHIFT, SHIFTS), key=distance))

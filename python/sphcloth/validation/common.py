@@ -16,6 +16,7 @@ def numerics(
     support: float = 4.0,
     tension: str = "no",
     disorder: float = 0.1,
+    density: str = "summation",
 ) -> tuple[Parameter, ...]:
     """Return the parameters of the method; their names are those of the scripts' variables.
 
@@ -26,6 +27,7 @@ def numerics(
         support: default of the support radius over the spacing.
         tension: default of whether negative pressure acts.
         disorder: default of the displacement at the start over the spacing.
+        density: default of how the density is found.
     """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
@@ -34,9 +36,7 @@ def numerics(
         Parameter("support", support, "1", "support radius over spacing", 2.0, 6.0),
         Parameter("tension", tension, "1", "whether negative pressure acts", choices=("no", "yes")),
         Parameter("precision", "double", "1", "of the pair loops", choices=("double", "mixed")),
-        Parameter(
-            "density", "summation", "1", "how it is found", choices=("summation", "continuity")
-        ),
+        Parameter("density", density, "1", "how it is found", choices=("summation", "continuity")),
         Parameter("delta", 0.1, "1", "diffusion of the density, with continuity", 0.0, 1.0),
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),

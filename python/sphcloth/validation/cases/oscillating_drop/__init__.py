@@ -33,7 +33,7 @@ PARAMETERS = (
     Parameter("sound", 20.0, "omega R", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 80, "1", "particles over the radius", 10, 400, quick=40),
     Parameter("periods", 1, "T", "time of the motion", 1, 50),
-    *numerics(alpha=0.0, courant=1.0),
+    *numerics(alpha=0.0, courant=1.0, kernel="wendland/c4", support=5.0, density="continuity"),
 )
 
 QUANTITIES = (

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 from scipy.integrate import quad
+from scipy.special import erfc
 
 from sphcloth.cli import main
 from sphcloth.errors import UserError
@@ -20,9 +21,13 @@ from sphcloth.validation import compare, validate
 from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
+from sphcloth.validation.cases.couette.reference import CouetteStart
+from sphcloth.validation.cases.dam_break import reference as dam_break
 from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
+from sphcloth.validation.cases.jet.reference import Jet
 from sphcloth.validation.cases.oscillating_drop import Motion
 from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
+from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
 from sphcloth.validation.cases.standing_wave.reference import StandingWave
 from sphcloth.validation.lattice import KERNELS, density_sum
 
@@ -87,6 +92,83 @@ def test_times_of_the_drop_scale_with_its_field() -> None:
     assert EllipticDrop(1.5, 3.0).period == pytest.approx(EllipticDrop(0.5, 1.0).period / 3)
 
 
+MORRIS_TIMES = (0.0225, 0.045, 0.1125, 0.225)
+
+
+def test_poiseuille_flow_starts_like_that_of_morris() -> None:
+    flow = PoiseuilleStart(1e-3, 1e-6, 1e-4)
+    assert flow.fastest == pytest.approx(1.25e-5)
+    middle = [float(flow.velocity(5e-4, t)) / flow.fastest for t in MORRIS_TIMES]
+    assert middle == pytest.approx([0.178619, 0.338766, 0.659993, 0.887984], abs=5e-7)
+    assert flow.velocity([0.0, 1e-3], 0.1) == pytest.approx(0, abs=1e-18)
+    assert flow.drag(1000.0) == pytest.approx(1000.0 * 1e-4 * 1e-3 / 2)
+
+
+def test_couette_flow_starts_like_that_of_morris() -> None:
+    flow = CouetteStart(1e-3, 1e-6, 1.25e-5)
+    middle = [float(flow.velocity(5e-4, t)) for t in MORRIS_TIMES]
+    known = [2.302765682e-07, 1.194751641e-06, 3.628440987e-06, 5.386287273e-06]
+    assert middle == pytest.approx(known, rel=1e-8)
+    assert flow.velocity([0.0, 1e-3], 0.1) == pytest.approx([0, 1.25e-5], abs=1e-18)
+
+
+def test_early_flow_under_a_sliding_plate_is_that_of_a_half_space() -> None:
+    flow, t = CouetteStart(0.2, 3e-3, 1.7), 0.1
+    y = np.linspace(0.1, 0.2, 6)
+    stokes = 1.7 * erfc((0.2 - y) / (2 * math.sqrt(3e-3 * t)))
+    np.testing.assert_allclose(flow.velocity(y, t), stokes, atol=1e-7)
+
+
+@pytest.mark.parametrize("flow", [CouetteStart(2.0, 0.3, 1.5), PoiseuilleStart(2.0, 0.3, 0.7)])
+def test_flows_between_plates_obey_the_equation_of_motion(
+    flow: CouetteStart | PoiseuilleStart,
+) -> None:
+    y, t, dy, dt = np.linspace(0.2, 1.8, 9), 0.6, 1e-3, 1e-4
+    rate = (flow.velocity(y, t + dt) - flow.velocity(y, t - dt)) / (2 * dt)
+    ends = flow.velocity(y + dy, t) + flow.velocity(y - dy, t)
+    bend = (ends - 2 * flow.velocity(y, t)) / dy**2
+    drive = getattr(flow, "drive", 0.0)
+    np.testing.assert_allclose(rate, flow.nu * bend + drive, atol=1e-5)
+    slope = float(flow.velocity(dy, 1e3)) / dy
+    assert 1000.0 * flow.nu * slope == pytest.approx(flow.drag(1000.0), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("angle", "force", "sheets"),
+    [
+        (30, 200.0, (0.09330127, 0.00669873)),
+        (45, 282.842712, (0.08535534, 0.01464466)),
+        (60, 346.410162, (0.075, 0.025)),
+        (90, 400.0, (0.05, 0.05)),
+    ],
+)
+def test_force_and_sheets_of_the_jet(
+    angle: float, force: float, sheets: tuple[float, float]
+) -> None:
+    jet = Jet(0.1, 2.0, angle, 1000.0)
+    assert jet.force == pytest.approx(force, rel=1e-8)
+    assert jet.sheets == pytest.approx(sheets, abs=1e-8)
+
+
+def test_band_of_the_dam_break_experiments() -> None:
+    assert dam_break.Column(0.05715, 9.81).time == pytest.approx(0.0539711, abs=1e-6)
+    lower, upper = dam_break.band([1.219, 2.719])
+    assert lower == pytest.approx([1.474, 3.003])
+    assert upper == pytest.approx([1.505 + 0.387 * 0.066 / 0.384, 2.995 + 1.139 * 0.172 / 0.798])
+
+
+def test_a_front_of_an_experiment_lies_in_the_band_after_its_shift() -> None:
+    times = np.linspace(0, 3.3, 1001)
+    martin_moyce = np.interp(times, *dam_break.MARTIN_MOYCE.T)
+    assert np.max(np.abs(dam_break.outside(times, martin_moyce, 0.0))) < 1e-3
+    upper = dam_break.band(times + 0.1)[1]
+    assert np.max(np.abs(dam_break.outside(times, upper, 0.1))) < 1e-3
+    assert dam_break.best_shift(times, upper) == pytest.approx(0.1, abs=0.01)
+    ahead = dam_break.outside(times, 1.2 * dam_break.band(times)[1], 0.0)
+    assert ahead == pytest.approx(0.2, abs=1e-3)
+    assert dam_break.best_shift(times, 2 * upper) == pytest.approx(0.15, abs=1e-3)
+
+
 def test_density_sum_is_that_of_the_plane() -> None:
     assert density_sum("wendland/c2", 4.0) == pytest.approx(1.00121, abs=1e-5)
     for kernel in KERNELS:
@@ -132,7 +214,7 @@ def test_every_case_has_its_script_and_sets_only_what_the_script_knows() -> None
         ("height=tall", "--set height=tall"),
         ("height=nan", "--set height=nan"),
         ("layers=40.5", "a whole number from 24 to 400"),
-        ("kernel=gauss", "kernel must be wendland/c2, cubic"),
+        ("kernel=gauss", "kernel must be wendland/c2, wendland/c4, cubic, quintic"),
         ("height", "expected name=value"),
     ],
 )
@@ -151,7 +233,9 @@ def test_an_unknown_case_and_no_case(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     assert call(monkeypatch, "hydrostatics") == 2
-    assert "choose from hydrostatic" in " ".join(capsys.readouterr().err.split())
+    assert "choose from couette, dam-break, hydrostatic" in " ".join(
+        capsys.readouterr().err.split()
+    )
     assert call(monkeypatch) == 2
 
 
@@ -283,6 +367,41 @@ def test_the_period_is_roughly_right_at_coarse_resolution(
         result.metrics["period_measured"].value, rel=0.3
     )
     assert (tmp_path / f"{name}.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "limits"),
+    [
+        ("couette", {"gap": "2e-3", "lid": "1e-5"}, {"profile": 0.02, "drag": 0.02}),
+        ("poiseuille", {"nu": "2e-6"}, {"profile": 0.03, "drag": 0.02}),
+        ("jet", {"across": "12", "angle": "60", "speed": "3"}, {"force": 0.1, "divided": 0.9}),
+        ("dam-break", {"across": "24", "width": "0.1"}, {"front": 0.15, "energy_loss": 0.2}),
+    ],
+)
+def test_a_flow_is_roughly_right_at_coarse_resolution(
+    tmp_path: Path, name: str, settings: dict[str, str], limits: dict[str, float]
+) -> None:
+    case, console = validate.find_case(name), Console(file=io.StringIO())
+    result = validate.validate(case, settings, 1, True, tmp_path, console)
+    for quantity, limit in limits.items():
+        assert abs(result.metrics[quantity].value) < limit
+    assert (tmp_path / f"{name}.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("settings", "largest"),
+    [
+        ({"precision": "mixed"}, 0.05),
+        ({"density": "continuity"}, 0.2),
+        ({"kernel": "quintic"}, 0.05),
+    ],
+)
+def test_precision_density_and_kernel_can_be_chosen(
+    tmp_path: Path, settings: dict[str, str], largest: float
+) -> None:
+    result = run_hydrostatic(tmp_path, **settings, time="1")
+    assert abs(result.metrics["base_force"].value) < largest
+    assert result.metrics["pressure"].value < largest
 
 
 def test_a_case_that_fails_has_exit_code_1(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -2,30 +2,59 @@
 
 from __future__ import annotations
 
-from sphcloth.validation.case import Parameter
-from sphcloth.validation.lattice import KERNELS
+from collections.abc import Mapping
+
+from sphcloth.validation.case import Parameter, Value
+from sphcloth.validation.lattice import KERNELS, density_sum
 
 
-def numerics(alpha: float, courant: float) -> tuple[Parameter, ...]:
+def numerics(
+    alpha: float,
+    courant: float,
+    *,
+    kernel: str = "wendland/c2",
+    support: float = 4.0,
+    tension: str = "no",
+    disorder: float = 0.1,
+    density: str = "summation",
+) -> tuple[Parameter, ...]:
     """Return the parameters of the method; their names are those of the scripts' variables.
 
     Args:
         alpha: default of the artificial viscosity.
         courant: default of the largest step over smoothing length / speed of sound.
+        kernel: default of the kernel.
+        support: default of the support radius over the spacing.
+        tension: default of whether negative pressure acts.
+        disorder: default of the displacement at the start over the spacing.
+        density: default of how the density is found.
     """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
         Parameter("alpha", alpha, "1", "artificial viscosity", 0.0, 2.0),
-        Parameter("kernel", "wendland/c2", "1", "kernel", choices=tuple(KERNELS)),
-        Parameter("support", 4.0, "1", "support radius over spacing", 2.0, 6.0),
-        Parameter("tension", "no", "1", "whether negative pressure acts", choices=("no", "yes")),
-        Parameter("disorder", 0.1, "1", "displacement at the start over spacing", 0.0, 0.3),
+        Parameter("kernel", kernel, "1", "kernel", choices=tuple(KERNELS)),
+        Parameter("support", support, "1", "support radius over spacing", 2.0, 6.0),
+        Parameter("tension", tension, "1", "whether negative pressure acts", choices=("no", "yes")),
+        Parameter("precision", "double", "1", "of the pair loops", choices=("double", "mixed")),
+        Parameter("density", density, "1", "how it is found", choices=("summation", "continuity")),
+        Parameter("delta", 0.1, "1", "diffusion of the density, with continuity", 0.0, 1.0),
+        Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
         Parameter("courant", courant, "1", "largest step over smoothing length / c0", 0.01, 1.6),
         Parameter(
             "scheme", "constant", "1", "scheme of the time step", choices=("constant", "global")
         ),
     )
+
+
+def lattice_density(values: Mapping[str, Value], height_over_width: float = 1.0) -> float:
+    """Return the density that particles on a lattice find over their mass per area.
+
+    With continuity every particle starts with the rest density, whatever its neighbours are.
+    """
+    if values["density"] == "continuity":
+        return 1.0
+    return density_sum(values["kernel"], values["support"], height_over_width)
 
 
 # the script's base: particles at rest below the water

@@ -20,11 +20,25 @@ def _wendland_c2(q: NDArray) -> NDArray:
     return (1 - q) ** 4 * (1 + 4 * q)
 
 
+def _wendland_c4(q: NDArray) -> NDArray:
+    return (1 - q) ** 6 * (1 + 6 * q + 35 / 3 * q**2)
+
+
 def _cubic(q: NDArray) -> NDArray:
     return np.where(q < 0.5, 1 - 6 * q**2 + 6 * q**3, 2 * (1 - q) ** 3)
 
 
-KERNELS: dict[str, Shape] = {"wendland/c2": _wendland_c2, "cubic": _cubic}
+def _quintic(q: NDArray) -> NDArray:
+    parts = ((1.0, 1.0), (2 / 3, -6.0), (1 / 3, 15.0))
+    return sum(share * np.maximum(end - q, 0.0) ** 5 for end, share in parts)
+
+
+KERNELS: dict[str, Shape] = {
+    "wendland/c2": _wendland_c2,
+    "wendland/c4": _wendland_c4,
+    "cubic": _cubic,
+    "quintic": _quintic,
+}
 
 
 def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> float:
@@ -48,4 +62,5 @@ def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> 
 
 def _plane_integral(shape: Shape) -> float:
     """Return the integral of the kernel's shape over the unit disc."""
-    return 2 * math.pi * quad(lambda q: float(shape(np.float64(q))) * q, 0, 1, points=[0.5])[0]
+    kinks = [1 / 3, 1 / 2, 2 / 3]
+    return 2 * math.pi * quad(lambda q: float(shape(np.float64(q))) * q, 0, 1, points=kinks)[0]

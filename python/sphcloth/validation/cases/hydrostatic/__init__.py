@@ -15,8 +15,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
-from sphcloth.validation.common import MIRROR, numerics
-from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.common import MIRROR, lattice_density, numerics
 
 # rate of the damping while the column settles, in c0 / H
 DAMPING = 3.2
@@ -111,7 +110,7 @@ def _run(values: Mapping[str, Value], bench: Bench, label: str, layers: int, tim
         | {
             "layers": layers,
             "sound": sound,
-            "lattice": density_sum(values["kernel"], values["support"]),
+            "lattice": lattice_density(values),
             "base": math.ceil(values["support"]) + 1,
             "damping": DAMPING * sound / values["height"],
             "t_settle": t_settle,

@@ -15,8 +15,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
-from sphcloth.validation.common import numerics
-from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.common import lattice_density, numerics
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega
 DAMPING, SETTLE = 10.0, 2.0
@@ -34,7 +33,7 @@ PARAMETERS = (
     Parameter("sound", 20.0, "omega R", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 80, "1", "particles over the radius", 10, 400, quick=40),
     Parameter("periods", 1, "T", "time of the motion", 1, 50),
-    *numerics(alpha=0.0, courant=1.0),
+    *numerics(alpha=0.0, courant=1.0, kernel="wendland/c4", support=5.0, density="continuity"),
 )
 
 QUANTITIES = (
@@ -126,7 +125,7 @@ def _run(
             "across": across,
             "sigma": drop.sigma,
             "sound": values["sound"] * drop.omega * values["radius"],
-            "lattice": density_sum(values["kernel"], values["support"]),
+            "lattice": lattice_density(values),
             "room": ROOM * drop.largest,
             "damping": DAMPING * drop.omega,
             "t_settle": t_settle,

@@ -16,8 +16,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.standing_wave.reference import StandingWave
-from sphcloth.validation.common import MIRROR, numerics
-from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.common import MIRROR, lattice_density, numerics
 
 # rate of the damping while the water settles, in c0 / H
 DAMPING = 0.64
@@ -115,7 +114,7 @@ def _run(
             "layers": layers,
             "columns": columns,
             "sound": sound,
-            "lattice": density_sum(values["kernel"], values["support"], height / width),
+            "lattice": lattice_density(values, height / width),
             "base": math.ceil(values["support"]) + 1,
             "damping": DAMPING * sound / values["depth"],
             "t_settle": t_settle,

@@ -1,0 +1,31 @@
+"""Start-up of plane Couette flow, in two dimensions, periodic along the plates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sphcloth.validation import channel
+from sphcloth.validation.bench import Bench
+from sphcloth.validation.case import Case, Parameter, Value
+from sphcloth.validation.cases.couette.reference import CouetteStart
+
+PARAMETERS = channel.parameters(
+    Parameter("lid", 1.25e-5, "m/s", "velocity V of the upper plate", 1e-9, 10.0),
+)
+
+
+def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+    """Run two resolutions and compare their profiles with the series."""
+    flow = CouetteStart(values["gap"], values["nu"], values["lid"])
+    return channel.measure(flow, values, bench)
+
+
+CASE = Case(
+    "couette",
+    "profiles of water set in motion by a sliding plate against the series solution",
+    PARAMETERS,
+    channel.QUANTITIES,
+    measure,
+    Path(__file__).parent,
+)

@@ -1,0 +1,31 @@
+"""Start-up of plane Poiseuille flow, in two dimensions, periodic along the plates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sphcloth.validation import channel
+from sphcloth.validation.bench import Bench
+from sphcloth.validation.case import Case, Parameter, Value
+from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
+
+PARAMETERS = channel.parameters(
+    Parameter("drive", 1e-4, "m/s^2", "acceleration along the plates", 1e-9, 100.0),
+)
+
+
+def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+    """Run two resolutions and compare their profiles with the series."""
+    flow = PoiseuilleStart(values["gap"], values["nu"], values["drive"])
+    return channel.measure(flow, values, bench)
+
+
+CASE = Case(
+    "poiseuille",
+    "profiles of water set in motion by a force against the series solution",
+    PARAMETERS,
+    channel.QUANTITIES,
+    measure,
+    Path(__file__).parent,
+)

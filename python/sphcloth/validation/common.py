@@ -58,6 +58,10 @@ def lattice_density(values: Mapping[str, Value], height_over_width: float = 1.0)
 
 
 # the script's base: particles at rest below the water
-MIRROR = Parameter(
-    "mirror", 2.0, "1", "pressure on the base over the energy-consistent one", 0.5, 4.0
+WALL = Parameter(
+    "wall",
+    "extrapolate",
+    "1",
+    "pressure of the base",
+    choices=("extrapolate", "mirror", "own"),
 )

@@ -15,7 +15,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
-from sphcloth.validation.common import MIRROR, lattice_density, numerics
+from sphcloth.validation.common import WALL, lattice_density, numerics
 
 # rate of the damping while the column settles, in c0 / H
 DAMPING = 3.2
@@ -33,7 +33,7 @@ PARAMETERS = (
     Parameter("across", 10, "1", "particles over the periodic width", 8, 100),
     Parameter("settle", 6.0, "sqrt(H/g)", "time of damping", 1.0, 1000.0),
     Parameter("time", 100.0, "s", "time of rest without damping", 0.1, 1e4, quick=10.0),
-    MIRROR,
+    WALL,
     *numerics(alpha=0.5, courant=0.5),
 )
 

@@ -16,7 +16,7 @@ from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases.standing_wave.reference import StandingWave
-from sphcloth.validation.common import MIRROR, lattice_density, numerics
+from sphcloth.validation.common import WALL, lattice_density, numerics
 
 # rate of the damping while the water settles, in c0 / H
 DAMPING = 0.64
@@ -33,7 +33,7 @@ PARAMETERS = (
     Parameter("layers", 60, "1", "particles over the depth", 12, 400, quick=32),
     Parameter("settle", 3.0, "sqrt(H/g)", "time of damping before the wave", 1.0, 100.0),
     Parameter("periods", 3.0, "T", "time of the wave", 1.0, 100.0, quick=2.0),
-    MIRROR,
+    WALL,
     *numerics(alpha=0.1, courant=0.5),
 )
 

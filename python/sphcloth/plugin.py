@@ -19,6 +19,7 @@ STYLES = (
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),
+    ("fix", "sph/shift"),
     ("fix", "wall/sph"),
     ("command", "create_cloth"),
     ("run", "sph/adaptive"),

@@ -98,7 +98,8 @@ void FixSPHShift::post_force(int)
   crowd.assign(n, Crowd());
   open.assign(n + atom->nghost, 0.0);
   left.assign(n, 1);
-  double fastest_sq = 0.0;
+  own_speed.assign(n, 0.0);
+  double fastest = 0.0;
 
   with_kernel(pair->kernel(), [&](auto kernel) {
     using K = decltype(kernel);
@@ -115,10 +116,10 @@ void FixSPHShift::post_force(int)
     if (!(atom->mask[i] & groupbit)) continue;
     left[i] = near_surface_or_cloth(i);
     const double *v = atom->v[i];
-    fastest_sq = std::max(fastest_sq, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    own_speed[i] = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    fastest = std::max(fastest, own_speed[i]);
   }
-  MPI_Allreduce(&fastest_sq, &reference, 1, MPI_DOUBLE, MPI_MAX, world);
-  reference = std::sqrt(reference);
+  MPI_Allreduce(&fastest, &reference, 1, MPI_DOUBLE, MPI_MAX, world);
 }
 
 template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScale> &scale)
@@ -193,18 +194,11 @@ void FixSPHShift::initial_integrate(int)
   }
 }
 
-double FixSPHShift::speed_of(int i) const
-{
-  if (speed == Speed::LARGEST) return reference;
-  const double *v = atom->v[i];
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 void FixSPHShift::shift(int i)
 {
   const double spacing = spacing_of(volume_at_rest(i), domain->dimension);
-  const double scale =
-      -coefficients.strength * pair->support(atom->type[i]) * speed_of(i) * update->dt;
+  const double u = speed == Speed::OWN ? own_speed[i] : reference;
+  const double scale = -coefficients.strength * pair->support(atom->type[i]) * u * update->dt;
   std::array<double, 3> move = crowd[i].gradient;
   for (double &m : move) m *= scale;
   if (cut_to(move, coefficients.largest * spacing)) counts[CUT]++;
@@ -255,6 +249,7 @@ void FixSPHShift::restart(char *buf)
 
 double FixSPHShift::memory_usage()
 {
-  return static_cast<double>(sizeof(Crowd) * crowd.capacity() + sizeof(double) * open.capacity() +
+  return static_cast<double>(sizeof(Crowd) * crowd.capacity() +
+                             sizeof(double) * (open.capacity() + own_speed.capacity()) +
                              left.capacity());
 }

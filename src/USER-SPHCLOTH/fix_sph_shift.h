@@ -55,6 +55,7 @@ class FixSPHShift : public Fix {
   std::vector<sphcloth::Crowd> crowd;
   std::vector<double> open;    // owned and ghost: 1 at a free surface
   std::vector<char> left;
+  std::vector<double> own_speed;
   double reference;    // largest speed of the group
 
   double largest;    // shift of the last step over the spacing, this rank
@@ -64,7 +65,6 @@ class FixSPHShift : public Fix {
   template <class K> void measure(int i, const std::vector<sphcloth::KernelScale> &);
   double volume_at_rest(int i) const;
   bool near_surface_or_cloth(int i) const;
-  double speed_of(int i) const;
   void shift(int i);
 };
 

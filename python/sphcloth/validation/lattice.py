@@ -24,7 +24,23 @@ def _cubic(q: NDArray) -> NDArray:
     return np.where(q < 0.5, 1 - 6 * q**2 + 6 * q**3, 2 * (1 - q) ** 3)
 
 
-KERNELS: dict[str, Shape] = {"wendland/c2": _wendland_c2, "cubic": _cubic}
+def _wendland_c4(q: NDArray) -> NDArray:
+    return (1 - q) ** 6 * (3 + 18 * q + 35 * q**2)
+
+
+def _quintic(q: NDArray) -> NDArray:
+    def power(edge: float) -> NDArray:
+        return np.maximum(edge - 3 * q, 0) ** 5
+
+    return power(3) - 6 * power(2) + 15 * power(1)
+
+
+KERNELS: dict[str, Shape] = {
+    "wendland/c2": _wendland_c2,
+    "cubic": _cubic,
+    "wendland/c4": _wendland_c4,
+    "quintic": _quintic,
+}
 
 
 def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> float:

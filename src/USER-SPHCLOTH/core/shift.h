@@ -3,6 +3,9 @@
 // takes particles from where they are crowded to where they are sparse; dx is the spacing of the
 // particle, R the strength of the term against clumping.
 //
+// The displacement of one step is -A H U dt grad C_i, with a speed U and the support H; A = 2 is that
+// of Sun et al.
+//
 // Lind, Xu, Stansby & Rogers, J. Comput. Phys. 231 (2012) 1499, equations (16) to (25); Skillen,
 // Lind, Stansby & Rogers, Comput. Methods Appl. Mech. Eng. 265 (2013) 163 (in proportion to speed
 // and time); Sun, Colagrossi, Marrone & Zhang, Comput. Methods Appl. Mech. Eng. 315 (2017) 25.
@@ -25,8 +28,8 @@ namespace sphcloth {
 struct ShiftCoefficients {
   double strength = 1.0;    // A
   double clumping = 0.2;    // R
-  double surface = 0.8;     // divergence of position over d, less is a free surface
-  double largest = 0.1;     // shift in one step over the spacing
+  double surface = 0.8;    // divergence of position over d, less is a free surface
+  double largest = 0.1;    // shift in one step over the spacing
 };
 
 // length of the cube (square) that the volume of a particle fills
@@ -40,8 +43,8 @@ inline double spacing_of(double volume, int dim)
 
 struct Crowd {
   std::array<double, 3> gradient{};    // of the concentration
-  double cover = 0.0;                  // divergence of position over d
-  std::array<double, 9> grad_v{};      // d v_a / d x_b
+  double cover = 0.0;    // divergence of position over d
+  std::array<double, 9> grad_v{};    // d v_a / d x_b
 };
 
 // one neighbour: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
@@ -76,7 +79,7 @@ inline double wall_cover(const WallTable::Value &wall, double delta, int dim)
   return wall.lambda - delta * wall.slope / dim;
 }
 
-// Displacement -A H U dt grad C, no longer than `longest`; true if it had to be cut.
+// Shortens a displacement to `longest`; true if it had to.
 
 inline bool cut_to(std::array<double, 3> &shift, double longest)
 {

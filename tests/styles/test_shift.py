@@ -316,6 +316,19 @@ def test_ranks_and_run_style(tmp_path, density):
     assert np.abs(last_frame(tmp_path / "bare.txt") - one).max() > 1e-4
 
 
+def test_a_surface_on_another_rank(tmp_path):
+    """The surface is within reach of particles behind the cut between two ranks."""
+    region = "region water block INF INF INF 0.58 INF INF units box\ncreate_atoms 1 region water"
+    run(write(tmp_path, MAKE.replace("create_atoms 1 box", region), "in.make"))
+    script = flow() + "run 60\nprint 'left $(f_shift[3]:%.0f)'\n" + WRITE
+    cut = script.replace("read_data", "processors 1 2 1\nread_data")
+    printed = run(write(tmp_path, script, "in.one"), dump="one.txt")
+    assert int(printed.rsplit("left ", 1)[1].split()[0]) > 80
+    run(write(tmp_path, cut, "in.cut"), ranks=2, dump="cut.txt")
+    one, two = (last_frame(tmp_path / f"{name}.txt") for name in ("one", "cut"))
+    assert np.abs(one - two).max() < 1e-10
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("density", ["summation", "continuity"])
 def test_restart_continues_to_the_last_bit(tmp_path, ranks, density):

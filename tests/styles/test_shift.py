@@ -122,6 +122,7 @@ def test_a_disturbed_lattice_becomes_regular(pair):
 
 def test_velocities_are_left_alone_unless_corrected():
     lmp, _ = scene(disorder=0.01)
+    lmp.commands_string("variable u atom 0.2*y\nvelocity all set v_u 0 0 units box\nrun 0")
     before = by_id(lmp, "v")
     lmp.command("run 20")
     np.testing.assert_array_equal(by_id(lmp, "v"), before)

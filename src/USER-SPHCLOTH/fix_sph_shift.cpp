@@ -97,6 +97,8 @@ void FixSPHShift::post_force(int)
   const int n = atom->nlocal, n_types = atom->ntypes + 1;
   crowd.assign(n, Crowd());
   open.assign(n + atom->nghost, 0.0);
+  volumes.resize(n + atom->nghost);
+  for (int i = 0; i < n + atom->nghost; i++) volumes[i] = volume(i);
   left.assign(n, 1);
   own_speed.assign(n, 0.0);
   double fastest = 0.0;
@@ -125,7 +127,7 @@ void FixSPHShift::post_force(int)
 template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScale> &scale)
 {
   const int dim = domain->dimension, n_types = atom->ntypes + 1, type = atom->type[i];
-  const double spacing = spacing_of(volume_at_rest(i), dim);
+  const double spacing = spacing_of(volumes[i].at_rest, dim);
   const double *x = atom->x[i], *v = atom->v[i];
   Crowd &mine = crowd[i];
   for (int t = 1; t < n_types; t++) {
@@ -134,23 +136,25 @@ template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScal
     const Stretch near = pair->neighbours(i, t);
     for (int k = 0; k < near.n; k++) {
       const int j = near.of[k];
-      const double *xj = atom->x[j], *vj = atom->v[j];
-      const Neighbour neighbour{{x[0] - xj[0], x[1] - xj[1], x[2] - xj[2]},
-                                {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]},
-                                pair->volume(j),
-                                volume_at_rest(j)};
+      const double *xj = atom->x[j];
+      const Neighbour neighbour{
+          {x[0] - xj[0], x[1] - xj[1], x[2] - xj[2]}, volumes[j].now, volumes[j].at_rest};
       add_neighbour<K>(mine, neighbour, s, at_spacing, coefficients.clumping, dim);
+      if (!correct_velocity) continue;
+      const double *vj = atom->v[j];
+      add_velocity<K>(mine, neighbour, {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]}, s);
     }
   }
   if (walls) walls->add_to(mine, i);
   open[i] = mine.cover < coefficients.surface ? 1.0 : 0.0;
 }
 
-double FixSPHShift::volume_at_rest(int i) const
+FixSPHShift::Volume FixSPHShift::volume(int i) const
 {
   const int type = atom->type[i];
-  if (!pair->is_fluid(type)) return pair->volume(i);
-  return pair->volume(i) * atom->rho[i] / pair->equation_of_state(type).rho0;
+  const double now = pair->volume(i);
+  if (!pair->is_fluid(type)) return {now, now};
+  return {now, now * atom->rho[i] / pair->equation_of_state(type).rho0};
 }
 
 // Contact with cloth follows a particle from where its velocity says that it came.
@@ -196,7 +200,7 @@ void FixSPHShift::initial_integrate(int)
 
 void FixSPHShift::shift(int i)
 {
-  const double spacing = spacing_of(volume_at_rest(i), domain->dimension);
+  const double spacing = spacing_of(volumes[i].at_rest, domain->dimension);
   const double u = speed == Speed::OWN ? own_speed[i] : reference;
   const double scale = -coefficients.strength * pair->support(atom->type[i]) * u * update->dt;
   std::array<double, 3> move = crowd[i].gradient;
@@ -251,5 +255,5 @@ double FixSPHShift::memory_usage()
 {
   return static_cast<double>(sizeof(Crowd) * crowd.capacity() +
                              sizeof(double) * (open.capacity() + own_speed.capacity()) +
-                             left.capacity());
+                             sizeof(Volume) * volumes.capacity() + left.capacity());
 }

@@ -43,6 +43,10 @@ class FixSPHShift : public Fix {
   enum class Speed { LARGEST, OWN };
   enum Count { MOVED, SHIFTED, LEFT, CUT, N_COUNTS };
 
+  struct Volume {
+    double now, at_rest;
+  };
+
   std::string label;
   PairSPHTait *pair;
   FixWallSPH *walls;    // null without plane walls
@@ -53,6 +57,7 @@ class FixSPHShift : public Fix {
 
   // between the evaluation and the next step, during which no particle changes its place in memory
   std::vector<sphcloth::Crowd> crowd;
+  std::vector<Volume> volumes;    // owned and ghost
   std::vector<double> open;    // owned and ghost: 1 at a free surface
   std::vector<char> left;
   std::vector<double> own_speed;
@@ -63,7 +68,7 @@ class FixSPHShift : public Fix {
 
   void read_options(ArgReader &);
   template <class K> void measure(int i, const std::vector<sphcloth::KernelScale> &);
-  double volume_at_rest(int i) const;
+  Volume volume(int i) const;
   bool near_surface_or_cloth(int i) const;
   void shift(int i);
 };

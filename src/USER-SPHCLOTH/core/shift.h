@@ -50,7 +50,7 @@ struct Crowd {
 // one neighbour: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
 
 struct Neighbour {
-  std::array<double, 3> r, v;    // v = v_i - v_j
+  std::array<double, 3> r;
   double volume, volume_at_rest;
 };
 
@@ -61,14 +61,22 @@ void add_neighbour(Crowd &crowd, const Neighbour &n, const KernelScale &s, doubl
   const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
   const double q = std::sqrt(r_sq) * s.inv_support;
   const double slope = s.f * K::slope_over_q(q);
-  const double close_sq = std::pow(K::shape(q) / shape_at_spacing, 2);
-  const double plain = n.volume * slope;
-  const double weight = plain * (1.0 + clumping * close_sq * close_sq);
+  const double close = K::shape(q) / shape_at_spacing, close_sq = close * close;
+  const double weight = n.volume * slope * (1.0 + clumping * close_sq * close_sq);
   crowd.cover -= n.volume_at_rest * slope * r_sq / dim;
-  for (int a = 0; a < 3; a++) {
-    crowd.gradient[a] += weight * n.r[a];
-    for (int b = 0; b < 3; b++) crowd.grad_v[3 * a + b] -= plain * n.v[a] * n.r[b];
-  }
+  for (int a = 0; a < 3; a++) crowd.gradient[a] += weight * n.r[a];
+}
+
+// what it adds to the gradient of the velocity; v = v_i - v_j
+
+template <class K>
+void add_velocity(Crowd &crowd, const Neighbour &n, const std::array<double, 3> &v,
+                  const KernelScale &s)
+{
+  const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
+  const double weight = n.volume * s.f * K::slope_over_q(std::sqrt(r_sq) * s.inv_support);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) crowd.grad_v[3 * a + b] -= weight * v[a] * n.r[b];
 }
 
 // A plane wall at delta = distance/H, filled with fluid behind it.  The kernel's gradient integrates

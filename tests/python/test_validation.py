@@ -316,7 +316,7 @@ def test_the_period_is_roughly_right_at_coarse_resolution(
 
 def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None:
     case, console = validate.find_case("taylor-green"), Console(file=io.StringIO())
-    settings = {"across": "40", "until": "0.4", "reynolds": "50", "disorder": "0.1"}
+    settings = {"across": "40", "until": "0.4", "reynolds": "50", "courant": "0.4"}
     found = {
         shift: validate.validate(
             case, settings | {"shift": shift}, 1, True, tmp_path / shift, console

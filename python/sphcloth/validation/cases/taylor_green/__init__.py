@@ -92,6 +92,8 @@ class Decay:
 
     def rate(self, values: NDArray) -> float:
         """Return the rate at which values fall: a line through their logarithms, least squares."""
+        if not np.all(np.isfinite(values)):
+            return math.nan
         return -float(np.polyfit(self.times, np.log(values), 1)[0])
 
 

@@ -19,6 +19,7 @@ STYLES = (
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),
+    ("fix", "sph/shift"),
     ("fix", "wall/sph"),
     ("compute", "sph/atom"),
     ("command", "create_cloth"),

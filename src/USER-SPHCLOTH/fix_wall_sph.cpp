@@ -283,6 +283,20 @@ void FixWallSPH::push(int i, double pressure_term)
   }
 }
 
+void FixWallSPH::add_to(Crowd &crowd, int i)
+{
+  if (!look(i)) return;
+  const double support = pair->support(atom->type[i]);
+  const int dim = domain->dimension;
+  crowd.cover += joint_lambda(near);
+  for (std::size_t k = 0; k < walls.size(); k++) {
+    const int axis = walls[k].axis();
+    const double share = joint_share(near, k), delta = walls[k].distance(atom->x[i]) / support;
+    crowd.gradient[axis] += walls[k].inwards() * share * near[k].slope / support;
+    crowd.cover += share * (wall_cover(near[k], delta, dim) - near[k].lambda);
+  }
+}
+
 // LAMMPS asks fixes for their virial here; fluid and plane count as a pair of particles.
 
 void FixWallSPH::post_force(int vflag)

@@ -11,6 +11,7 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "fix.h"
 
+#include "core/shift.h"
 #include "core/wall.h"
 
 #include <array>
@@ -39,6 +40,9 @@ class FixWallSPH : public Fix {
   double density(int i);
   double density_rate(int i);
   void push(int i, double pressure_term);
+
+  // What the walls, where they were then, add to the surroundings of a fluid particle
+  void add_to(sphcloth::Crowd &, int i);
 
  private:
   enum class Place { NUMBER, EDGE, VARIABLE };

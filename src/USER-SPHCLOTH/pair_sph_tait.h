@@ -9,6 +9,7 @@ PairStyle(sph/tait,PairSPHTait);
 #ifndef LMP_PAIR_SPH_TAIT_H
 #define LMP_PAIR_SPH_TAIT_H
 
+#include "atom.h"
 #include "pair.h"
 
 #include "core/wall.h"
@@ -82,6 +83,12 @@ class PairSPHTait : public Pair {
 
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
+
+  // volume of a particle, owned or ghost, in the last evaluation
+  double volume(int i) const
+  {
+    return is_fluid(atom->type[i]) ? amount[i] / atom->rho[i] : amount[i];
+  }
 
   // neighbours inside the support in the last evaluation, of an owned atom
   sphcloth::Stretch neighbours(int i, int type) const { return fluid->neighbours(i, type); }

@@ -29,6 +29,8 @@ from sphcloth.validation.cases.oscillating_drop import Motion
 from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
 from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
 from sphcloth.validation.cases.standing_wave.reference import StandingWave
+from sphcloth.validation.cases.taylor_green import Decay
+from sphcloth.validation.cases.taylor_green.reference import TaylorGreen
 from sphcloth.validation.lattice import KERNELS, density_sum
 
 
@@ -167,6 +169,33 @@ def test_a_front_of_an_experiment_lies_in_the_band_after_its_shift() -> None:
     ahead = dam_break.outside(times, 1.2 * dam_break.band(times)[1], 0.0)
     assert ahead == pytest.approx(0.2, abs=1e-3)
     assert dam_break.best_shift(times, 2 * upper) == pytest.approx(0.15, abs=1e-3)
+
+
+def test_taylor_green_decays_and_is_incompressible() -> None:
+    flow, step = TaylorGreen(100.0), 1e-6
+    assert flow.rate == pytest.approx(0.789568, abs=1e-6)
+    assert flow.time(math.exp(-2.0)) == pytest.approx(2 / flow.rate)
+    at = np.array([[0.3, 0.7], [0.3 + step, 0.7], [0.3, 0.7 + step], [0.0, 0.25], [1.3, -0.3]])
+    mode = flow.mode(at)
+    assert (mode[1, 0] - mode[0, 0] + mode[2, 1] - mode[0, 1]) / step == pytest.approx(0, abs=1e-4)
+    np.testing.assert_allclose(mode[3], [-1, 0], atol=1e-15)
+    np.testing.assert_allclose(mode[4], mode[0], atol=1e-12)
+
+
+def test_taylor_green_satisfies_the_heat_equation() -> None:
+    """The nonlinear term is a gradient, so speeds decay as the Laplacian says."""
+    flow, h, at = TaylorGreen(250.0), 1e-3, np.array([0.17, 0.41])
+    around = flow.mode(at + h * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]]))
+    laplacian = (around[1:].sum(axis=0) - 4 * around[0]) / h**2
+    np.testing.assert_allclose(laplacian / 250.0, -flow.rate * around[0], rtol=1e-4)
+
+
+def test_an_exact_decay_has_the_exact_rate() -> None:
+    times, flow = np.linspace(0, 2, 21), TaylorGreen(1000.0)
+    speed = np.exp(-flow.rate * times)
+    decay = Decay(times, speed, speed**2, speed, 0 * times)
+    assert decay.rate(decay.largest) == pytest.approx(flow.rate, rel=1e-12)
+    assert decay.rate(decay.energy) == pytest.approx(2 * flow.rate, rel=1e-12)
 
 
 def test_density_sum_is_that_of_the_plane() -> None:
@@ -402,6 +431,26 @@ def test_precision_density_and_kernel_can_be_chosen(
     result = run_hydrostatic(tmp_path, **settings, time="1")
     assert abs(result.metrics["base_force"].value) < largest
     assert result.metrics["pressure"].value < largest
+
+
+def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None:
+    case, console = validate.find_case("taylor-green"), Console(file=io.StringIO())
+    settings = {"across": "40", "until": "0.4", "reynolds": "50", "courant": "0.4"}
+    found = {
+        shift: validate.validate(
+            case, settings | {"shift": shift}, 1, True, tmp_path / shift, console
+        ).metrics
+        for shift in ("1", "0")
+    }
+    for metrics in found.values():
+        assert metrics["rate_reference"].value == pytest.approx(8 * math.pi**2 / 50)
+        assert metrics["decay"].value == pytest.approx(
+            metrics["rate_measured"].value / metrics["rate_reference"].value - 1
+        )
+    assert abs(found["1"]["decay"].value) < 0.05
+    assert abs(found["1"]["decay_energy"].value) < 0.05
+    assert found["1"]["velocity"].value < 0.6 * found["0"]["velocity"].value
+    assert (tmp_path / "1" / "taylor-green.png").is_file()
 
 
 def test_a_case_that_fails_has_exit_code_1(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

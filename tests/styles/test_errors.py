@@ -28,6 +28,7 @@ neighbor 0.05 bin
 )
 SHEET_FIX = SHEET + "fix sheet cloth pbd/cloth\n"
 STEP = SHEET + "fix step water sph/integrate "
+SHIFT = SHEET + "fix shift water sph/shift "
 EMIT = SHEET + "fix pour water sph/emit "
 
 
@@ -172,6 +173,30 @@ CASES = [
         + "fix c water cloth/contact 0.01\nrun 0",
         r"longest edge of the cloth and the thickness are 0.15.*comm_modify cutoff",
     ),
+    # fix sph/shift
+    case("shift: keyword", SHIFT + "colour 1", r"fix shift sph/shift: unknown keyword 'colour'"),
+    case("shift: strength", SHIFT + "strength -1", r"fix shift sph/shift: strength is '-1'.*>= 0"),
+    case("shift: speed", SHIFT + "speed slow", r"speed is 'slow'.*largest or own"),
+    case("shift: max", SHIFT + "max 2", r"max is '2'.*0 to 1"),
+    case("shift: surface", SHIFT + "surface -0.1", r"surface is '-0.1'.*0 to 1"),
+    case("shift: clumping", SHIFT + "clumping nan", r"clumping is 'nan'.*finite"),
+    case("shift: correct", SHIFT + "correct maybe", r"correct is 'maybe'.*no or yes"),
+    case("shift: no value", SHIFT + "max", r"fix shift sph/shift: max is missing"),
+    case(
+        "shift: cloth in the group",
+        SHEET + "fix shift all sph/shift\nrun 0",
+        r"fix shift sph/shift: group all holds type 2, a boundary type.*group of fluid",
+    ),
+    case(
+        "shift: twice",
+        SHIFT + "\nfix again water sph/shift\nrun 0",
+        r"another fix sph/shift: keep one",
+    ),
+    case(
+        "shift: no pair style",
+        SHIFT + "\npair_style zero 0.2\npair_coeff * *\nrun 0",
+        r"fix shift sph/shift: pair_style zero.*use 'pair_style sph/tait'",
+    ),
     # fix sph/integrate and run_style
     case("step: no scheme", STEP, r"fix step sph/integrate: scheme is missing"),
     case("step: scheme", STEP + "local", r"scheme is 'local'.*constant or global"),
@@ -276,6 +301,6 @@ def test_the_scene_of_these_tests_is_sound():
     lmp.commands_string(
         SHEET_FIX
         + "fix step water sph/integrate global\nfix c water cloth/contact 0.005\n"
-        + "fix d water sph/drain\nrun_style sph/adaptive global\nrun 2"
+        + "fix d water sph/drain\nfix s water sph/shift\nrun_style sph/adaptive global\nrun 2"
     )
     assert lmp.extract_global("ntimestep") == 2

@@ -1,0 +1,259 @@
+// Particle shifting, core/shift.h.  What is measured where the forces are, with ghosts in place, is
+// applied when the next step moves the particles: a restart between the two measures it again.
+
+#include "fix_sph_shift.h"
+
+#include "arg_reader.h"
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_wall_sph.h"
+#include "force.h"
+#include "group.h"
+#include "modify.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace sphcloth;
+
+/* ----------------------------------------------------------------------
+   fix ID group sph/shift keyword value ...
+------------------------------------------------------------------------- */
+
+FixSPHShift::FixSPHShift(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/shift", id)), pair(nullptr), walls(nullptr),
+    speed(Speed::LARGEST), correct_velocity(false), cloth_bits(0), reference(0.0), largest(0.0)
+{
+  ArgReader args(lmp, label, narg, arg, 3);
+  read_options(args);
+  scalar_flag = vector_flag = 1;
+  size_vector = N_COUNTS;
+  global_freq = 1;
+  extscalar = 0;
+  extvector = 1;
+  restart_global = 1;
+  comm_forward = 1;
+  dynamic_group_allow = 1;
+}
+
+void FixSPHShift::read_options(ArgReader &args)
+{
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "strength")
+      coefficients.strength = args.at_least(keyword, 0.0);
+    else if (keyword == "speed")
+      speed = args.choice(keyword, {"largest", "own"}) ? Speed::OWN : Speed::LARGEST;
+    else if (keyword == "max")
+      coefficients.largest = args.fraction(keyword);
+    else if (keyword == "surface")
+      coefficients.surface = args.fraction(keyword);
+    else if (keyword == "clumping")
+      coefficients.clumping = args.at_least(keyword, 0.0);
+    else if (keyword == "correct")
+      correct_velocity = args.choice(keyword, {"no", "yes"});
+    else
+      args.unknown(keyword, "strength, speed, max, surface, clumping, correct");
+  }
+}
+
+int FixSPHShift::setmask() { return POST_FORCE | INITIAL_INTEGRATE; }
+
+void FixSPHShift::init()
+{
+  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  if (!pair)
+    error->all(FLERR, "{}: pair_style {} has no neighbours to shift by: use 'pair_style sph/tait'",
+               label, force->pair_style ? force->pair_style : "none");
+  if (modify->get_fix_by_style("^sph/shift$").size() > 1)
+    error->all(FLERR, "{}: there is another fix sph/shift: keep one, with a group of all fluid",
+               label);
+  const auto found = modify->get_fix_by_style("^wall/sph$");
+  walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
+  cloth_bits = 0;
+  for (const Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) cloth_bits |= fix->groupbit;
+
+  int wrong = 0, any_wrong = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && !pair->is_fluid(atom->type[i])) wrong = atom->type[i];
+  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
+  if (any_wrong)
+    error->all(FLERR, "{}: group {} holds type {}, a boundary type: give a group of fluid", label,
+               group->names[igroup], any_wrong);
+}
+
+/* ----------------------------------------------------------------------
+   where the forces are: who is crowded, and who is near a free surface
+------------------------------------------------------------------------- */
+
+void FixSPHShift::post_force(int)
+{
+  const int n = atom->nlocal, n_types = atom->ntypes + 1;
+  crowd.assign(n, Crowd());
+  open.assign(n + atom->nghost, 0.0);
+  volumes.resize(n + atom->nghost);
+  for (int i = 0; i < n + atom->nghost; i++) volumes[i] = volume(i);
+  left.assign(n, 1);
+  own_speed.assign(n, 0.0);
+  double fastest = 0.0;
+
+  with_kernel(pair->kernel(), [&](auto kernel) {
+    using K = decltype(kernel);
+    std::vector<KernelScale> scale(n_types * n_types);
+    for (int s = 1; s < n_types; s++)
+      for (int t = 1; t < n_types; t++)
+        scale[s * n_types + t] = kernel_scale<K>(pair->support(s, t), domain->dimension);
+    for (int i = 0; i < n; i++)
+      if (pair->is_fluid(atom->type[i])) measure<K>(i, scale);
+  });
+  comm->forward_comm(this);
+
+  for (int i = 0; i < n; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    left[i] = near_surface_or_cloth(i);
+    const double *v = atom->v[i];
+    own_speed[i] = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    fastest = std::max(fastest, own_speed[i]);
+  }
+  MPI_Allreduce(&fastest, &reference, 1, MPI_DOUBLE, MPI_MAX, world);
+}
+
+template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScale> &scale)
+{
+  const int dim = domain->dimension, n_types = atom->ntypes + 1, type = atom->type[i];
+  const double spacing = spacing_of(volumes[i].at_rest, dim);
+  const double *x = atom->x[i], *v = atom->v[i];
+  Crowd &mine = crowd[i];
+  for (int t = 1; t < n_types; t++) {
+    const KernelScale &s = scale[type * n_types + t];
+    const double at_spacing = K::shape(std::min(spacing * s.inv_support, 0.9));
+    const Stretch near = pair->neighbours(i, t);
+    for (int k = 0; k < near.n; k++) {
+      const int j = near.of[k];
+      const double *xj = atom->x[j];
+      const Neighbour neighbour{
+          {x[0] - xj[0], x[1] - xj[1], x[2] - xj[2]}, volumes[j].now, volumes[j].at_rest};
+      add_neighbour<K>(mine, neighbour, s, at_spacing, coefficients.clumping, dim);
+      if (!correct_velocity) continue;
+      const double *vj = atom->v[j];
+      add_velocity<K>(mine, neighbour, {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]}, s);
+    }
+  }
+  if (walls) walls->add_to(mine, i);
+  open[i] = mine.cover < coefficients.surface ? 1.0 : 0.0;
+}
+
+FixSPHShift::Volume FixSPHShift::volume(int i) const
+{
+  const int type = atom->type[i];
+  const double now = pair->volume(i);
+  if (!pair->is_fluid(type)) return {now, now};
+  return {now, now * atom->rho[i] / pair->equation_of_state(type).rho0};
+}
+
+// Contact with cloth follows a particle from where its velocity says that it came.
+
+bool FixSPHShift::near_surface_or_cloth(int i) const
+{
+  if (open[i] != 0.0) return true;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const Stretch near = pair->neighbours(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (open[near.of[k]] != 0.0 || atom->mask[near.of[k]] & cloth_bits) return true;
+  }
+  return false;
+}
+
+int FixSPHShift::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = open[list[k]];
+  return n;
+}
+
+void FixSPHShift::unpack_forward_comm(int n, int first, double *buf)
+{
+  std::copy(buf, buf + n, open.begin() + first);
+}
+
+/* ----------------------------------------------------------------------
+   the next step
+------------------------------------------------------------------------- */
+
+void FixSPHShift::initial_integrate(int)
+{
+  largest = 0.0;
+  counts[SHIFTED] = counts[LEFT] = counts[CUT] = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (left[i])
+      counts[LEFT]++;
+    else
+      shift(i);
+  }
+}
+
+void FixSPHShift::shift(int i)
+{
+  const double spacing = spacing_of(volumes[i].at_rest, domain->dimension);
+  const double u = speed == Speed::OWN ? own_speed[i] : reference;
+  const double scale = -coefficients.strength * pair->support(atom->type[i]) * u * update->dt;
+  std::array<double, 3> move = crowd[i].gradient;
+  for (double &m : move) m *= scale;
+  if (cut_to(move, coefficients.largest * spacing)) counts[CUT]++;
+  for (int a = 0; a < 3; a++) atom->x[i][a] += move[a];
+  if (correct_velocity)
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) atom->v[i][a] += crowd[i].grad_v[3 * a + b] * move[b];
+
+  const double length = std::sqrt(move[0] * move[0] + move[1] * move[1] + move[2] * move[2]);
+  largest = std::max(largest, length / spacing);
+  counts[MOVED] += length;
+  counts[SHIFTED]++;
+}
+
+/* ----------------------------------------------------------------------
+   output: largest shift over spacing; moved in all, particles shifted, left alone, cut to max
+------------------------------------------------------------------------- */
+
+double FixSPHShift::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+double FixSPHShift::compute_vector(int n)
+{
+  double all;
+  MPI_Allreduce(&counts[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void FixSPHShift::write_restart(FILE *fp)
+{
+  double all = 0.0;
+  MPI_Reduce(&counts[MOVED], &all, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  if (comm->me) return;
+  const int bytes = sizeof(double);
+  fwrite(&bytes, sizeof(int), 1, fp);
+  fwrite(&all, sizeof(double), 1, fp);
+}
+
+void FixSPHShift::restart(char *buf)
+{
+  const auto *list = reinterpret_cast<const double *>(buf);
+  counts[MOVED] = comm->me == 0 ? list[0] : 0.0;
+}
+
+double FixSPHShift::memory_usage()
+{
+  return static_cast<double>(sizeof(Crowd) * crowd.capacity() +
+                             sizeof(double) * (open.capacity() + own_speed.capacity()) +
+                             sizeof(Volume) * volumes.capacity() + left.capacity());
+}

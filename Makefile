@@ -7,7 +7,7 @@ RANKS  ?= 2
 SIZE   ?= small
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
-.PHONY: demo test lint clean
+.PHONY: demo test validate lint clean
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -17,6 +17,13 @@ test: $(VENV)/installed build/core/test_core
 	$(BIN)/python -m pytest
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
+
+# the physics, minutes per case; every case runs, and the first failure decides the exit code
+validate: $(VENV)/installed
+	mkdir -p build/validate
+	failed=0; for case in $$($(BIN)/python -c \
+	  "from sphcloth.validation.validate import all_cases; print(*all_cases())"); do \
+	  $(BIN)/sphcloth validate $$case --out build/validate/$$case || failed=1; done; exit $$failed
 
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests

@@ -150,8 +150,13 @@ void FixSPHIntegrate::initial_integrate(int)
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
   pair->advance(dt);
+  bool all_active = true;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || state[i][ACTIVE] == 0.0) continue;
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (state[i][ACTIVE] == 0.0) {
+      all_active = false;
+      continue;
+    }
     const double kick = dtf / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
@@ -159,6 +164,8 @@ void FixSPHIntegrate::initial_integrate(int)
     }
     updates++;
   }
+  // while nobody rests, the pair style need not ask
+  pair->set_active(all_active ? nullptr : state, ACTIVE);
 }
 
 void FixSPHIntegrate::end_of_step()

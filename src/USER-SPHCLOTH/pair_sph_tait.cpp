@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -229,18 +230,7 @@ void PairSPHTait::compute(int eflag, int vflag)
   if (extrapolate) boundary_pressures(p);
   fluid->record(p);
 
-  fluid->forces(
-      p,
-      [](void *self, int i, const Acceleration &a) {
-        auto *pair = static_cast<PairSPHTait *>(self);
-        const double scale = pair->amount[i] / pair->force->ftm2v;
-        double *f = pair->atom->f[i];
-        f[0] += scale * a.x;
-        f[1] += scale * a.y;
-        f[2] += scale * a.z;
-        pair->atom->drho[i] += a.drho;
-      },
-      this);
+  fluid->forces(p);
   if (walls) for_each_fluid(p, [&](int i, const Tait &) { walls->push(i, pressure[i]); });
   if (vflag_either)
     fluid->virials(
@@ -270,6 +260,9 @@ Particles PairSPHTait::particles()
   p.amount = amount.data();
   p.pressure = pressure.data();
   p.rho = atom->rho;
+  p.drho = atom->drho;
+  p.f = atom->f[0];
+  p.force_unit = 1.0 / force->ftm2v;
   p.active = active;
   p.active_column = active_column;
   return p;
@@ -395,15 +388,21 @@ void PairSPHTait::check_densities() const
 
 void PairSPHTait::pressures(const Particles &p)
 {
+  std::vector<const Tait *> eos(atom->ntypes + 1, nullptr);
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(t)) eos[t] = &equation_of_state(t);
+  const double least = options.tension ? -std::numeric_limits<double>::max() : 0.0;
+  double *term = pressure.data();
   for (int i = 0; i < p.n_owned; i++) {
-    if (!is_fluid(p.type[i]) || !p.is_active(i)) continue;
+    const Tait *own = eos[p.type[i]];
+    if (!own || !p.is_active(i)) continue;
     const double rho = p.rho[i];
-    const double term = acting_pressure(equation_of_state(p.type[i]), rho) / (rho * rho);
-    if (!std::isfinite(term))
+    term[i] = std::max(own->pressure(rho), least) / (rho * rho);
+    // neither true of what is not a number
+    if (!(term[i] < std::numeric_limits<double>::max()) || !(rho > 0.0))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
-    pressure[i] = term;
   }
 }
 

@@ -42,6 +42,7 @@ class Timing:
     loop: float
     pair: float
     lists: float
+    builds: int
     steps: int
     particles: int
     memory: float
@@ -87,6 +88,7 @@ def read_timing(log: str) -> Timing:
         loop=float(loop[1]),
         pair=section("Pair"),
         lists=section("Neigh"),
+        builds=int(re.search(r"Neighbor list builds = (\d+)", last)[1]),
         steps=int(loop[3]),
         particles=int(loop[4]),
         memory=1024.0**2 * float(memory[1]) * int(loop[2]),
@@ -200,6 +202,7 @@ def measure_scene(run: Runner, scene: str, rounds: int, peak: float, console: Co
             "pair_ns": _figure(pair),
             "pair_ns_per_neighbour": _figure([ns / inside for ns in pair]),
             "list_ns_per_step": _figure([t.per_particle(t.lists) for t in equal[code]]),
+            "steps_per_build": _figure([t.steps / max(t.builds, 1) for t in best[code]]),
             "share_of_peak": None if code == "stock" else rate / peak,
             "best_skin": skins[code],
             "step_ns_at_best_skin": _figure([t.per_particle(t.loop) for t in best[code]]),
@@ -233,6 +236,7 @@ def show(scene: str, figures: dict, console: Console) -> None:
         "lists, ns per particle and step": "list_ns_per_step",
         "best skin / support": "best_skin",
         "step at the best skin, ns per particle": "step_ns_at_best_skin",
+        "steps from build to build there": "steps_per_build",
         "bytes per particle": "bytes_per_particle",
         "share of the core's peak": "share_of_peak",
     }

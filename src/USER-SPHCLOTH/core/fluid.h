@@ -57,6 +57,8 @@ struct Particles {
   const double *amount = nullptr;    // fluid: mass m; boundary: volume V_b
   const double *pressure = nullptr;    // p / rho^2
   double *rho = nullptr;
+  double *f = nullptr, *drho = nullptr;    // what forces() adds to
+  double force_unit = 1.0;                 // of mass times acceleration
   double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
   int active_column = 0;
 
@@ -107,9 +109,11 @@ class Fluid {
   // Records density, volume, velocity and pressure of all particles.
   virtual void record(const Particles &) = 0;
 
-  // (2) for all owned particles: receive(context, i, acceleration)
+  // (2): adds force and d rho/dt of all active owned particles
+  virtual void forces(const Particles &) = 0;
+
+  // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);
-  virtual void forces(const Particles &, Receiver, void *context) = 0;
   virtual void virials(const Particles &, Receiver, void *context) = 0;
 
   // number density of a square or cubic lattice by summation (1)

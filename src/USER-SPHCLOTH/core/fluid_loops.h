@@ -46,7 +46,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
-  void forces(const Particles &, Receiver, void *context) override;
+  void forces(const Particles &) override;
   void virials(const Particles &, Receiver, void *context) override;
   double lattice_sum(double support, double spacing) const override;
   double bytes() const override;
@@ -116,6 +116,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <bool VIRIAL>
   static void add(Sums<VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz, Real rate,
                   Real dx, Real dy, Real dz);
+  static void apply(const Particles &, int i, bool fluid, const Acceleration &);
   template <Friction F, bool VIRIAL> void all_forces(const Particles &, Receiver, void *);
   template <Friction F, bool VIRIAL>
   void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
@@ -467,18 +468,33 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Rece
         else
           across_boundary<F, VIRIAL, true>(p, i, found, terms, equal, c, sums);
       }
-      if (met) receive(context, i, sums.total());
+      if (!met) continue;
+      const Acceleration a = sums.total();
+      if (VIRIAL)
+        receive(context, i, a);
+      else
+        apply(p, i, fluid, a);
     }
   }
 }
 
 template <class K, class P>
-void FluidLoops<K, P>::forces(const Particles &p, Receiver receive, void *context)
+SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool fluid,
+                                             const Acceleration &a)
+{
+  const double scale = p.amount[i] * p.force_unit;
+  p.f[3 * i] += scale * a.x;
+  p.f[3 * i + 1] += scale * a.y;
+  p.f[3 * i + 2] += scale * a.z;
+  if (fluid) p.drho[i] += a.drho;
+}
+
+template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p)
 {
   switch (model.friction) {
-    case Friction::NONE: return all_forces<Friction::NONE, false>(p, receive, context);
-    case Friction::ARTIFICIAL: return all_forces<Friction::ARTIFICIAL, false>(p, receive, context);
-    case Friction::ANY: return all_forces<Friction::ANY, false>(p, receive, context);
+    case Friction::NONE: return all_forces<Friction::NONE, false>(p, nullptr, nullptr);
+    case Friction::ARTIFICIAL: return all_forces<Friction::ARTIFICIAL, false>(p, nullptr, nullptr);
+    case Friction::ANY: return all_forces<Friction::ANY, false>(p, nullptr, nullptr);
   }
 }
 

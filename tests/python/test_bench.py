@@ -1,0 +1,63 @@
+"""sphcloth bench: what it reads and what it reports."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sphcloth.bench.pair import Spread, read_timing
+from sphcloth.errors import UserError
+
+LOG = """
+Per MPI rank memory allocation (min/avg/max) = 3.5 | 4.0 | 4.5 Mbytes
+Loop time of 0.25 on 2 procs for 50 steps with 1000 atoms
+MPI task timing breakdown:
+Section |  min time  |  avg time  |  max time  |%varavg| %total
+Pair    | 0.1        | 0.125      | 0.15       |   0.0 | 50.00
+Neigh   | 0.02       | 0.025      | 0.03       |   0.0 | 10.00
+Neighbor list builds = 7
+"""
+
+
+def test_times_are_those_of_the_last_run() -> None:
+    timing = read_timing(LOG.replace("0.125", "9") + LOG)
+    assert timing.pair == 0.125
+    assert timing.per_particle(timing.pair) == pytest.approx(2500.0)
+    assert timing.per_particle(timing.lists) == pytest.approx(500.0)
+    assert timing.builds == 7
+    assert timing.memory == pytest.approx(8 * 1024**2)
+
+
+def test_a_run_that_did_not_finish_is_an_error() -> None:
+    with pytest.raises(UserError, match="did not finish"):
+        read_timing("ERROR: Lost atoms")
+
+
+def test_spread_is_median_and_extremes() -> None:
+    spread = Spread.of([3.0, 1.0, 9.0])
+    assert (spread.value, spread.least, spread.most) == (3.0, 1.0, 9.0)
+
+
+def test_a_small_benchmark_from_end_to_end(tmp_path: Path) -> None:
+    command = [Path(sys.executable).parent / "sphcloth", "bench", "pair", "--rounds", "1"]
+    command += ["--across", "10", "--steps", "5", "--json", tmp_path / "out.json"]
+    subprocess.run(command, check=True, capture_output=True, timeout=200)
+    figures = json.loads((tmp_path / "out.json").read_text())
+    assert figures["particles"] == 1000
+    for scene in ("dam", "block"):
+        codes = figures["scenes"][scene]["codes"]
+        assert set(codes) == {"stock", "double", "mixed"}
+        for code in codes.values():
+            assert code["pair_ns"]["value"] > 0
+            assert 100 < code["bytes_per_particle"] < 1e6
+    # a jittered cubic lattice has 26 to 32 neighbours within two spacings
+    assert 26 < figures["scenes"]["block"]["neighbours_inside"] < 33
+
+
+def test_an_unknown_benchmark_is_named() -> None:
+    command = [Path(sys.executable).parent / "sphcloth", "bench", "cloth"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "no benchmark 'cloth': use pair" in done.stderr

@@ -14,6 +14,7 @@ demo: $(VENV)/installed
 
 test: $(VENV)/installed build/core/test_core
 	build/core/test_core
+	build/core/test_core_plain
 	$(BIN)/python -m pytest
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests

@@ -49,13 +49,8 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
   dynamic_group_allow = 1;
 
   ArgReader args(lmp, label, narg, arg, 3);
-  const std::string name = args.word("scheme");
-  if (name == "constant")
-    said = SteppingScheme::CONSTANT;
-  else if (name == "global")
-    said = SteppingScheme::GLOBAL;
-  else
-    args.fail("scheme", name, "use constant or global");
+  said = args.choice("scheme", {"constant", "global"}) ? SteppingScheme::GLOBAL
+                                                       : SteppingScheme::CONSTANT;
   read_options(args);
 
   grow_arrays(atom->nmax);
@@ -86,11 +81,9 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       growth = args.number(keyword);
       if (growth <= 1.0 || growth > 2.0)
         args.fail(keyword, std::to_string(growth), "give a factor above 1, at most 2");
-    } else if (keyword == "below") {
-      const std::string choice = args.word(keyword);
-      if (choice != "stop" && choice != "clamp") args.fail(keyword, choice, "use stop or clamp");
-      clamp_at_floor = choice == "clamp";
-    } else
+    } else if (keyword == "below")
+      clamp_at_floor = args.choice(keyword, {"stop", "clamp"}) == 1;
+    else
       args.unknown(keyword, "velocity, force, acoustic, viscous, density, min, max, growth, below");
   }
   if (floor > ceiling)

@@ -41,11 +41,9 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
   read_walls(args);
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword == "slip") {
-      const std::string choice = args.word(keyword);
-      if (choice != "yes" && choice != "no") args.fail(keyword, choice, "use yes or no");
-      slip = choice == "yes";
-    } else if (keyword == "pressure")
+    if (keyword == "slip")
+      slip = args.choice(keyword, {"yes", "no"}) == 0;
+    else if (keyword == "pressure")
       reflection = args.choice(keyword, {"own", "mirror"}) ? 2.0 : 1.0;
     else if (keyword == "velocity")
       read_velocity(args);

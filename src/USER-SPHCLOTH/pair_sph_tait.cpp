@@ -388,16 +388,13 @@ void PairSPHTait::check_densities() const
 
 void PairSPHTait::pressures(const Particles &p)
 {
-  std::vector<const Tait *> eos(atom->ntypes + 1, nullptr);
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (is_fluid(t)) eos[t] = &equation_of_state(t);
   const double least = options.tension ? -std::numeric_limits<double>::max() : 0.0;
   double *term = pressure.data();
   for (int i = 0; i < p.n_owned; i++) {
-    const Tait *own = eos[p.type[i]];
-    if (!own || !p.is_active(i)) continue;
+    if (!is_fluid(p.type[i]) || !p.is_active(i)) continue;
+    const Tait &eos = equation_of_state(p.type[i]);
     const double rho = p.rho[i];
-    term[i] = std::max(own->pressure(rho), least) / (rho * rho);
+    term[i] = std::max(eos.pressure(rho), least) / (rho * rho);
     // neither true of what is not a number
     if (!(term[i] < std::numeric_limits<double>::max()) || !(rho > 0.0))
       error->one(FLERR,

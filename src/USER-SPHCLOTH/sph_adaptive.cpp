@@ -30,13 +30,8 @@ SPHAdaptive::SPHAdaptive(LAMMPS *lmp, int narg, char **arg) :
     Verlet(lmp, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
 {
   ArgReader args(lmp, STYLE, narg, arg);
-  const std::string name = args.word("scheme");
-  if (name == "constant")
-    stepping = SteppingScheme::CONSTANT;
-  else if (name == "global")
-    stepping = SteppingScheme::GLOBAL;
-  else
-    args.fail("scheme", name, "use constant or global");
+  stepping = args.choice("scheme", {"constant", "global"}) ? SteppingScheme::GLOBAL
+                                                           : SteppingScheme::CONSTANT;
   if (args.more()) args.unknown(args.peek(), "no keyword after the scheme");
 }
 

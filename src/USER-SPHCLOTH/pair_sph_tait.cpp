@@ -72,17 +72,9 @@ void PairSPHTait::settings(int narg, char **arg)
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "kernel") {
-      const std::string name = args.word(keyword);
-      std::string known;
-      bool found = false;
-      for (KernelName k : ALL_KERNELS) {
-        known += (known.empty() ? "" : ", ") + kernel_word(k);
-        if (kernel_word(k) == name) {
-          options.kernel = k;
-          found = true;
-        }
-      }
-      if (!found) args.fail(keyword, name, "use one of " + known);
+      std::vector<std::string> names;
+      for (KernelName k : ALL_KERNELS) names.push_back(kernel_word(k));
+      options.kernel = ALL_KERNELS[args.choice(keyword, names)];
     } else if (keyword == "tension")
       options.tension = args.choice(keyword, {"no", "yes"});
     else if (keyword == "precision")

@@ -162,10 +162,17 @@ FixSPHShift::Volume FixSPHShift::volume(int i) const
 bool FixSPHShift::near_surface_or_cloth(int i) const
 {
   if (open[i] != 0.0) return true;
+  const double *x = atom->x[i];
   for (int t = 1; t <= atom->ntypes; t++) {
     const Stretch near = pair->neighbours(i, t);
-    for (int k = 0; k < near.n; k++)
-      if (open[near.of[k]] != 0.0 || atom->mask[near.of[k]] & cloth_bits) return true;
+    const double support = pair->support(atom->type[i], t);
+    for (int k = 0; k < near.n; k++) {
+      const int j = near.of[k];
+      if (open[j] == 0.0 && !(atom->mask[j] & cloth_bits)) continue;
+      const double *y = atom->x[j];
+      const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+      if (dx * dx + dy * dy + dz * dz < support * support) return true;
+    }
   }
   return false;
 }

@@ -324,7 +324,7 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
 
 template <class F> void PairSPHTait::for_each_fluid(const Particles &p, F &&act) const
 {
-  const NeighbourLists &order = fluid->order();
+  const NearLists &order = fluid->order();
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!materials.is_fluid(t)) continue;
     const Tait eos = materials.type(t).eos;
@@ -436,19 +436,23 @@ bool PairSPHTait::evaluated() const
 
 double PairSPHTait::pressure_of(int i) const { return pressure[i] * atom->rho[i] * atom->rho[i]; }
 
-int PairSPHTait::count_neighbours(int i) const
+int PairSPHTait::count_neighbours(int i)
 {
   if (fluid->order().slots() == 0) return 0;    // a scene without fluid has no lists
+  const Particles p = particles();
   int n = 0;
-  for (int t = 1; t <= atom->ntypes; t++) n += fluid->neighbours(i, t).n;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(p.type[i]) || is_fluid(t))
+      n += fluid->count_inside(p, i, t, std::numeric_limits<int>::max());
   return n;
 }
 
-PairSPHTait::Wetting PairSPHTait::wetting(int i) const
+PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
+  const Particles p = particles();
   Wetting w;
   for (int t = 1; t <= atom->ntypes; t++) {
-    if (!materials.is_fluid(t) || fluid->neighbours(i, t).n == 0) continue;
+    if (!materials.is_fluid(t) || fluid->count_inside(p, i, t, 1) == 0) continue;
     const Tait &eos = materials.type(t).eos;
     w.fluid_mass = std::max(w.fluid_mass, eos.rho0 * amount[i]);
     w.sound = std::max(w.sound, eos.sound_speed());

@@ -70,7 +70,7 @@ class PairSPHTait : public Pair {
   struct Wetting {
     double fluid_mass = 0.0, sound = 0.0;
   };
-  Wetting wetting(int boundary_atom) const;
+  Wetting wetting(int boundary_atom);
 
   // Are the owned atoms those of the last evaluation?  Only then the following may be asked.
   bool evaluated() const;
@@ -78,8 +78,8 @@ class PairSPHTait : public Pair {
   // mass or volume of an owned atom
   double amount_of(int i) const { return amount[i]; }
   double pressure_of(int i) const;
-  // of all roles that matter to it, inside the support; 0 if it was not active
-  int count_neighbours(int i) const;
+  // of all roles that matter to it, inside the support
+  int count_neighbours(int i);
 
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
@@ -90,8 +90,8 @@ class PairSPHTait : public Pair {
     return is_fluid(atom->type[i]) ? amount[i] / atom->rho[i] : amount[i];
   }
 
-  // neighbours inside the support in the last evaluation, of an owned atom
-  sphcloth::Stretch neighbours(int i, int type) const { return fluid->neighbours(i, type); }
+  // neighbours of an owned atom inside the support, and some a little outside
+  sphcloth::Stretch neighbours(int i, int type) { return fluid->neighbours(i, type); }
 
   // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
   // without an array all are active.

@@ -15,19 +15,28 @@ std::unique_ptr<Fluid> Fluid::create(KernelName kernel, Precision precision)
 
 void Fluid::list(const Particles &p, const double *reach)
 {
-  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach);
-  slot_of.resize(p.n_owned);
-  longest = 0;
-  for (int slot = 0; slot < lists.slots(); slot++) {
-    slot_of[lists.at(slot)] = slot;
-    for (int t = 1; t <= model.n_types; t++) longest = std::max(longest, lists(slot, t).n);
-  }
-  inside.assign(static_cast<std::size_t>(lists.slots()) * model.n_types, 0);
+  const int n = model.n_types + 1;
+  std::vector<double> support(n * n, 0.0);
+  for (int i = 1; i < n; i++)
+    for (int j = 1; j < n; j++)
+      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID)
+        support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
+  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
+              model.dimension);
 }
 
-double Fluid::bytes() const
+int Fluid::count_inside(const Particles &p, int owned, int type, int most) const
 {
-  return lists.bytes() + sizeof(int) * static_cast<double>(inside.capacity() + slot_of.capacity());
+  const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
+  const Stretch list = lists.all(lists.slot(owned), type);
+  const double *x = p.x + 3 * owned;
+  int n = 0;
+  for (int k = 0; k < list.n && n < most; k++) {
+    const double *y = p.x + 3 * list.of[k];
+    const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+    n += dx * dx + dy * dy + dz * dz < support_sq;
+  }
+  return n;
 }
 
 }    // namespace sphcloth

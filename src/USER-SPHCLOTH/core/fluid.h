@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "kernel.h"
-#include "neighbours.h"
+#include "near_lists.h"
 #include "tait.h"
 
 namespace sphcloth {
@@ -93,8 +93,8 @@ class Fluid {
   // amount = 1 / sum_k W_bk over the boundary particles of the same type, with itself
   virtual void volumes(const Particles &, int type, double *amount) = 0;
 
-  // Neighbours inside the support of every active fluid particle and every boundary particle, and
-  // density by summation (1) if asked.
+  // Refreshes the neighbours of every active fluid particle and every boundary particle, and sums
+  // the density (1) if asked.
   virtual void gather(const Particles &, bool sum) = 0;
 
   // d rho/dt by continuity with diffusion, from the density and velocity of all
@@ -118,25 +118,20 @@ class Fluid {
 
   // number density of a square or cubic lattice by summation (1)
   virtual double lattice_sum(double support, double spacing) const = 0;
-  virtual double bytes() const;
+  virtual double bytes() const = 0;
 
-  // owned particles by type and in space, see NeighbourLists
-  const NeighbourLists &order() const { return lists; }
-  Stretch neighbours(int i, int type) const { return near(slot_of[i], type); }
-  std::int64_t listed() const { return lists.size(); }
+  const NearLists &order() const { return lists; }
+  // neighbours of one type inside the support, and some a little outside it
+  Stretch neighbours(int owned, int type)
+  {
+    lists.refresh(lists.slot(owned));
+    return lists(lists.slot(owned), type);
+  }
+  // how many are inside the support; counts up to `most`
+  int count_inside(const Particles &, int owned, int type, int most) const;
 
  protected:
-  // the neighbours inside the support, in the last evaluation
-  Stretch near(int slot, int type) const
-  {
-    return {lists(slot, type).of,
-            inside[static_cast<std::size_t>(slot) * model.n_types + type - 1]};
-  }
-
-  NeighbourLists lists;
-  std::vector<int> inside;    // [slot][type]: so many from the front of each list are near
-  std::vector<int> slot_of;
-  int longest = 0;    // number of neighbours in a list
+  NearLists lists;
 };
 
 }    // namespace sphcloth

@@ -91,9 +91,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   std::array<Real, 3> quantum{1, 1, 1};
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
-  AlignedVector<Real> rsq;
-
-  std::vector<int> spare;
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
@@ -104,12 +101,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   void all_density_rates(const Particles &, double *rate);
 
   static double weight(const Particles &, int i, int j, const KernelScale &);
-  void make_room();
-  void distances(int i, const Stretch &);
-  double kernel_sum(int n, Real inv_support);
-  double weighted_sum(const int *near, int n, Real inv_support, const double *amount);
+  template <bool WEIGHTED>
+  double shape_sum(const Particles &, int i, const Stretch &, Real inv_support, Columns &) const;
   void sum_up(const Particles &, bool sum);
   void fill(Columns &, const Stretch &, int from, Coordinate far) const;
+  static void fill_up(Columns &, int n, Coordinate far);
   void weigh(Columns &, const Particles &, const int *near, double equal) const;
   Coordinate beyond(const Site &, Real inv_support) const;
 
@@ -189,8 +185,14 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int
 {
   columns(&sites[0].x, near.of + from, LANES, c.x, c.y, c.z, c.own);
   columns(&motions[0].u, near.of + from, LANES, c.u, c.v, c.w, c.pressure);
-  // what fills up the last group lies outside the support
-  const int n = near.n - from;
+  fill_up(c, near.n - from, far);
+}
+
+// What fills up the last group, of n, lies outside the support.
+
+template <class K, class P>
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill_up(Columns &c, int n, Coordinate far)
+{
   if (P::COUNTED) {    // a blend is the faster way with integers, a branch with doubles
 #pragma omp simd
     for (int m = 0; m < LANES; m++) c.x[m] = m < n ? c.x[m] : far;
@@ -215,51 +217,30 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, con
    neighbours and density (1)
 ------------------------------------------------------------------------- */
 
-// squared distances of those in a list go to rsq
+// sum of the kernel's shape over neighbours, of their amounts times it if WEIGHTED
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::distances(int i, const Stretch &list)
+template <bool WEIGHTED>
+SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(const Particles &p, int i, const Stretch &near,
+                                                   Real inv_support, Columns &c) const
 {
   const Site self = sites[i];
+  const Coordinate far = beyond(self, inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
-  alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
-  for (int group = 0; group < list.n; group += LANES) {
-    columns(&sites[0].x, list.of + group, LANES, x, y, z, static_cast<Real *>(nullptr));
-    Real *sq = rsq.data() + group;
+  LaneSum sum;
+  for (int from = 0; from < near.n; from += LANES) {
+    columns(&sites[0].x, near.of + from, LANES, c.x, c.y, c.z, static_cast<Real *>(nullptr));
+    fill_up(c, near.n - from, far);
+    if (WEIGHTED) weigh(c, p, near.of + from, 0.0);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
-      const Real dx = P::difference(self.x, x[k], qx), dy = P::difference(self.y, y[k], qy),
-                 dz = P::difference(self.z, z[k], qz);
-      sq[k] = dx * dx + dy * dy + dz * dz;
+      const Real dx = P::difference(self.x, c.x[k], qx), dy = P::difference(self.y, c.y[k], qy),
+                 dz = P::difference(self.z, c.z[k], qz);
+      const Real w = K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * inv_support);
+      sum.of[k] += WEIGHTED ? c.mass[k] * w : w;
     }
   }
-}
-
-template <class K, class P>
-SPHCLOTH_INLINE double FluidLoops<K, P>::kernel_sum(int n, Real inv_support)
-{
-  Real *sq = rsq.data();
-  const int last = whole_groups(n);
-  for (int k = n; k < last; k++) sq[k] = Real(4) / (inv_support * inv_support);
-  LaneSum sum;
-  for (int group = 0; group < last; group += LANES)
-#pragma omp simd
-    for (int m = 0; m < LANES; m++) sum.of[m] += K::shape(std::sqrt(sq[group + m]) * inv_support);
   return sum.total();
-}
-
-template <class K, class P>
-SPHCLOTH_INLINE double FluidLoops<K, P>::weighted_sum(const int *near, int n, Real inv_support,
-                                                      const double *amount)
-{
-  Real *sq = rsq.data();
-  const int last = whole_groups(n);
-  for (int group = 0; group < last; group += LANES)
-#pragma omp simd
-    for (int k = group; k < group + LANES; k++) sq[k] = K::shape(std::sqrt(sq[k]) * inv_support);
-  double sum = 0.0;
-  for (int k = 0; k < n; k++) sum += amount[near[k]] * sq[k];
-  return sum;
 }
 
 // Not a template of the caller's question but one function: `sum` is asked once per particle.
@@ -267,67 +248,50 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::weighted_sum(const int *near, int n, Re
 template <class K, class P>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum)
 {
+  Columns c;
   const int n_types = model.n_types;
   for (int t = 1; t <= n_types; t++) {
     const bool fluid = is_fluid(t);
-    const PairTerms &own = model.pair(t, t);
-    const double at_self = own.kernel.w * K::shape(0.0);
+    const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
     for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
       const int i = lists.at(slot);
       if (fluid && !p.is_active(i)) continue;
+      lists.refresh(slot);
+      if (!sum || !fluid) continue;
       double rho = p.amount[i] * at_self;
       for (int other = 1; other <= n_types; other++) {
-        const Stretch list = lists(slot, other);
-        if (list.n == 0 || !(fluid || is_fluid(other))) continue;
+        const Stretch near = lists(slot, other);
+        if (near.n == 0) continue;
         const PairTerms &terms = model.pair(t, other);
-        int *found = lists.open(slot, other);
-        distances(i, list);
-        const int n = partition(rsq.data(), found, list.n,
-                                static_cast<Real>(terms.kernel.support_sq), spare.data());
-        inside[static_cast<std::size_t>(slot) * n_types + other - 1] = n;
-        if (!sum || !fluid || n == 0) continue;
         const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
         const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : terms.rho0;
         rho += terms.kernel.w *
-            (equal > 0.0 ? equal * kernel_sum(n, inv_support)
-                         : each * weighted_sum(found, n, inv_support, p.amount));
+            (equal > 0.0 ? equal * shape_sum<false>(p, i, near, inv_support, c)
+                         : each * shape_sum<true>(p, i, near, inv_support, c));
       }
-      if (sum && fluid) p.rho[i] = rho;
+      p.rho[i] = rho;
     }
   }
 }
 
 template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
 {
-  make_room();
+  lists.follow(p.x, p.n_all);
   sum_up(p, sum);
-}
-
-// for the longest list, with the slack that whole groups and compaction need
-
-template <class K, class P> void FluidLoops<K, P>::make_room()
-{
-  const std::size_t room = whole_groups(longest) + 2 * LANES;
-  if (rsq.size() >= room) return;
-  rsq.resize(2 * room);
-  spare.resize(2 * room);
 }
 
 // The wall's or the sheet's share of space
 
 template <class K, class P>
-void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
+void FluidLoops<K, P>::volumes(const Particles &p, int type, double *amount)
 {
   const PairTerms &terms = model.pair(type, type);
-  const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
-  make_room();
+  Columns c;
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
-    const Stretch list = lists(slot, type);
     const int i = lists.at(slot);
-    distances(i, list);
-    const int n = compact(rsq.data(), list.of, list.n, static_cast<Real>(terms.kernel.support_sq),
-                          rsq.data(), spare.data());
-    amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + kernel_sum(n, inv_support)));
+    const double sum = shape_sum<false>(p, i, lists.all(slot, type),
+                                        static_cast<Real>(terms.kernel.inv_support), c);
+    amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + sum));
   }
 }
 
@@ -456,7 +420,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Rece
       Sums<VIRIAL> sums;
       int met = 0;
       for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = near(slot, other);
+        const Stretch found = lists(slot, other);
         if (found.n == 0) continue;
         met += found.n;
         const Terms terms(model.pair(t, other));
@@ -556,7 +520,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
       if (!p.is_active(i)) continue;
       double sum = 0.0;
       for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = near(slot, other);
+        const Stretch found = lists(slot, other);
         if (found.n == 0) continue;
         const Terms terms(model.pair(t, other));
         sum += is_fluid(other) ? density_rate<false>(p, i, found, terms, model.mass[other], c)
@@ -581,7 +545,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
       double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = near(slot, other);
+        const Stretch found = lists(slot, other);
         const PairTerms &terms = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
@@ -605,7 +569,7 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
     double sum = 0.0, weights = 0.0;
     for (int other = 1; other <= model.n_types; other++) {
       if (!is_fluid(other)) continue;
-      const Stretch found = near(slot, other);
+      const Stretch found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {
         const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
         sum += w * p.pressure[found.of[k]];
@@ -645,7 +609,7 @@ double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
 
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
-  return Fluid::bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
+  return lists.bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
       static_cast<double>(motions.capacity()) * sizeof(Motion);
 }
 

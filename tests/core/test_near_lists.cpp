@@ -1,0 +1,122 @@
+#include "check.h"
+#include "core/near_lists.h"
+
+#include <random>
+
+using namespace sphcloth;
+
+namespace {
+
+constexpr double SUPPORT = 0.2, SKIN = 0.06;
+
+struct Walk {
+  std::mt19937 generator{11};
+  std::vector<double> x;
+  std::vector<int> type;
+  int n;
+
+  explicit Walk(int n) : n(n)
+  {
+    std::uniform_real_distribution<> u(0.0, 1.0);
+    for (int i = 0; i < 3 * n; i++) x.push_back(u(generator));
+    for (int i = 0; i < n; i++) type.push_back(1 + i % 2);
+  }
+  void move(double by)
+  {
+    std::uniform_real_distribution<> u(-by, by);
+    for (double &c : x) c += u(generator);
+  }
+};
+
+// how many of those inside the support are missing in the front of a list
+
+int missing(const NearLists &lists, const Walk &w, int i, int t)
+{
+  const int slot = lists.slot(i);
+  const Stretch front = lists(slot, t);
+  int n = 0;
+  for (int j = 0; j < w.n; j++) {
+    if (j == i || w.type[j] != t) continue;
+    double r_sq = 0.0;
+    for (int d = 0; d < 3; d++) r_sq += std::pow(w.x[3 * i + d] - w.x[3 * j + d], 2);
+    if (r_sq < SUPPORT * SUPPORT)
+      n += std::find(front.of, front.of + front.n, j) == front.of + front.n;
+  }
+  return n;
+}
+
+struct Watched {
+  Walk walk{300};
+  NearLists lists;
+  // types 1 and 2; type 2 does not interact with itself, though it is listed
+  const std::vector<double> reach = std::vector<double>(9, SUPPORT + SKIN);
+  const std::vector<double> support{0, 0, 0, 0, SUPPORT, SUPPORT, 0, SUPPORT, 0};
+
+  Watched()
+  {
+    lists.build(walk.x.data(), walk.type.data(), 200, 300, 2, reach.data(), support.data(), 3);
+  }
+  // the largest number of neighbours that the fronts hold, and whether none is missing
+  int check(int every)
+  {
+    int longest = 0;
+    for (int i = 0; i < 200; i += every) {
+      lists.refresh(lists.slot(i));
+      for (int t = 1; t <= 2; t++) {
+        if (walk.type[i] == 2 && t == 2) continue;
+        CHECK(missing(lists, walk, i, t) == 0);
+        longest = std::max(longest, lists(lists.slot(i), t).n);
+      }
+    }
+    return longest;
+  }
+};
+
+}    // namespace
+
+CASE("the front of a list holds everyone inside the support while particles move")
+{
+  Watched w;
+  for (int step = 0; step < 30; step++) {
+    if (step) w.walk.move(5e-4);
+    w.lists.follow(w.walk.x.data(), w.walk.n);
+    w.check(1);
+  }
+  CHECK(w.lists.inner_skin() > 0.0 && w.lists.inner_skin() < 0.5 * SKIN);
+}
+
+CASE("a list that is refreshed late is as good as one refreshed at once")
+{
+  Watched w;
+  for (int step = 0; step < 40; step++) {
+    if (step) w.walk.move(3e-4);
+    w.lists.follow(w.walk.x.data(), w.walk.n);
+    w.check(1 + step % 7);
+  }
+}
+
+CASE("an inner skin lasts longer the slower particles move, and is gone where they are fast")
+{
+  double before = 1.0;
+  for (double by : {8e-3, 1e-3, 1e-5}) {
+    Watched w;
+    for (int step = 0; step < 4; step++) {
+      if (step) w.walk.move(by);
+      w.lists.follow(w.walk.x.data(), w.walk.n);
+    }
+    CHECK(w.lists.inner_skin() < before);
+    w.check(1);
+    before = by > 5e-3 ? 1.0 : w.lists.inner_skin();
+    if (by > 5e-3) CHECK(w.lists.inner_skin() == 0.0);
+  }
+}
+
+CASE("types that do not interact have an empty front")
+{
+  Watched w;
+  w.lists.follow(w.walk.x.data(), w.walk.n);
+  w.lists.refresh(w.lists.slot(1));
+  CHECK(w.walk.type[1] == 2);
+  CHECK(w.lists(w.lists.slot(1), 2).n == 0);
+  CHECK(w.lists.all(w.lists.slot(1), 2).n > 0);
+}

@@ -113,6 +113,7 @@ void FixSPHIntegrate::init()
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
   pair->set_active(state, ACTIVE);
+  if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));

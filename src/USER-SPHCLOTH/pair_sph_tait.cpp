@@ -142,6 +142,7 @@ void PairSPHTait::set_model()
   model.dimension = domain->dimension;
   model.n_types = atom->ntypes;
   model.friction = Friction::NONE;
+  model.wants_rate = false;
   model.role.assign(n, Role::NONE);
   model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());

@@ -101,6 +101,9 @@ class PairSPHTait : public Pair {
     active_column = column;
   }
 
+  // d rho/dt goes to atom->drho with the forces; to be asked for in init()
+  void want_density_rate() { fluid->model.wants_rate = true; }
+
   // Time that has passed since the last evaluation, for a density that follows its rate
   void advance(double dt) { elapsed += dt; }
 

@@ -195,7 +195,10 @@ def test_lattice_density_is_the_lattice_sum(dimension):
 @pytest.mark.parametrize(("precision", "accuracy"), [("double", 1e-10), ("mixed", 2e-5)])
 def test_forces_against_a_direct_sum(kernel, precision, accuracy):
     """Laminar and artificial viscosity, with pressure, over all pairs in numpy."""
-    lmp = lattice("run 0", setting=f"kernel {kernel} precision {precision}")
+    lmp = lattice(
+        "fix step all sph/integrate global\nrun 0",
+        setting=f"kernel {kernel} precision {precision}",
+    )
     x, v, rho = by_id(lmp, "x"), by_id(lmp, "v"), by_id(lmp, "rho")
     mass, h_s = RHO0 * 0.05**3, H / 2
     d = x[:, None] - x[None]
@@ -224,6 +227,17 @@ def test_forces_against_a_direct_sum(kernel, precision, accuracy):
     size = np.abs(drho).max()
     np.testing.assert_allclose(by_id(lmp, "drho"), drho, rtol=accuracy, atol=accuracy * size)
     assert np.abs(by_id(lmp, "f").sum(axis=0)).max() < 1e-12 * np.abs(expected).sum()
+
+
+def test_the_rate_of_the_density_changes_nothing_else():
+    """It is summed only where a scheme of time steps asks for it."""
+    lmp = {
+        scheme: lattice(f"fix step all sph/integrate {scheme}\nrun 0")
+        for scheme in ("constant", "global")
+    }
+    np.testing.assert_array_equal(by_id(lmp["constant"], "f"), by_id(lmp["global"], "f"))
+    assert np.all(by_id(lmp["constant"], "drho") == 0)
+    assert np.all(by_id(lmp["global"], "drho") != 0)
 
 
 @pytest.mark.parametrize("kind", ["block", "prism"])

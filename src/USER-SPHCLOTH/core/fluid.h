@@ -42,6 +42,7 @@ struct PairTerms {
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
+  bool wants_rate = false;    // d rho/dt beside the forces
   std::vector<Role> role;          // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
@@ -109,7 +110,7 @@ class Fluid {
   // Records density, volume, velocity and pressure of all particles.
   virtual void record(const Particles &) = 0;
 
-  // (2): adds force and d rho/dt of all active owned particles
+  // (2): adds force and, if wanted, d rho/dt of all active owned particles
   virtual void forces(const Particles &) = 0;
 
   // the virials of the same forces: receive(context, i, ...)

@@ -38,6 +38,7 @@ template <class K, class P> class FluidLoops : public Fluid {
  public:
   using Real = typename P::Real;
   using Coordinate = typename P::Coordinate;
+  static constexpr int LANES = GROUP<Real>;
 
   void place(const Particles &, const Box &) override;
   void volumes(const Particles &, int type, double *amount) override;
@@ -67,8 +68,8 @@ template <class K, class P> class FluidLoops : public Fluid {
     double equal = -1.0;    // the mass that all of mass[] hold
   };
 
-  template <bool VIRIAL> struct Sums {
-    LaneSum x, y, z, drho, virial[VIRIAL ? 6 : 0];
+  template <bool RATE, bool VIRIAL> struct Sums {
+    LaneSum<LANES> x, y, z, drho, virial[VIRIAL ? 6 : 0];
     Acceleration total() const
     {
       Acceleration a{x.total(), y.total(), z.total(), drho.total(), {}};
@@ -109,17 +110,19 @@ template <class K, class P> class FluidLoops : public Fluid {
   void weigh(Columns &, const Particles &, const int *near, double equal) const;
   Coordinate beyond(const Site &, Real inv_support) const;
 
-  template <bool VIRIAL>
-  static void add(Sums<VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz, Real rate,
-                  Real dx, Real dy, Real dz);
+  template <bool RATE, bool VIRIAL>
+  static void add(Sums<RATE, VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz,
+                  Real rate, Real dx, Real dy, Real dz);
   static void apply(const Particles &, int i, bool fluid, const Acceleration &);
-  template <Friction F, bool VIRIAL> void all_forces(const Particles &, Receiver, void *);
-  template <Friction F, bool VIRIAL>
+  template <Friction F, bool RATE, bool VIRIAL>
+  void all_forces(const Particles &, Receiver, void *);
+  template <bool RATE> void forces_and_rates(const Particles &);
+  template <Friction F, bool RATE, bool VIRIAL>
   void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                      Columns &, Sums<VIRIAL> &) const;
-  template <Friction F, bool VIRIAL, bool ON_BOUNDARY>
+                      Columns &, Sums<RATE, VIRIAL> &) const;
+  template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
   void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                       Columns &, Sums<VIRIAL> &) const;
+                       Columns &, Sums<RATE, VIRIAL> &) const;
   template <bool FROM_BOUNDARY>
   double density_rate(const Particles &, int i, const Stretch &, const Terms &, double equal,
                       Columns &) const;
@@ -183,8 +186,8 @@ template <class K, class P>
 SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from,
                                             Coordinate far) const
 {
-  columns(&sites[0].x, near.of + from, LANES, c.x, c.y, c.z, c.own);
-  columns(&motions[0].u, near.of + from, LANES, c.u, c.v, c.w, c.pressure);
+  columns(&sites[0].x, near.of + from, c.x, c.y, c.z, c.own);
+  columns(&motions[0].u, near.of + from, c.u, c.v, c.w, c.pressure);
   fill_up(c, near.n - from, far);
 }
 
@@ -227,9 +230,9 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(const Particles &p, int i, co
   const Site self = sites[i];
   const Coordinate far = beyond(self, inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
-  LaneSum sum;
+  LaneSum<LANES> sum;
   for (int from = 0; from < near.n; from += LANES) {
-    columns(&sites[0].x, near.of + from, LANES, c.x, c.y, c.z, static_cast<Real *>(nullptr));
+    columns(&sites[0].x, near.of + from, c.x, c.y, c.z, static_cast<Real *>(nullptr));
     fill_up(c, near.n - from, far);
     if (WEIGHTED) weigh(c, p, near.of + from, 0.0);
 #pragma omp simd
@@ -302,15 +305,15 @@ void FluidLoops<K, P>::volumes(const Particles &p, int type, double *amount)
 // one pair: its force and rate per the amount of the neighbour, in lane m
 
 template <class K, class P>
-template <bool VIRIAL>
-SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<VIRIAL> &s, int m, double amount, Real fx, Real fy,
-                                           Real fz, Real rate, Real dx, Real dy, Real dz)
+template <bool RATE, bool VIRIAL>
+SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<RATE, VIRIAL> &s, int m, double amount, Real fx,
+                                           Real fy, Real fz, Real rate, Real dx, Real dy, Real dz)
 {
   const double x = amount * fx, y = amount * fy, z = amount * fz;
   s.x.of[m] += x;
   s.y.of[m] += y;
   s.z.of[m] += z;
-  s.drho.of[m] += amount * rate;
+  if (RATE) s.drho.of[m] += amount * rate;
   if (VIRIAL) {
     s.virial[0].of[m] += dx * x;
     s.virial[1].of[m] += dy * y;
@@ -326,10 +329,10 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<VIRIAL> &s, int m, double amount
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
 
 template <class K, class P>
-template <Friction F, bool VIRIAL>
+template <Friction F, bool RATE, bool VIRIAL>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                 double equal, Columns &c, Sums<VIRIAL> &sums) const
+                                 double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
@@ -356,8 +359,8 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
         if (F == Friction::ANY) friction = slope * t.nu * both / (site.own * c.own[k]);
       }
       const Real push = -slope * along;
-      add<VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
-                  push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      add<RATE, VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
+                        push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
     }
   }
 }
@@ -369,10 +372,10 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 // boundary, its neighbours are fluid, the result is a force per volume.
 
 template <class K, class P>
-template <Friction F, bool VIRIAL, bool ON_BOUNDARY>
+template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                  double equal, Columns &c, Sums<VIRIAL> &sums) const
+                                  double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
@@ -400,14 +403,14 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
       }
       const Real push = -slope * along;
       const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
-      add<VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
-                  push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      add<RATE, VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
+                        push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
     }
   }
 }
 
 template <class K, class P>
-template <Friction F, bool VIRIAL>
+template <Friction F, bool RATE, bool VIRIAL>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Receiver receive,
                                                         void *context)
 {
@@ -417,7 +420,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Rece
     for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
       const int i = lists.at(slot);
       if (fluid && !p.is_active(i)) continue;
-      Sums<VIRIAL> sums;
+      Sums<RATE, VIRIAL> sums;
       int met = 0;
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch found = lists(slot, other);
@@ -426,11 +429,11 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Rece
         const Terms terms(model.pair(t, other));
         const double equal = model.mass[other];
         if (fluid && is_fluid(other))
-          fluid_on_fluid<F, VIRIAL>(p, i, found, terms, equal, c, sums);
+          fluid_on_fluid<F, RATE, VIRIAL>(p, i, found, terms, equal, c, sums);
         else if (fluid)
-          across_boundary<F, VIRIAL, false>(p, i, found, terms, equal, c, sums);
+          across_boundary<F, RATE, VIRIAL, false>(p, i, found, terms, equal, c, sums);
         else
-          across_boundary<F, VIRIAL, true>(p, i, found, terms, equal, c, sums);
+          across_boundary<F, RATE, VIRIAL, true>(p, i, found, terms, equal, c, sums);
       }
       if (!met) continue;
       const Acceleration a = sums.total();
@@ -455,10 +458,21 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
 
 template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p)
 {
+  if (model.wants_rate)
+    forces_and_rates<true>(p);
+  else
+    forces_and_rates<false>(p);
+}
+
+template <class K, class P>
+template <bool RATE>
+void FluidLoops<K, P>::forces_and_rates(const Particles &p)
+{
   switch (model.friction) {
-    case Friction::NONE: return all_forces<Friction::NONE, false>(p, nullptr, nullptr);
-    case Friction::ARTIFICIAL: return all_forces<Friction::ARTIFICIAL, false>(p, nullptr, nullptr);
-    case Friction::ANY: return all_forces<Friction::ANY, false>(p, nullptr, nullptr);
+    case Friction::NONE: return all_forces<Friction::NONE, RATE, false>(p, nullptr, nullptr);
+    case Friction::ARTIFICIAL:
+      return all_forces<Friction::ARTIFICIAL, RATE, false>(p, nullptr, nullptr);
+    case Friction::ANY: return all_forces<Friction::ANY, RATE, false>(p, nullptr, nullptr);
   }
 }
 
@@ -468,7 +482,7 @@ template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p)
 template <class K, class P>
 void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
 {
-  all_forces<Friction::ANY, true>(p, receive, context);
+  all_forces<Friction::ANY, false, true>(p, receive, context);
 }
 
 /* ----------------------------------------------------------------------
@@ -487,7 +501,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
-  LaneSum rate;
+  LaneSum<LANES> rate;
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
     if (!FROM_BOUNDARY) weigh(c, p, near.of + from, equal);

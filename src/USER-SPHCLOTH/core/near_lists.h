@@ -23,6 +23,7 @@ class NearLists {
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
              const double *reach, const double *support, int dimension)
   {
+    give_back(held);    // its memory for what the lists are made of
     outer.build(x, type, n_owned, n_all, n_types, reach);
     types = n_types;
     dim = dimension;
@@ -178,9 +179,10 @@ class NearLists {
     const double support = limit[type_of(slot) * (types + 1) + t];
     if (list.n == 0 || support == 0.0) return;
     const Place self = held[i];
+    static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
-      columns(&held[0].x, list.of + group, LANES, x, y, z, static_cast<float *>(nullptr));
+      columns(&held[0].x, list.of + group, x, y, z, static_cast<float *>(nullptr));
       float *sq = key.data() + group;
 #pragma omp simd
       for (int k = 0; k < LANES; k++) {

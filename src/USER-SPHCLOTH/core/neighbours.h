@@ -93,6 +93,9 @@ class NeighbourLists {
         for (int other = 1; other <= n_types; other++)
           list(slot, other, reach[t * (n_types + 1) + other], t == other);
     lists.finish();
+    // lists live long, what they are made of need not
+    for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
+    give_back(cell);
   }
 
   // owned particles by type and then in space: those of a type are the slots begin(t) to

@@ -49,64 +49,76 @@ template <class T> struct CacheLineAllocator {
 
 template <class T> using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-// Loops run over whole groups of LANES; what lies past the end must be readable and is ignored.
+template <class Vector> void give_back(Vector &v) { Vector().swap(v); }
+
+// Loops run over whole groups; what lies past the end must be readable and is ignored.
 
 inline constexpr int LANES = 8;
 inline constexpr int whole_groups(int n) { return (n + LANES - 1) / LANES * LANES; }
 
 // A sum kept lane by lane, so that a loop over whole groups adds to it without a reduction
 
-struct LaneSum {
-  alignas(64) double of[LANES] = {};
+template <int N> struct LaneSum {
+  static_assert(N == 4 || N == 8);
+  alignas(64) double of[N] = {};
   double total() const
   {
-    const double a = (of[0] + of[4]) + (of[2] + of[6]), b = (of[1] + of[5]) + (of[3] + of[7]);
-    return a + b;
+    double sum[4];
+    for (int k = 0; k < 4; k++) sum[k] = N == 8 ? of[k] + of[k + N - 4] : of[k];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
   }
 };
 
-// Columns of records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k], for k
-// up to n rounded up to whole groups; indices past n must be valid.  A record is four numbers of
-// sizeof(Lane) bytes, the last of which may be of another type than the first three, or is left out
-// if w is null.
+// How many records become columns at a time: as many as fill 32 bytes, a vector that most CPUs have
+
+template <class Lane> inline constexpr int GROUP = 32 / sizeof(Lane);
+
+// Columns of GROUP records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k].
+// The last lane of a record may be of another type than the first three, or is left out if w is
+// null.
 
 template <class Lane, class Last>
-SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane *x, Lane *y,
-                             Lane *z, Last *w)
+SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lane *y, Lane *z,
+                             Last *w)
 {
   static_assert(sizeof(Lane) == sizeof(Last));
+  const auto record = [&](int k) { return records + 4 * static_cast<std::ptrdiff_t>(index[k]); };
 #ifdef SPHCLOTH_X86_TARGETS
-  // written in whole groups: a load that spans two recent stores would wait for both
-  typedef Lane Record
-      __attribute__((vector_size(4 * sizeof(Lane)), aligned(sizeof(Lane)), may_alias));
-  typedef Lane Group
-      __attribute__((vector_size(8 * sizeof(Lane)), aligned(sizeof(Lane)), may_alias));
-  static_assert(LANES == 8);
-  for (int k = 0; k < n; k += LANES) {
+  // written in whole vectors: a load that spans two recent stores would wait for both
+  typedef __int128 Half __attribute__((aligned(sizeof(Lane)), may_alias));
+  typedef __int128 Halves __attribute__((vector_size(32)));
+  typedef Lane Group __attribute__((vector_size(32), aligned(sizeof(Lane)), may_alias));
+  // as two integers: the form of which GCC makes one load and one insertion
+  const auto both = [&](Group &g, int k, int l, int first) {
+    g = reinterpret_cast<Group>(Halves{*reinterpret_cast<const Half *>(record(k) + first),
+                                       *reinterpret_cast<const Half *>(record(l) + first)});
+  };
+  const auto put = [](auto *column, const Group &g) { *reinterpret_cast<Group *>(column) = g; };
+  if constexpr (sizeof(Lane) == 4) {
     Group r[4];
-    for (int m = 0; m < 4; m++) {
-      const Lane *a = records + 4 * static_cast<std::ptrdiff_t>(index[k + m]);
-      const Lane *b = records + 4 * static_cast<std::ptrdiff_t>(index[k + m + 4]);
-      r[m] = __builtin_shufflevector(*reinterpret_cast<const Record *>(a),
-                                     *reinterpret_cast<const Record *>(b), 0, 1, 2, 3, 4, 5, 6, 7);
-    }
+    for (int k = 0; k < 4; k++) both(r[k], k, k + 4, 0);
     const Group xy01 = __builtin_shufflevector(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
     const Group xy23 = __builtin_shufflevector(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
     const Group zw01 = __builtin_shufflevector(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
     const Group zw23 = __builtin_shufflevector(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
-    *reinterpret_cast<Group *>(x + k) =
-        __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
-    *reinterpret_cast<Group *>(y + k) =
-        __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
-    *reinterpret_cast<Group *>(z + k) =
-        __builtin_shufflevector(zw01, zw23, 0, 1, 8, 9, 4, 5, 12, 13);
-    if (w)
-      *reinterpret_cast<Group *>(w + k) =
-          __builtin_shufflevector(zw01, zw23, 2, 3, 10, 11, 6, 7, 14, 15);
+    put(x, __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13));
+    put(y, __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15));
+    put(z, __builtin_shufflevector(zw01, zw23, 0, 1, 8, 9, 4, 5, 12, 13));
+    if (w) put(w, __builtin_shufflevector(zw01, zw23, 2, 3, 10, 11, 6, 7, 14, 15));
+  } else {
+    Group xy02, xy13, zw02, zw13;
+    both(xy02, 0, 2, 0);
+    both(xy13, 1, 3, 0);
+    both(zw02, 0, 2, 2);
+    both(zw13, 1, 3, 2);
+    put(x, __builtin_shufflevector(xy02, xy13, 0, 4, 2, 6));
+    put(y, __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7));
+    put(z, __builtin_shufflevector(zw02, zw13, 0, 4, 2, 6));
+    if (w) put(w, __builtin_shufflevector(zw02, zw13, 1, 5, 3, 7));
   }
 #else
-  for (int k = 0; k < n; k++) {
-    const Lane *r = records + 4 * static_cast<std::ptrdiff_t>(index[k]);
+  for (int k = 0; k < GROUP<Lane>; k++) {
+    const Lane *r = record(k);
     x[k] = r[0];
     y[k] = r[1];
     z[k] = r[2];
@@ -119,13 +131,12 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, int n, Lane 
 // Up to 16 places past the end are read from the input and written to the output.  Keys may be
 // compacted in place.
 
-template <class Key>
-inline int compact_plain(const Key *key, const int *index, int n, Key limit, Key *key_out,
+inline int compact_plain(const float *key, const int *index, int n, float limit, float *key_out,
                          int *index_out)
 {
   int m = 0;
   for (int k = 0; k < n; k++) {
-    const Key x = key[k];
+    const float x = key[k];
     index_out[m] = index[k];
     key_out[m] = x;
     m += x < limit;    // a coin toss that no branch predictor wins
@@ -136,11 +147,11 @@ inline int compact_plain(const Key *key, const int *index, int n, Key limit, Key
 // Partition: the same, but the indices stay in place, those kept in front and the others, for which
 // `spare` has room, behind them.  Nothing behind index[n - 1] is written.
 
-template <class Key> inline int partition_plain(Key *key, int *index, int n, Key limit, int *spare)
+inline int partition_plain(float *key, int *index, int n, float limit, int *spare)
 {
   int m = 0;
   for (int k = 0; k < n; k++) {
-    const Key x = key[k];
+    const float x = key[k];
     const int j = index[k];
     spare[k - m] = j;
     index[m] = j;
@@ -182,27 +193,6 @@ partition_avx512(float *key, int *index, int n, float limit, int *spare)
   return m;
 }
 
-__attribute__((target("avx512f,avx512vl"))) inline int
-partition_avx512(double *key, int *index, int n, double limit, int *spare)
-{
-  int m = 0;
-  for (int k = 0; k < n; k += 8) {
-    const __mmask8 here = n - k >= 8 ? 0xff : static_cast<__mmask8>((1u << (n - k)) - 1);
-    const __m512d x = _mm512_loadu_pd(key + k);
-    const __m256i j = _mm256_maskz_loadu_epi32(here, index + k);
-    const __mmask8 keep = _mm512_mask_cmp_pd_mask(here, x, _mm512_set1_pd(limit), _CMP_LT_OQ);
-    const int kept = __builtin_popcount(keep);
-    _mm512_storeu_pd(key + m, _mm512_maskz_compress_pd(keep, x));
-    _mm256_storeu_si256(reinterpret_cast<__m256i *>(spare + k - m),
-                        _mm256_maskz_compress_epi32(here & ~keep, j));
-    _mm256_mask_storeu_epi32(index + m, static_cast<__mmask8>((1u << kept) - 1),
-                             _mm256_maskz_compress_epi32(keep, j));
-    m += kept;
-  }
-  append_avx512(spare, n - m, index + m);
-  return m;
-}
-
 __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const float *key,
                                                                       const int *index, int n,
                                                                       float limit, float *key_out,
@@ -222,36 +212,17 @@ __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const floa
   return m;
 }
 
-__attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const double *key,
-                                                                      const int *index, int n,
-                                                                      double limit, double *key_out,
-                                                                      int *index_out)
-{
-  int m = 0;
-  for (int k = 0; k < n; k += 8) {
-    const __mmask8 here = n - k >= 8 ? 0xff : static_cast<__mmask8>((1u << (n - k)) - 1);
-    const __m512d x = _mm512_loadu_pd(key + k);
-    const __m256i j = _mm256_loadu_si256(reinterpret_cast<const __m256i *>(index + k));
-    const __mmask8 keep = _mm512_mask_cmp_pd_mask(here, x, _mm512_set1_pd(limit), _CMP_LT_OQ);
-    _mm512_storeu_pd(key_out + m, _mm512_maskz_compress_pd(keep, x));
-    _mm256_storeu_si256(reinterpret_cast<__m256i *>(index_out + m),
-                        _mm256_maskz_compress_epi32(keep, j));
-    m += __builtin_popcount(keep);
-  }
-  return m;
-}
-
 inline const bool HAVE_AVX512 =
     __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
 
-template <class Key>
-inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_out, int *index_out)
+inline int compact(const float *key, const int *index, int n, float limit, float *key_out,
+                   int *index_out)
 {
   if (HAVE_AVX512) return compact_avx512(key, index, n, limit, key_out, index_out);
   return compact_plain(key, index, n, limit, key_out, index_out);
 }
 
-template <class Key> inline int partition(Key *key, int *index, int n, Key limit, int *spare)
+inline int partition(float *key, int *index, int n, float limit, int *spare)
 {
   if (HAVE_AVX512) return partition_avx512(key, index, n, limit, spare);
   return partition_plain(key, index, n, limit, spare);
@@ -259,13 +230,13 @@ template <class Key> inline int partition(Key *key, int *index, int n, Key limit
 
 #else
 
-template <class Key> inline int partition(Key *key, int *index, int n, Key limit, int *spare)
+inline int partition(float *key, int *index, int n, float limit, int *spare)
 {
   return partition_plain(key, index, n, limit, spare);
 }
 
-template <class Key>
-inline int compact(const Key *key, const int *index, int n, Key limit, Key *key_out, int *index_out)
+inline int compact(const float *key, const int *index, int n, float limit, float *key_out,
+                   int *index_out)
 {
   return compact_plain(key, index, n, limit, key_out, index_out);
 }

@@ -24,6 +24,7 @@ FOLDER = Path(__file__).parent
 FIXED = {"tension": "yes", "density": "continuity"}
 # support over spacing: rheo's kernel is a quintic spline made for 3
 SUPPORT = {"sph": "4", "rheo": "3"}
+CODES = tuple(SUPPORT)
 
 
 @dataclass

@@ -10,14 +10,14 @@ from pathlib import Path
 from rich.console import Console
 
 from sphcloth.errors import UserError
-from sphcloth.validation.stock import compare_stock
+from sphcloth.validation.stock import CODES, compare_stock
 
 
 def main() -> int:
     """Parse the command line, run, and print what the case measures; 2 if LAMMPS failed."""
     parser = argparse.ArgumentParser(prog="python -m sphcloth.validation.stock")
     parser.add_argument("case", help="poiseuille, couette, ...")
-    parser.add_argument("code", choices=("sph", "rheo"))
+    parser.add_argument("code", choices=CODES)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="settings")
     parser.add_argument("--quick", action="store_true", help="the smaller size of the case")
     parser.add_argument("--ranks", type=int, default=1)

@@ -458,6 +458,7 @@ def test_precision_density_and_kernel_can_be_chosen(
 def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None:
     case, console = validate.find_case("taylor-green"), Console(file=io.StringIO())
     settings = {"across": "40", "until": "0.4", "reynolds": "50"}
+    settings |= {"courant": "0.4", "delta": "0.2"}
     found = {
         shift: validate.validate(
             case, settings | {"shift": shift}, 1, True, tmp_path / shift, console

@@ -8,6 +8,7 @@ import math
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
 from sphcloth.validation.cases.couette.reference import CouetteStart
+from sphcloth.validation.cases.dam_break import Front
 from sphcloth.validation.cases.dam_break import reference as dam_break
 from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
 from sphcloth.validation.cases.jet.reference import Jet
@@ -196,6 +198,26 @@ def test_an_exact_decay_has_the_exact_rate() -> None:
     decay = Decay(times, speed, speed**2, speed, 0 * times)
     assert decay.rate(decay.largest) == pytest.approx(flow.rate, rel=1e-12)
     assert decay.rate(decay.energy) == pytest.approx(2 * flow.rate, rel=1e-12)
+
+
+def test_vortices_have_the_diffusion_that_balances_the_step() -> None:
+    for quick in (False, True):
+        values = validate.find_case("taylor-green").values({}, quick)
+        assert values["delta"] == values["courant"] / 2
+
+
+def test_the_front_of_a_dam_break_starts_at_1() -> None:
+    column = dam_break.Column(0.1, 9.81)
+
+    class Frames(list):
+        times = np.array([1.0, 1.0 + 2 * column.time])
+
+    frames = Frames(
+        SimpleNamespace(positions=np.array([[x, 0, 0], [0.01, 0, 0]])) for x in (0.099, 0.2)
+    )
+    front = Front.of(SimpleNamespace(trajectory=frames), column)
+    assert front.times == pytest.approx([0, 2])
+    assert front.places == pytest.approx([1, 1 + 1.01])
 
 
 def test_density_sum_is_that_of_the_plane() -> None:
@@ -435,7 +457,8 @@ def test_precision_density_and_kernel_can_be_chosen(
 
 def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None:
     case, console = validate.find_case("taylor-green"), Console(file=io.StringIO())
-    settings = {"across": "40", "until": "0.4", "reynolds": "50", "courant": "0.4"}
+    settings = {"across": "40", "until": "0.4", "reynolds": "50"}
+    settings |= {"courant": "0.4", "delta": "0.2"}
     found = {
         shift: validate.validate(
             case, settings | {"shift": shift}, 1, True, tmp_path / shift, console

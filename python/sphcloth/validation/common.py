@@ -17,6 +17,7 @@ def numerics(
     tension: str = "no",
     disorder: float = 0.1,
     density: str = "summation",
+    delta: float = 0.1,
 ) -> tuple[Parameter, ...]:
     """Return the parameters of the method; their names are those of the scripts' variables.
 
@@ -28,6 +29,7 @@ def numerics(
         tension: default of whether negative pressure acts.
         disorder: default of the displacement at the start over the spacing.
         density: default of how the density is found.
+        delta: default of the diffusion of the density.
     """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
@@ -37,7 +39,7 @@ def numerics(
         Parameter("tension", tension, "1", "whether negative pressure acts", choices=("no", "yes")),
         Parameter("precision", "double", "1", "of the pair loops", choices=("double", "mixed")),
         Parameter("density", density, "1", "how it is found", choices=("summation", "continuity")),
-        Parameter("delta", 0.1, "1", "diffusion of the density, with continuity", 0.0, 1.0),
+        Parameter("delta", delta, "1", "diffusion of the density, with continuity", 0.0, 1.0),
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
         Parameter("courant", courant, "1", "largest step over smoothing length / c0", 0.01, 1.6),

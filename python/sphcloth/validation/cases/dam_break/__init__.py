@@ -31,7 +31,7 @@ PARAMETERS = (
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
     Parameter("sound", 20.0, "sqrt(2 g a)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("nu", 1e-6, "m^2/s", "kinematic viscosity", 0.0, 1.0),
-    Parameter("slip", "yes", "1", "whether the walls are smooth", choices=("yes", "no")),
+    Parameter("slip", "no", "1", "whether the walls are smooth", choices=("no", "yes")),
     Parameter("across", 64, "1", "particles over the width", 24, 400, quick=32),
     Parameter("settle", 3.0, "sqrt(2 a/g)", "time of damping behind the gate", 1.0, 100.0),
     *numerics(alpha=0.1, courant=0.5),
@@ -56,18 +56,18 @@ class Front:
 
     Attributes:
         times: T since the column was set free.
-        places: Z at these times.
+        places: Z at these times, 1 at the start.
     """
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
 
     @classmethod
-    def of(cls, run: Run, column: Column, spacing: float) -> Front:
-        """Measure a run: the foremost particle, and half a spacing."""
-        ahead = [np.max(frame.positions[:, 0]) + spacing / 2 for frame in run.trajectory]
+    def of(cls, run: Run, column: Column) -> Front:
+        """Measure a run: how far the foremost particle is ahead of the one at the start."""
+        foremost = np.array([np.max(frame.positions[:, 0]) for frame in run.trajectory])
         since = run.trajectory.times - run.trajectory.times[0]
-        return cls(since / column.time, np.array(ahead) / column.width)
+        return cls(since / column.time, 1 + (foremost - foremost[0]) / column.width)
 
     def difference(self, other: Front) -> float:
         """Return the rms difference of two fronts at the times that experiments cover."""
@@ -81,7 +81,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     column = Column(values["width"], values["gravity"])
     across = [round(share * values["across"]) for share in SHARES.values()]
     runs = [_run(column, values, bench, label, n) for label, n in zip(SHARES, across, strict=True)]
-    fronts = [Front.of(run, column, column.width / n) for run, n in zip(runs, across, strict=True)]
+    fronts = [Front.of(run, column) for run in runs]
     coarse, middle, fine = fronts
     shift = reference.best_shift(fine.times, fine.places)
     excess = reference.outside(fine.times, fine.places, shift)

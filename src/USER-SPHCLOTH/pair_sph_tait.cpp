@@ -115,6 +115,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
+  comm_forward = diffuses() ? 3 : 2;
 
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
@@ -275,6 +276,7 @@ void PairSPHTait::new_lists()
 {
   amount.resize(atom->nmax);
   pressure.assign(atom->nmax, 0.0);
+  if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
     if (!materials.is_boundary(itype))
@@ -355,7 +357,7 @@ void PairSPHTait::integrate_density(const Particles &p)
 {
   rate.resize(atom->nmax);
   if (elapsed > 0.0) {
-    fluid->density_rates(p, rate.data());
+    density_rates(p);
     if (walls) for_each_fluid(p, [&](int i, const Tait &) { rate[i] += walls->density_rate(i); });
     for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
@@ -366,6 +368,17 @@ void PairSPHTait::integrate_density(const Particles &p)
       for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] = rate[i]; });
     }
   }
+}
+
+// Particles that are not active keep the gradient that they had.
+
+void PairSPHTait::density_rates(const Particles &p)
+{
+  if (!diffuses()) return fluid->density_rates(p, nullptr, rate.data());
+  fluid->density_gradients(p, gradient.data());
+  stage = Stage::GRADIENT;
+  comm->forward_comm(this, 3);
+  fluid->density_rates(p, gradient.data(), rate.data());
 }
 
 void PairSPHTait::check_densities() const
@@ -457,7 +470,7 @@ PairSPHTait::Wetting PairSPHTait::wetting(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   ghosts: mass or volume, then density and pressure of fluid
+   ghosts: mass or volume, gradient of the density, then density and pressure of fluid
 ------------------------------------------------------------------------- */
 
 int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
@@ -465,6 +478,11 @@ int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *
   int m = 0;
   if (stage == Stage::AMOUNT) {
     for (int k = 0; k < n; k++) buf[m++] = amount[sendlist[k]];
+    return m;
+  }
+  if (stage == Stage::GRADIENT) {
+    for (int k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) buf[m++] = gradient[3 * sendlist[k] + d];
     return m;
   }
   for (int k = 0; k < n; k++) {
@@ -479,6 +497,10 @@ void PairSPHTait::unpack_forward_comm(int n, int first, double *buf)
   int m = 0;
   if (stage == Stage::AMOUNT) {
     for (int i = first; i < first + n; i++) amount[i] = buf[m++];
+    return;
+  }
+  if (stage == Stage::GRADIENT) {
+    std::copy(buf, buf + 3 * n, gradient.begin() + 3 * first);
     return;
   }
   for (int i = first; i < first + n; i++) {
@@ -536,5 +558,6 @@ void PairSPHTait::write_data_all(FILE *fp)
 double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
-      sizeof(double) * (amount.capacity() + pressure.capacity() + rate.capacity());
+      sizeof(double) *
+      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity());
 }

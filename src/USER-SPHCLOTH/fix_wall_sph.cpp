@@ -195,13 +195,13 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
 
 // false if no wall is in reach of particle i; otherwise `near` holds what each wall is to it
 
-bool FixWallSPH::look(int i)
+bool FixWallSPH::look(int i, double back)
 {
   if (!(atom->mask[i] & groupbit)) return false;
   const double support = pair->support(atom->type[i]);
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); k++) {
-    const double delta = walls[k].distance(atom->x[i]) / support;
+    const double delta = (walls[k].distance(atom->x[i]) - back * departure(i, k)) / support;
     if (delta < -1.0)
       error->one(FLERR,
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
@@ -219,9 +219,9 @@ double FixWallSPH::density(int i)
   return pair->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
 }
 
-double FixWallSPH::density_rate(int i)
+double FixWallSPH::density_rate(int i, double back)
 {
-  if (!look(i)) return 0.0;
+  if (!look(i, back)) return 0.0;
   double rate = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
   return rate;

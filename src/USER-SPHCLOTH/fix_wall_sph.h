@@ -38,7 +38,7 @@ class FixWallSPH : public Fix {
 
   void begin();
   double density(int i);
-  double density_rate(int i);
+  double density_rate(int i, double back);
   void push(int i, double pressure_term);
 
   // What the walls, where they were then, add to the surroundings of a fluid particle
@@ -82,7 +82,7 @@ class FixWallSPH : public Fix {
   void read_velocity(ArgReader &);
   void check_face(const Wall &) const;
   void locate(Wall &, double);
-  bool look(int);
+  bool look(int i, double back = 0.0);
   double slope(int, std::size_t) const;
   double departure(int, std::size_t) const;
   double output(int);

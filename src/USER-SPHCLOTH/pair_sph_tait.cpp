@@ -115,6 +115,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
+  comm_forward = diffuses() ? 3 : 2;
 
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
@@ -276,6 +277,7 @@ void PairSPHTait::new_lists()
 {
   amount.resize(atom->nmax);
   pressure.assign(atom->nmax, 0.0);
+  if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
     if (!materials.is_boundary(itype))
@@ -349,15 +351,18 @@ void PairSPHTait::densities(const Particles &p)
   integrate_density(p);
 }
 
-// The density at the new positions follows from the new velocities: together with velocity and
-// position a symplectic step.
+// The velocities are those with which the particles came here, so the rate is that of the middle of
+// the way.  At its end it would be wrong by the divergence that the forces have made since, which
+// is a diffusion of -dt c0^2 / 2.
 
 void PairSPHTait::integrate_density(const Particles &p)
 {
   rate.resize(atom->nmax);
   if (elapsed > 0.0) {
-    fluid->density_rates(p, rate.data());
-    if (walls) for_each_fluid(p, [&](int i, const Tait &) { rate[i] += walls->density_rate(i); });
+    const double back = 0.5 * elapsed;
+    density_rates(p, back);
+    if (walls)
+      for_each_fluid(p, [&](int i, const Tait &) { rate[i] += walls->density_rate(i, back); });
     for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {
@@ -367,6 +372,17 @@ void PairSPHTait::integrate_density(const Particles &p)
       for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] = rate[i]; });
     }
   }
+}
+
+// Particles that are not active keep the gradient that they had.
+
+void PairSPHTait::density_rates(const Particles &p, double back)
+{
+  if (!diffuses()) return fluid->density_rates(p, nullptr, back, rate.data());
+  fluid->density_gradients(p, gradient.data());
+  stage = Stage::GRADIENT;
+  comm->forward_comm(this, 3);
+  fluid->density_rates(p, gradient.data(), back, rate.data());
 }
 
 void PairSPHTait::check_densities() const
@@ -462,7 +478,7 @@ PairSPHTait::Wetting PairSPHTait::wetting(int i)
 }
 
 /* ----------------------------------------------------------------------
-   ghosts: mass or volume, then density and pressure of fluid
+   ghosts: mass or volume, gradient of the density, then density and pressure of fluid
 ------------------------------------------------------------------------- */
 
 int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
@@ -470,6 +486,11 @@ int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *
   int m = 0;
   if (stage == Stage::AMOUNT) {
     for (int k = 0; k < n; k++) buf[m++] = amount[sendlist[k]];
+    return m;
+  }
+  if (stage == Stage::GRADIENT) {
+    for (int k = 0; k < n; k++)
+      for (int d = 0; d < 3; d++) buf[m++] = gradient[3 * sendlist[k] + d];
     return m;
   }
   for (int k = 0; k < n; k++) {
@@ -484,6 +505,10 @@ void PairSPHTait::unpack_forward_comm(int n, int first, double *buf)
   int m = 0;
   if (stage == Stage::AMOUNT) {
     for (int i = first; i < first + n; i++) amount[i] = buf[m++];
+    return;
+  }
+  if (stage == Stage::GRADIENT) {
+    std::copy(buf, buf + 3 * n, gradient.begin() + 3 * first);
     return;
   }
   for (int i = first; i < first + n; i++) {
@@ -541,5 +566,6 @@ void PairSPHTait::write_data_all(FILE *fp)
 double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
-      sizeof(double) * (amount.capacity() + pressure.capacity() + rate.capacity());
+      sizeof(double) *
+      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity());
 }

@@ -108,7 +108,7 @@ class PairSPHTait : public Pair {
   void advance(double dt) { elapsed += dt; }
 
  private:
-  enum class Stage { AMOUNT, DENSITY };
+  enum class Stage { AMOUNT, DENSITY, GRADIENT };
 
   struct Options {    // of pair_style, plain for the restart file
     sphcloth::KernelName kernel = sphcloth::KernelName::WENDLAND_C2;
@@ -134,6 +134,7 @@ class PairSPHTait : public Pair {
   double elapsed;
   std::vector<double> amount, pressure;    // per atom, owned and ghost
   std::vector<double> rate;
+  std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
   std::vector<tagint> evaluated_ids;    // of the owned atoms, in the order of the arrays
   Stage stage;
 
@@ -142,12 +143,14 @@ class PairSPHTait : public Pair {
   void forget_evaluation();
   void set_model();
   bool excluded(int, int) const;
+  bool diffuses() const { return options.continuity && options.delta > 0.0; }
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;
   void new_lists();
   void measure_amounts(const sphcloth::Particles &, bool);
   void densities(const sphcloth::Particles &);
   void integrate_density(const sphcloth::Particles &);
+  void density_rates(const sphcloth::Particles &, double back);
   void pressures(const sphcloth::Particles &);
   void check_densities() const;
   void boundary_pressures(const sphcloth::Particles &);

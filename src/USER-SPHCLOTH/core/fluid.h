@@ -98,8 +98,13 @@ class Fluid {
   // the density (1) if asked.
   virtual void gather(const Particles &, bool sum) = 0;
 
-  // d rho/dt by continuity with diffusion, from the density and velocity of all
-  virtual void density_rates(const Particles &, double *rate) = 0;
+  // Gradient [n][3] of the density of every active fluid particle, from the fluid of its type
+  virtual void density_gradients(const Particles &, double *gradient) = 0;
+
+  // d rho/dt by continuity, from the density and velocity of all, where they were a time `back` ago;
+  // with diffusion if the gradients of all, ghosts too, are given
+  virtual void density_rates(const Particles &, const double *gradient, double back,
+                             double *rate) = 0;
 
   // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
   virtual void smooth_densities(const Particles &, double *smooth) = 0;

@@ -10,6 +10,7 @@
 #define SPHCLOTH_CORE_FLUID_LOOPS_H
 
 #include "fluid.h"
+#include "gradient.h"
 
 #include <array>
 
@@ -43,7 +44,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   void place(const Particles &, const Box &) override;
   void volumes(const Particles &, int type, double *amount) override;
   void gather(const Particles &, bool sum) override;
-  void density_rates(const Particles &p, double *rate) override { all_density_rates(p, rate); }
+  void density_gradients(const Particles &p, double *gradient) override
+  {
+    all_density_gradients(p, gradient);
+  }
+  void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
@@ -59,6 +64,9 @@ template <class K, class P> class FluidLoops : public Fluid {
   };
   struct Motion {
     Real u, v, w, pressure;
+  };
+  struct Gradient {
+    Real x, y, z, none;
   };
   // one group of neighbours
   struct Columns {
@@ -79,6 +87,15 @@ template <class K, class P> class FluidLoops : public Fluid {
     }
   };
 
+  struct DifferenceSums {
+    LaneSum<LANES> xx, yy, zz, xy, xz, yz, x, y, z;
+    Differences total() const
+    {
+      return {xx.total(), yy.total(), zz.total(), xy.total(), xz.total(),
+              yz.total(), x.total(),  y.total(),  z.total()};
+    }
+  };
+
   // PairTerms in the precision of the loops
   struct Terms {
     Real inv_support, f, nu, monaghan, soft, rho0, stiffness, diffusion;
@@ -92,6 +109,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   std::array<Real, 3> quantum{1, 1, 1};
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
+  AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
@@ -99,12 +117,14 @@ template <class K, class P> class FluidLoops : public Fluid {
   void place_all(const Particles &, const std::array<double, 3> &origin,
                  const std::array<double, 3> &per_quantum);
   void record_all(const Particles &);
-  void all_density_rates(const Particles &, double *rate);
+  void all_density_gradients(const Particles &, double *gradient);
+  template <bool DIFFUSION> void all_density_rates(const Particles &, double back, double *rate);
 
   static double weight(const Particles &, int i, int j, const KernelScale &);
   template <bool WEIGHTED>
   double shape_sum(const Particles &, int i, const Stretch &, Real inv_support, Columns &) const;
   void sum_up(const Particles &, bool sum);
+  void fill_sites(Columns &, const Stretch &, int from, Coordinate far) const;
   void fill(Columns &, const Stretch &, int from, Coordinate far) const;
   static void fill_up(Columns &, int n, Coordinate far);
   void weigh(Columns &, const Particles &, const int *near, double equal) const;
@@ -123,9 +143,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
   void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
                        Columns &, Sums<RATE, VIRIAL> &) const;
-  template <bool FROM_BOUNDARY>
+  Differences density_differences(const Particles &, int i, const Stretch &, const Terms &,
+                                  double equal, Columns &) const;
+  template <bool FROM_BOUNDARY, bool DIFFUSION>
   double density_rate(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                      Columns &) const;
+                      double back, Columns &) const;
 };
 
 /* ----------------------------------------------------------------------
@@ -183,11 +205,10 @@ SPHCLOTH_INLINE typename P::Coordinate FluidLoops<K, P>::beyond(const Site &s,
 }
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from,
-                                            Coordinate far) const
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill_sites(Columns &c, const Stretch &near, int from,
+                                                  Coordinate far) const
 {
   columns(&sites[0].x, near.of + from, c.x, c.y, c.z, c.own);
-  columns(&motions[0].u, near.of + from, c.u, c.v, c.w, c.pressure);
   fill_up(c, near.n - from, far);
 }
 
@@ -203,6 +224,14 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill_up(Columns &c, int n, Coordinate far
 #pragma GCC unroll 1
     for (int m = LANES - 1; m >= n; m--) c.x[m] = far;
   }
+}
+
+template <class K, class P>
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from,
+                                            Coordinate far) const
+{
+  columns(&motions[0].u, near.of + from, c.u, c.v, c.w, c.pressure);
+  fill_sites(c, near, from, far);
 }
 
 // Masses of the neighbours: a constant column, written once, where all of a type are equal.
@@ -486,45 +515,128 @@ void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *conte
 }
 
 /* ----------------------------------------------------------------------
-   density by continuity: d rho_i/dt = sum_j m_j v_ij . grad W_ij and, between fluid particles,
-   diffusion, 2 delta c0 h_s sum_j m_j/rho_j (rho_j - rho_i) r_ji . grad W_ij / r^2
-   Molteni & Colagrossi, Comput. Phys. Commun. 180 (2009) 861.
+   density by continuity: d rho_i/dt = sum_j m_j v_ij . grad W_ij and, between fluid particles of one
+   type, diffusion, with <grad rho> of core/gradient.h and r_ji = x_j - x_i,
+     2 delta c0 h_s sum_j m_j/rho_j psi_ij r_ji . grad W_ij / r^2
+     psi_ij = rho_j - rho_i - (<grad rho>_i + <grad rho>_j) . r_ji / 2
+   Antuono, Colagrossi, Marrone & Molteni, Comput. Phys. Commun. 181 (2010) 532.
 ------------------------------------------------------------------------- */
 
+// Only fluid of its own type takes part: a boundary has no density, and the gradient is exact for
+// a linear field on one side, too.
+
 template <class K, class P>
-template <bool FROM_BOUNDARY>
+SPHCLOTH_INLINE Differences FluidLoops<K, P>::density_differences(const Particles &p, int i,
+                                                                  const Stretch &near,
+                                                                  const Terms &t, double equal,
+                                                                  Columns &c) const
+{
+  const Site site = sites[i];
+  const Coordinate far = beyond(site, t.inv_support);
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+  DifferenceSums sums;
+  for (int from = 0; from < near.n; from += LANES) {
+    fill_sites(c, near, from, far);
+    weigh(c, p, near.of + from, equal);
+#pragma omp simd
+    for (int k = 0; k < LANES; k++) {
+      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                 dz = P::difference(site.z, c.z[k], qz);
+      const Real r = std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double weight = c.mass[k] * (t.f * K::slope_over_q(r * t.inv_support) / c.own[k]);
+      const double wx = weight * dx, wy = weight * dy, wz = weight * dz;
+      sums.xx.of[k] -= wx * dx;
+      sums.yy.of[k] -= wy * dy;
+      sums.zz.of[k] -= wz * dz;
+      sums.xy.of[k] -= wx * dy;
+      sums.xz.of[k] -= wx * dz;
+      sums.yz.of[k] -= wy * dz;
+      const Real more = c.own[k] - site.own;
+      sums.x.of[k] += wx * more;
+      sums.y.of[k] += wy * more;
+      sums.z.of[k] += wz * more;
+    }
+  }
+  return sums.total();
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particles &p,
+                                                                   double *gradient)
+{
+  Columns c;
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    const Terms terms(model.pair(t, t));
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      if (!p.is_active(i)) continue;
+      const std::array<double, 3> of_i =
+          density_differences(p, i, lists(slot, t), terms, model.mass[t], c)
+              .gradient(model.dimension);
+      std::copy(of_i.begin(), of_i.end(), gradient + 3 * i);
+    }
+  }
+}
+
+template <class K, class P>
+template <bool FROM_BOUNDARY, bool DIFFUSION>
 SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
                                                       const Stretch &near, const Terms &t,
-                                                      double equal, Columns &c) const
+                                                      double equal, double back, Columns &c) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
-  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2], ago = static_cast<Real>(back);
+  const Gradient gradient = DIFFUSION ? gradients[i] : Gradient();
+  alignas(64) Real gx[LANES], gy[LANES], gz[LANES];
   LaneSum<LANES> rate;
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
+    if (DIFFUSION)
+      columns(&gradients[0].x, near.of + from, gx, gy, gz, static_cast<Real *>(nullptr));
     if (!FROM_BOUNDARY) weigh(c, p, near.of + from, equal);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
                  dz = P::difference(site.z, c.z[k], qz);
       const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-      const Real r_sq = dx * dx + dy * dy + dz * dz;
-      const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
-      const Real v_dot_r = du * dx + dv * dy + dw * dz;
-      if (FROM_BOUNDARY)
-        rate.of[k] += static_cast<double>(c.own[k]) * (t.rho0 * slope * v_dot_r);
-      else
-        rate.of[k] +=
-            c.mass[k] * (slope * (v_dot_r + t.diffusion * (site.own - c.own[k]) / c.own[k]));
+      const Real ax = dx - ago * du, ay = dy - ago * dv, az = dz - ago * dw;
+      // those outside the support now take no part: some of them are in the list, others are not
+      const Real q_now_sq = (dx * dx + dy * dy + dz * dz) * t.inv_support * t.inv_support;
+      const Real q = std::sqrt(ax * ax + ay * ay + az * az) * t.inv_support;
+      const Real slope = t.f * K::slope_over_q(q_now_sq < Real(1) ? q : Real(1));
+      const Real v_dot_r = du * ax + dv * ay + dw * az;
+      const double amount = FROM_BOUNDARY ? static_cast<double>(c.own[k]) : c.mass[k];
+      Real flow = FROM_BOUNDARY ? t.rho0 * v_dot_r : v_dot_r;
+      if (DIFFUSION) {
+        const Real linear =
+            (gradient.x + gx[k]) * dx + (gradient.y + gy[k]) * dy + (gradient.z + gz[k]) * dz;
+        flow += t.diffusion * (site.own - c.own[k] - Real(0.5) * linear) / c.own[k];
+      }
+      rate.of[k] += amount * (slope * flow);
     }
   }
   return rate.total();
 }
 
 template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &p, double *rate)
+void FluidLoops<K, P>::density_rates(const Particles &p, const double *gradient, double back,
+                                     double *rate)
+{
+  if (!gradient) return all_density_rates<false>(p, back, rate);
+  gradients.resize(p.n_all + LANES);
+  for (int i = 0; i < p.n_all; i++)
+    gradients[i] = {static_cast<Real>(gradient[3 * i]), static_cast<Real>(gradient[3 * i + 1]),
+                    static_cast<Real>(gradient[3 * i + 2]), Real(0)};
+  all_density_rates<true>(p, back, rate);
+}
+
+template <class K, class P>
+template <bool DIFFUSION>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &p, double back,
+                                                               double *rate)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
@@ -537,8 +649,13 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
         const Stretch found = lists(slot, other);
         if (found.n == 0) continue;
         const Terms terms(model.pair(t, other));
-        sum += is_fluid(other) ? density_rate<false>(p, i, found, terms, model.mass[other], c)
-                               : density_rate<true>(p, i, found, terms, model.mass[other], c);
+        const double equal = model.mass[other];
+        if (!is_fluid(other))
+          sum += density_rate<true, false>(p, i, found, terms, equal, back, c);
+        else if (DIFFUSION && other == t)
+          sum += density_rate<false, true>(p, i, found, terms, equal, back, c);
+        else
+          sum += density_rate<false, false>(p, i, found, terms, equal, back, c);
       }
       rate[i] = sum;
     }
@@ -624,7 +741,8 @@ double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
   return lists.bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
-      static_cast<double>(motions.capacity()) * sizeof(Motion);
+      static_cast<double>(motions.capacity()) * sizeof(Motion) +
+      static_cast<double>(gradients.capacity()) * sizeof(Gradient);
 }
 
 template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)

@@ -90,10 +90,12 @@ namespace {
   SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
   {
     for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
-      std::array<Column, 4> p;
-      for (int q = 0; q < 4; q++) p[q].read(s.p, &c.slot[q][m]);
-      const std::array<Column, 4> before = p;
-      Column &a = p[0], &e1 = p[1], &e2 = p[2], &b = p[3];
+      Column a, e1, e2, b;
+      a.read(s.p, &c.slot[0][m]);
+      e1.read(s.p, &c.slot[1][m]);
+      e2.read(s.p, &c.slot[2][m]);
+      b.read(s.p, &c.slot[3][m]);
+      const Column before_a = a, before_e1 = e1, before_e2 = e2, before_b = b;
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
       double *lambda = &c.lambda[m];
@@ -110,17 +112,20 @@ namespace {
         const double weight = a.w[l] * ga + b.w[l] * gb + e1.w[l] * g1 + e2.w[l] * g2;
         const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
-        const bool acts = h.valid & (weight > LEAST_LEVER * w * steepest);
-        const double step = acts ? multiplier_step(angle_difference(h.angle, rest[l]), weight, k[l],
-                                                   compliance[l] * s.inv_dt_sq, lambda[l], most[l])
-                                 : 0.0;
+        const double lever = weight - LEAST_LEVER * w * steepest;
+        const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
+        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
+                                            compliance[l] * s.inv_dt_sq, lambda[l], most[l]);
         lambda[l] += step;
         a.move(l, step * a.w[l], h.ax, h.ay, h.az);
         b.move(l, step * b.w[l], h.bx, h.by, h.bz);
         e1.move(l, step * e1.w[l], x1, y1, z1);
         e2.move(l, step * e2.w[l], x2, y2, z2);
       }
-      for (int q = 0; q < 4; q++) give<JACOBI>(s, before[q], p[q], &c.slot[q][m]);
+      give<JACOBI>(s, before_a, a, &c.slot[0][m]);
+      give<JACOBI>(s, before_e1, e1, &c.slot[1][m]);
+      give<JACOBI>(s, before_e2, e2, &c.slot[2][m]);
+      give<JACOBI>(s, before_b, b, &c.slot[3][m]);
     }
   }
 

@@ -45,8 +45,9 @@ SPHCLOTH_INLINE double multiplier_step(double error, double weight, double k, do
                                        double lambda, double most)
 {
   const double denominator = weight + a;
-  const double step = -k * (error + a * lambda) / (denominator > 0.0 ? denominator : 1.0);
-  return denominator > 0.0 ? std::min(step, most - lambda) : 0.0;
+  const double share = denominator > 0.0 ? k : 0.0;
+  const double step = -share * (error + a * lambda) / (denominator > 0.0 ? denominator : 1.0);
+  return std::min(step, most - lambda);
 }
 
 // (4): dp_1 = w_1 d, dp_2 = -w_2 d.  Coincident ends have no direction: they are left alone until
@@ -64,7 +65,7 @@ SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, doub
 {
   const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
   const bool apart = length > 0.0;
-  const double step = apart ? multiplier_step(length - rest, w, k, a, lambda, most) : 0.0;
+  const double step = multiplier_step(length - rest, w, apart ? k : 0.0, a, lambda, most);
   const double along = step / (apart ? length : 1.0);
   return {along * dx, along * dy, along * dz, step};
 }
@@ -86,7 +87,7 @@ SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz
   const double nx = inv * (turned ? dx : sx), ny = inv * (turned ? dy : sy),
                nz = inv * (turned ? dz : sz);
   const double slope = turned ? 1.0 : inv * cosine;
-  const double step = apart ? multiplier_step(length - rest, w * slope, k, a, lambda, most) : 0.0;
+  const double step = multiplier_step(length - rest, w * slope, apart ? k : 0.0, a, lambda, most);
   return {step * nx, step * ny, step * nz, step};
 }
 
@@ -129,7 +130,7 @@ struct HingeShape {
   double angle;
   double ax, ay, az, bx, by, bz;    // gradients of the wings a and b
   double a1, a2, b1, b2;    // gradient of edge i: -(a_i grad_a + b_i grad_b)
-  bool valid;    // false for a degenerate triangle, where no angle exists
+  double valid;    // 1, or 0 for a degenerate triangle, where no angle exists
 };
 
 // positions relative to edge 1: (ux, ..) wing a, (ex, ..) edge 2, (vx, ..) wing b
@@ -146,15 +147,18 @@ SPHCLOTH_INLINE HingeShape hinge_shape(double ux, double uy, double uz, double e
   const double nb_sq = nbx * nbx + nby * nby + nbz * nbz;
   // a triangle thinner than 1e-7 of its edge carries no usable normal
   const double tiny = 1e-14 * length_sq;
-  h.valid = (na_sq > tiny * (ux * ux + uy * uy + uz * uz)) &
-      (nb_sq > tiny * (vx * vx + vy * vy + vz * vz));
-  const double length = std::sqrt(h.valid ? length_sq : 1.0);
+  const double thin_a = na_sq - tiny * (ux * ux + uy * uy + uz * uz),
+               thin_b = nb_sq - tiny * (vx * vx + vy * vy + vz * vz);
+  // of what is not valid nothing is used; it must only be finite
+  const bool valid = std::min(thin_a, thin_b) > 0.0;
+  h.valid = valid ? 1.0 : 0.0;
+  const double length = std::sqrt(valid ? length_sq : 1.0);
   const double cx = nay * nbz - naz * nby, cy = naz * nbx - nax * nbz, cz = nax * nby - nay * nbx;
   h.angle = arc_tangent((cx * ex + cy * ey + cz * ez) / length, nax * nbx + nay * nby + naz * nbz);
-  const double ga = -length / (h.valid ? na_sq : 1.0), gb = -length / (h.valid ? nb_sq : 1.0);
+  const double ga = -length / (valid ? na_sq : 1.0), gb = -length / (valid ? nb_sq : 1.0);
   h.ax = ga * nax, h.ay = ga * nay, h.az = ga * naz;
   h.bx = gb * nbx, h.by = gb * nby, h.bz = gb * nbz;
-  const double inv = 1.0 / (h.valid ? length_sq : 1.0);
+  const double inv = 1.0 / (valid ? length_sq : 1.0);
   h.a2 = inv * (ux * ex + uy * ey + uz * ez);
   h.b2 = inv * (vx * ex + vy * ey + vz * ez);
   h.a1 = 1.0 - h.a2;
@@ -194,7 +198,7 @@ inline double hinge_angle(const Vec3 &a, const Vec3 &e1, const Vec3 &e2, const V
 {
   const Vec3 u = a - e1, e = e2 - e1, v = b - e1;
   const HingeShape h = hinge_shape(u[0], u[1], u[2], e[0], e[1], e[2], v[0], v[1], v[2]);
-  return h.valid ? h.angle : std::nan("");
+  return h.valid > 0.0 ? h.angle : std::nan("");
 }
 
 }    // namespace sphcloth

@@ -353,7 +353,7 @@ def test_every_solver_keeps_momentum(solver, direction):
 def test_a_tolerance_stops_the_sweeps():
     """One step of a crumpled sheet: the smaller the tolerance, the more sweeps, up to it."""
     used = []
-    for tolerance in (1e-2, 1e-3, 1e-4):
+    for tolerance in (1e-2, 3e-3, 1e-3):
         lmp = cloth(
             "displace_atoms all random 0.01 0.01 0.01 55 units box\nrun 1",
             fix=f"iterations 2000 tolerance {tolerance}",

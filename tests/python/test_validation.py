@@ -200,12 +200,6 @@ def test_an_exact_decay_has_the_exact_rate() -> None:
     assert decay.rate(decay.energy) == pytest.approx(2 * flow.rate, rel=1e-12)
 
 
-def test_vortices_have_the_diffusion_that_balances_the_step() -> None:
-    for quick in (False, True):
-        values = validate.find_case("taylor-green").values({}, quick)
-        assert values["delta"] == values["courant"] / 2
-
-
 def test_the_front_of_a_dam_break_starts_at_1() -> None:
     column = dam_break.Column(0.1, 9.81)
 
@@ -458,7 +452,6 @@ def test_precision_density_and_kernel_can_be_chosen(
 def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None:
     case, console = validate.find_case("taylor-green"), Console(file=io.StringIO())
     settings = {"across": "40", "until": "0.4", "reynolds": "50"}
-    settings |= {"courant": "0.4", "delta": "0.2"}
     found = {
         shift: validate.validate(
             case, settings | {"shift": shift}, 1, True, tmp_path / shift, console
@@ -472,7 +465,8 @@ def test_vortices_decay_with_shifting_and_faster_without(tmp_path: Path) -> None
         )
     assert abs(found["1"]["decay"].value) < 0.05
     assert abs(found["1"]["decay_energy"].value) < 0.05
-    assert found["1"]["velocity"].value < 0.6 * found["0"]["velocity"].value
+    assert found["1"]["velocity"].value < 0.8 * found["0"]["velocity"].value
+    assert found["0"]["decay"].value > found["1"]["decay"].value + 0.02
     assert (tmp_path / "1" / "taylor-green.png").is_file()
 
 

@@ -34,11 +34,11 @@ PARAMETERS = (
     Parameter("settle", 3.0, "sqrt(H/g)", "time of damping before the wave", 1.0, 100.0),
     Parameter("periods", 3.0, "T", "time of the wave", 1.0, 100.0, quick=2.0),
     WALL,
-    *numerics(alpha=0.1, courant=0.5),
+    *numerics(alpha=0.1, courant=0.5, density="continuity"),
 )
 
 QUANTITIES = (
-    Quantity("period", "1", "relative error of the period", 0.01, 0.05),
+    Quantity("period", "1", "relative error of the period", 0.01, 0.01),
     Quantity("period_measured", "s", "the period itself, without the damping"),
     Quantity("period_reference", "s", "linear theory"),
     Quantity("second_order", "1", "relative change of the period by this steepness, in theory"),

@@ -19,9 +19,6 @@ from sphcloth.validation.lattice import density_sum
 
 # share of the particles over the side in the coarse run
 COARSE = 0.5
-# largest step over smoothing length / speed of sound; with a delta of half of it the diffusion of
-# the density cancels what the step does to it, see the documentation
-COURANT = 0.6
 
 PARAMETERS = (
     Parameter("reynolds", 100.0, "1", "U L / viscosity", 1.0, 1e4),
@@ -34,13 +31,12 @@ PARAMETERS = (
     Parameter("correct", "no", "1", "whether shifting corrects velocities", choices=("no", "yes")),
     *numerics(
         alpha=0.0,
-        courant=COURANT,
+        courant=0.8,
         kernel="quintic",
         support=5.0,
         tension="yes",
         disorder=0.2,
         density="continuity",
-        delta=COURANT / 2,
     ),
 )
 

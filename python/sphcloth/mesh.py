@@ -26,6 +26,15 @@ class _Parser(DATAParser):
         return itertools.takewhile(lambda line: line not in own, super().iterdata())
 
 
+def _sections(data: Path) -> dict[str, list[str]]:
+    """Return the lines of each section of a data file; none if it is not one."""
+    try:
+        with _Parser(data) as parser:
+            return parser.grab_datafile()[1]
+    except (ValueError, IndexError):
+        return {}
+
+
 @dataclass(frozen=True)
 class ClothMesh:
     """Triangles over the vertices of the cloth.
@@ -55,19 +64,19 @@ class ClothMesh:
         data = Path(data)
         if not data.is_file():
             raise UserError(f"no data file {data}")
-        with _Parser(data) as parser:
-            sections = parser.grab_datafile()[1]
+        sections = _sections(data)
         if "Atoms" not in sections:
             raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
         if not sections.get("Angles"):
             raise UserError(f"{data} holds no cloth: its triangles are LAMMPS angles, it has none")
+        # MDAnalysis' own angles are turned around where the first atom is the larger one
         try:
             atoms = np.array([line.split()[2:5] for line in sections["Angles"]], dtype=np.int64)
+            ids, triangles = np.unique(atoms.reshape(-1, 3), return_inverse=True)
         except ValueError as error:
             raise UserError(
                 f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
             ) from error
-        ids, triangles = np.unique(atoms, return_inverse=True)
         return cls(ids, triangles.reshape(-1, 3))
 
     def positions(self, frame: Frame) -> NDArray[np.float64]:

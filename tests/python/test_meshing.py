@@ -190,9 +190,7 @@ def test_a_disc_with_a_hole(
     rings = [np.stack([r * np.cos(angle), r * np.sin(angle), 0 * angle], 1) for r in (0.5, 0.7, 1)]
     k = np.arange(24)
     cells = [(i * 24 + k, i * 24 + (k + 1) % 24, i * 24 + 24 + k) for i in (0, 1)]
-    cells += [
-        (i * 24 + (k + 1) % 24, i * 24 + 24 + (k + 1) % 24, i * 24 + 24 + k) for i in (0, 1)
-    ]
+    cells += [(i * 24 + (k + 1) % 24, i * 24 + 24 + (k + 1) % 24, i * 24 + 24 + k) for i in (0, 1)]
     triangles = np.concatenate([np.stack(cell, axis=1) for cell in cells])
     save(disc, np.concatenate(rings), triangles)
     arguments = (disc, "--data", data, "--areal-mass", 3, "--per-atom-mass", "--json", summary)
@@ -277,7 +275,9 @@ def test_several_cloths_each_with_its_types(
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.apply_translation([0, 3, 0])
     ball.export(b)
-    types = [f"--{kind}-type={n}" for kind in ("vertex", "bond", "angle", "dihedral") for n in (1, 2)]
+    types = [
+        f"--{kind}-type={n}" for kind in ("vertex", "bond", "angle", "dihedral") for n in (1, 2)
+    ]
     masses = ["--areal-mass=1", "--areal-mass=4"]
     assert mesh_command(monkeypatch, a, b, "--data", data, *masses, *types) == 0
     lmp = run_lines(printed_script(capsys.readouterr().out))
@@ -493,12 +493,15 @@ def test_hinges_run_wing_edge_edge_wing() -> None:
 
 
 def test_sewing_too_far_is_refused() -> None:
-    front, back = (Surface.of(panel.vertices, panel.faces) for panel in shirt(0.01))
-    third = Surface.of(front.vertices + [0.03, 0, 0.03], front.triangles)
-    surface = join([front, back, third])
-    with pytest.raises(UserError, match=r"would join two vertices of one piece|must be positive"):
-        Seams.find(surface, 0.2)
-        Seams.find(surface, -1)
+    """On a line: a vertex of a first piece, of a second, of a third, and of the first again."""
+    far = [[0, 1, 0], [0, -1, 0], [0, 0, 1]]
+    pieces = [([0, 0.3], far[0]), ([0.1], far[1], [0, -2, 0]), ([0.2], far[2], [0, 0, 2])]
+    surface = join(
+        [Surface.of([*([x, 0, 0] for x in line), *rest], [[0, 1, 2]]) for line, *rest in pieces]
+    )
+    with pytest.raises(UserError, match="would join two vertices of one piece"):
+        Seams.find(surface, 0.25)
+    assert len(Seams.find(surface, 0.05).pairs) == 0
 
 
 def test_borders_divided_differently_are_reported() -> None:
@@ -506,7 +509,7 @@ def test_borders_divided_differently_are_reported() -> None:
     surface = join(
         [
             Surface.of(left.vertices, left.faces),
-            Surface.of(right.vertices + [1.01, 0, 0], right.faces),
+            Surface.of(right.vertices + np.array([1.01, 0, 0]), right.faces),
         ]
     )
     seams = Seams.find(surface, 0.15)
@@ -588,7 +591,7 @@ def test_quads_are_cut_in_two(tmp_path: Path) -> None:
         (["--areal-mass", "1", "--data", "x", "--margin", "0"], "has no volume"),
         (["--areal-mass", "1", "--data", "x", "--margin=-1"], "must be 0 or more"),
         (
-            ["--areal-mass", "1", "--data", "x", *"--box 0 1 -1 1 0 1".split()],
+            ["--areal-mass", "1", "--data", "x", "--box", "0", "1", "-1", "1", "0", "1"],
             "not inside of the box",
         ),
         (["--areal-mass", "1", "--data", "x", "--scale", "0"], "must be positive"),

@@ -151,7 +151,10 @@ def _chosen(total: int, first: int, last: int | None, every: int) -> range:
 
 
 def _remove_old(out: Path, suffix: str) -> None:
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"folder {out} cannot be made: {error.strerror}") from None
     for path in [*out.glob(f"cloth_[0-9]*{suffix}"), out / SERIES]:
         path.unlink(missing_ok=True)
 

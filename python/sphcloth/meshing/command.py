@@ -183,14 +183,30 @@ class Output:
             raise UserError(f"--margin {self.margin:g}: must be 0 or more")
         if self.margin is not None and self.box is not None:
             raise UserError("--margin and --box exclude each other")
+        if self.groups is not None and self.data is None:
+            raise UserError("--groups needs --data: groups go by the atom IDs of the data file")
 
     @property
     def groups_file(self) -> Path | None:
         """Where the groups go: only with a data file, whose atom IDs are known."""
         return self.data and (self.groups or self.data.with_suffix(".groups"))
 
-    def write(self, cloth: Cloth) -> list[Path]:
-        """Write all files; return their paths."""
+    @property
+    def paths(self) -> list[Path]:
+        """All files for LAMMPS and the summary."""
+        files = (self.data, self.groups_file, self.molecule, self.json_file)
+        return [path for path in files if path is not None]
+
+    def check_paths(self, sources: Sequence[Path]) -> None:
+        """Raise UserError if a file would replace a mesh, or another file written."""
+        taken = {path.resolve() for path in sources}
+        for path in self.paths:
+            if path.resolve() in taken:
+                raise UserError(f"{path} is a mesh or is written twice: use another name")
+            taken.add(path.resolve())
+
+    def write(self, cloth: Cloth) -> None:
+        """Write the files for LAMMPS."""
         if self.molecule is not None:
             _prepare(self.molecule)
             write_molecule(cloth, self.molecule, self.mass_per_atom)
@@ -199,7 +215,6 @@ class Output:
             _prepare(self.groups_file)
             write_data(cloth, self.data, self._box(cloth), self.atom_style, self.mass_per_atom)
             write_groups(cloth, self.groups_file, self.mass_per_atom)
-        return [path for path in (self.data, self.groups_file, self.molecule) if path]
 
     def script(self, cloth: Cloth) -> list[str]:
         """Return the lines of an input script that use the file."""
@@ -223,9 +238,10 @@ def make_cloth(files: Sequence[Path], recipe: Recipe, output: Output, console: C
     """
     if output.molecule is not None and recipe.pins and recipe.pin_type is None and not output.data:
         raise UserError("a molecule template has no groups: give pins a type with --pin-type N")
+    output.check_paths(files)
     cloth, said = recipe.cook(files)
     summary = report.MeshSummary.of(cloth)
-    written = output.write(cloth)
+    output.write(cloth)
     if output.json_file is not None:
         _prepare(output.json_file)
         values = summary.as_json() | {"repairs": said}
@@ -234,7 +250,7 @@ def make_cloth(files: Sequence[Path], recipe: Recipe, output: Output, console: C
     for note in said + notes:
         console.print(f"  {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     summary.show(console)
-    console.print(f"written: {', '.join(map(str, written))}", markup=False, soft_wrap=True)
+    console.print(f"written: {', '.join(map(str, output.paths))}", markup=False, soft_wrap=True)
     console.print("\nin the input script:")
     for line in output.script(cloth):
         console.print(f"  {line}", markup=False, highlight=False, soft_wrap=True)

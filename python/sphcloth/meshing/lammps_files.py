@@ -15,6 +15,9 @@ from sphcloth.meshing.cloth import Cloth
 
 ATOM_STYLES = ("hybrid sph molecular", "molecular")
 
+# LAMMPS has 32 groups; some are for the scene
+MOST_GROUPS = 20
+
 
 def write_data(
     cloth: Cloth,
@@ -89,12 +92,13 @@ def write_groups(cloth: Cloth, path: str | Path, mass_per_atom: bool = False) ->
     """Write a script for ``include`` behind ``read_data``: groups, and masses of types.
 
     The group ``cloth`` holds all vertices, ``pins`` those that are held, and with several files
-    each has a group of its own. Groups go by molecule and atom ID.
+    each has a group of its own, if they are no more than LAMMPS has groups. Groups go by molecule
+    and atom ID.
     """
     lines = ["# by sphcloth mesh, for 'include' behind read_data"]
     several = len(cloth.names) > 1
     lines.append(f"group cloth molecule {f'1:{len(cloth.names)}' if several else 1}")
-    if several:
+    if several and len(cloth.names) <= MOST_GROUPS:
         lines += [f"group {name} molecule {n}" for n, name in enumerate(cloth.names, 1)]
     lines += [f"group pins id {part}" for part in _id_ranges(np.flatnonzero(cloth.pinned) + 1)]
     if not has_masses(cloth) and not mass_per_atom:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -126,7 +127,7 @@ def script_for_data(cloth: Cloth, data: Path, groups: Path, mass_per_atom: bool)
     if cloth.rest is not None:
         lines.append("fix rest all property/atom d2_rest 3")
         sections += f" fix rest NULL {REST_SECTION}"
-    lines += [f"read_data {data}{sections}", f"include {groups}"]
+    lines += [f"read_data {_word(data)}{sections}", f"include {_word(groups)}"]
     return lines + _motion(cloth)
 
 
@@ -139,7 +140,7 @@ def script_for_molecule(cloth: Cloth, molecule: Path, mass_per_atom: bool) -> li
     words += [f"extra/{kind}/per/atom {room[kind]}" for kind in [*kinds, "special"]]
     lines = ["fix mass all property/atom rmass ghost yes"] if mass_per_atom else []
     lines.append(f"create_box {types['atom']} BOX {' '.join(words)}")
-    lines.append(f"molecule cloth {molecule}")
+    lines.append(f"molecule cloth {_word(molecule)}")
     lines.append("create_atoms 0 single 0 0 0 mol cloth 1 rotate 0 0 0 1 units box")
     if not mass_per_atom:
         lines += [f"mass {t} {mass:.10g}" for t, mass in cloth.mass_of_type.items()]
@@ -159,6 +160,11 @@ def mass_notes(cloth: Cloth) -> list[str]:
     if not has_masses(cloth):
         notes.append("no section Masses: some types are not the cloth's; the groups set its masses")
     return notes
+
+
+def _word(path: Path) -> str:
+    """Return a path as one word of an input script."""
+    return f'"{path}"' if re.search(r"\s", str(path)) else str(path)
 
 
 def _motion(cloth: Cloth) -> list[str]:

@@ -20,6 +20,7 @@ from sphcloth.trajectory import Frame, Trajectory
 
 FORMATS = {"obj": ".obj", "ply": ".ply", "vtk": ".vtp"}
 SERIES = "cloth.pvd"
+VELOCITY = {"vx", "vy", "vz"}
 
 
 def write_sequence(
@@ -186,7 +187,11 @@ def _vtk_writer(mesh: ClothMesh, start: Frame) -> Callable[[Frame, NDArray, Path
         body.point_data["strain"] = _strain(
             lengths(positions, edges), before, edges, len(positions)
         )
-        for name in frame.columns.keys() - {"x", "y", "z"}:
+        others = frame.columns.keys() - {"x", "y", "z"}
+        if others >= VELOCITY:
+            others -= VELOCITY
+            body.point_data["velocity"] = mesh.vectors(frame, "vx", "vy", "vz")
+        for name in others:
             body.point_data[name] = mesh.vectors(frame, name)[:, 0]
         body.save(path)
 

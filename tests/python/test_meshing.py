@@ -527,6 +527,7 @@ def test_borders_divided_differently_are_reported() -> None:
 TEXT = {
     "nan.obj": "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
     "lost.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n",
+    "plane.obj": "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n",
     "points.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\n",
     "line.obj": "v 0 0 0\nv 1 0 0\nl 1 2\n",
     "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n",

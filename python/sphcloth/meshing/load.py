@@ -187,6 +187,8 @@ def _read(path: Path) -> Surface:
         ) from error
     if not len(triangles):
         raise UserError(f"{path} holds no triangle")
+    if vertices.shape[1:] != (3,) or triangles.shape[1:] != (3,):
+        raise UserError(f"{path}: a vertex has not 3 coordinates, or a triangle not 3 vertices")
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise UserError(f"{path}: a triangle has a vertex that is not in the file")
     return Surface.of(vertices, triangles)

@@ -507,7 +507,8 @@ def test_sewing_too_far_is_refused() -> None:
     )
     with pytest.raises(UserError, match="would join two vertices of one piece"):
         Seams.find(surface, 0.25)
-    assert len(Seams.find(surface, 0.05).pairs) == 0
+    with pytest.raises(UserError, match="no borders of different pieces are so close"):
+        Seams.find(surface, 0.05)
 
 
 def test_borders_divided_differently_are_reported() -> None:
@@ -590,6 +591,7 @@ def test_quads_are_cut_in_two(tmp_path: Path) -> None:
         (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "1"], "use another"),
         (["--areal-mass", "1", "--data", "x", "--sew", "0"], "must be positive"),
         (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "2"], "raise it"),
+        (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "0"], "count from 1"),
         (["--areal-mass", "1", "--data", "x", "--pin-type", "2"], "needs --pin"),
         (["--areal-mass", "1", "--data", "x", "--pin", "q"], "not understood"),
         (["--areal-mass", "1", "--molecule", "x", "--pin", "z>0"], "--pin-type"),
@@ -623,6 +625,7 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(
     shown = " ".join(capsys.readouterr().err.split())
     assert message in shown
     assert "Traceback" not in shown
+    assert [path.name for path in tmp_path.iterdir()] == ["flag.obj"]
 
 
 def test_room_per_atom_is_what_lammps_stores() -> None:

@@ -96,7 +96,7 @@ class Recipe:
             raise UserError("--seam-type needs --sew DISTANCE")
         if self.pin_type is not None and not self.pins:
             raise UserError("--pin-type needs --pin SELECTION")
-        if min(self.seam_type or 1, self.pin_type or 1) < 1 or 0 in (self.seam_type, self.pin_type):
+        if any(number is not None and number < 1 for number in (self.seam_type, self.pin_type)):
             raise UserError("--seam-type and --pin-type: types count from 1")
         if self.seam_type in {material.bond_type for material in self.materials}:
             raise UserError(f"--seam-type {self.seam_type} is the type of the edges: use another")
@@ -205,16 +205,28 @@ class Output:
                 raise UserError(f"{path} is a mesh or is written twice: use another name")
             taken.add(path.resolve())
 
-    def write(self, cloth: Cloth) -> None:
-        """Write the files for LAMMPS."""
-        if self.molecule is not None:
-            _prepare(self.molecule)
-            write_molecule(cloth, self.molecule, self.mass_per_atom)
+    def write(self, cloth: Cloth, summary: report.MeshSummary, said: Sequence[str]) -> None:
+        """Write all files; ``said`` are the repairs for the summary.
+
+        Raises:
+            UserError: a file cannot be written, or cannot hold this cloth.
+        """
+        try:
+            for path in self.paths:
+                path.parent.mkdir(parents=True, exist_ok=True)
+            self._write(cloth, summary, said)
+        except OSError as error:
+            raise UserError(f"{error.filename} cannot be written: {error.strerror}") from None
+
+    def _write(self, cloth: Cloth, summary: report.MeshSummary, said: Sequence[str]) -> None:
         if self.data is not None:
-            _prepare(self.data)
-            _prepare(self.groups_file)
             write_data(cloth, self.data, self._box(cloth), self.atom_style, self.mass_per_atom)
             write_groups(cloth, self.groups_file, self.mass_per_atom)
+        if self.molecule is not None:
+            write_molecule(cloth, self.molecule, self.mass_per_atom)
+        if self.json_file is not None:
+            values = summary.as_json() | {"repairs": list(said)}
+            self.json_file.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
 
     def script(self, cloth: Cloth) -> list[str]:
         """Return the lines of an input script that use the file."""
@@ -241,11 +253,7 @@ def make_cloth(files: Sequence[Path], recipe: Recipe, output: Output, console: C
     output.check_paths(files)
     cloth, said = recipe.cook(files)
     summary = report.MeshSummary.of(cloth)
-    output.write(cloth)
-    if output.json_file is not None:
-        _prepare(output.json_file)
-        values = summary.as_json() | {"repairs": said}
-        output.json_file.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+    output.write(cloth, summary, said)
     notes = [] if output.mass_per_atom else report.mass_notes(cloth)
     for note in said + notes:
         console.print(f"  {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
@@ -350,13 +358,3 @@ def _flat_hint(cloth: Cloth) -> str:
     """Return the coefficients that make hinges flat at rest, as a piece of text."""
     types = np.unique(cloth.dihedrals[:, 0])
     return ", ".join(f"'dihedral_coeff {t} K rest flat'" for t in types)
-
-
-def _prepare(path: Path) -> None:
-    """Make the folder of a file; UserError if it cannot be written there."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a", encoding="utf-8"):
-            pass
-    except OSError as error:
-        raise UserError(f"{path} cannot be written: {error.strerror}") from None

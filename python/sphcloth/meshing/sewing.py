@@ -20,7 +20,7 @@ class Seams:
     Attributes:
         pairs: vertices of different pieces, shape (S, 2).
         distance: they are no farther apart than this.
-        widest: largest distance of a pair, 0 without pairs.
+        widest: largest distance of a pair.
         unpaired: number of border vertices that are as close to another piece, but nearest to no
             vertex that is also nearest to them.
     """
@@ -35,8 +35,8 @@ class Seams:
         """Pair each border vertex with the nearest one of every other piece, if that is mutual.
 
         Raises:
-            UserError: the distance is not positive, or so large that two vertices of one piece
-                would be joined.
+            UserError: the distance is not positive, or too small for any pair, or so large that
+                two vertices of one piece would be joined.
         """
         if not 0 < distance < np.inf:
             raise UserError(f"--sew {distance:g}: the distance must be positive")
@@ -45,11 +45,15 @@ class Seams:
         close = border[close].reshape(-1, 2)
         close = close[np.diff(surface.pieces[close], axis=1)[:, 0] != 0]
         pairs = _mutually_nearest(surface, close)
+        if not len(pairs):
+            raise UserError(
+                f"--sew {distance:g}: no borders of different pieces are so close: raise it"
+            )
         _check_pieces(surface, pairs, distance)
         return cls(
             pairs,
             distance,
-            float(lengths(surface.vertices, pairs).max(initial=0.0)),
+            float(lengths(surface.vertices, pairs).max()),
             len(np.setdiff1d(close, pairs)),
         )
 
@@ -80,14 +84,7 @@ def add_seam_bonds(
 
     Both ends of a seam rest at the same place, midway: the bond's rest length is 0. Edges beside
     a seam change their rest length; by how much is said.
-
-    Raises:
-        UserError: no pair of vertices: there is nothing to sew.
     """
-    if not len(seams.pairs):
-        raise UserError(
-            f"--sew {seams.distance:g}: no borders of different pieces are so close: raise it"
-        )
     rest = seams.middle(surface.vertices)
     change = np.abs(lengths(rest, surface.edges) / surface.edge_lengths - 1).max()
     said = [

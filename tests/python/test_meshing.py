@@ -319,8 +319,8 @@ def test_a_molecule_template_is_placed_twice(
         arguments.append("--per-atom-mass")
     assert mesh_command(monkeypatch, *arguments) == 0
     script = printed_script(capsys.readouterr().out).replace(" BOX ", " box ")
-    first = "create_atoms 0 single 0 0 0 mol cloth 1 rotate 0 0 0 1 units box"
-    second = first.replace("0 0 0 mol", "1.5 0 0 mol").replace("rotate 0 0", "rotate 90 0")
+    first = re.search("create_atoms.*", script)[0]
+    second = "create_atoms 0 single 1.5 0 0 mol cloth 1 rotate 90 0 0 1 units box"
     script = "region box block -2 2 -2 2 -2 2\n" + script.replace(first, f"{first}\n{second}")
     lmp = run_lines(script)
     assert sizes(lmp) == [2 * 162, 2 * 480, 2 * 320, 2 * 480]
@@ -329,6 +329,24 @@ def test_a_molecule_template_is_placed_twice(
     lmp.command("variable total equal mass(cloth)")
     assert lmp.extract_variable("total") == pytest.approx(2 * 0.2 * np.pi, rel=0.03)
     check_motion(lmp)
+
+
+def test_pins_of_a_template_have_a_type(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    flag, template = tmp_path / "flag.obj", tmp_path / "flag.mol"
+    grid(5, 5).export(flag)
+    arguments = (flag, "--molecule", template, "--areal-mass", 1, "--pin", "z>0.9")
+    assert mesh_command(monkeypatch, *arguments, "--pin-type", 2) == 0
+    script = printed_script(capsys.readouterr().out).replace(" BOX ", " box ")
+    lmp = run_lines("region box block -2 2 -2 2 -2 2\n" + script)
+    lmp.command("variable n equal count(pins)")
+    assert lmp.extract_variable("n") == 6
+    lmp.command("variable total equal mass(cloth)")
+    assert lmp.extract_variable("total") == pytest.approx(1.0)
+    lmp.command("run 20")
+    assert np.count_nonzero(np.abs(positions(lmp)[:, 2] - 1.0) < 1e-9) == 6
+    assert np.abs(positions(lmp)[:, 0] - grid(5, 5).vertices[:, 0]).max() < 0.1
 
 
 def test_a_file_for_type_2_leaves_the_mass_of_type_1_to_the_script(
@@ -594,6 +612,7 @@ def test_quads_are_cut_in_two(tmp_path: Path) -> None:
         (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "0"], "count from 1"),
         (["--areal-mass", "1", "--data", "x", "--pin-type", "2"], "needs --pin"),
         (["--areal-mass", "1", "--data", "x", "--pin", "q"], "not understood"),
+        (["--areal-mass", "1", "--data", "x", "--pin", "z>0", "--pin-type", "1"], "use another"),
         (["--areal-mass", "1", "--molecule", "x", "--pin", "z>0"], "--pin-type"),
         (["--areal-mass", "1", "--data", "x", "--rest", "bent"], "use model or flat"),
         (["--areal-mass", "1", "--data", "x", "--atom-style", "full"], "--atom-style 'full'"),

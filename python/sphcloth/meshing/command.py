@@ -100,6 +100,8 @@ class Recipe:
             raise UserError("--seam-type and --pin-type: types count from 1")
         if self.seam_type in {material.bond_type for material in self.materials}:
             raise UserError(f"--seam-type {self.seam_type} is the type of the edges: use another")
+        if self.pin_type in {material.vertex_type for material in self.materials}:
+            raise UserError(f"--pin-type {self.pin_type} is the type of the others: use another")
 
     def cook(self, files: Sequence[Path]) -> tuple[Cloth, list[str]]:
         """Read, repair, place, sew and orient; return the cloth and what was done.
@@ -254,7 +256,7 @@ def make_cloth(files: Sequence[Path], recipe: Recipe, output: Output, console: C
     cloth, said = recipe.cook(files)
     summary = report.MeshSummary.of(cloth)
     output.write(cloth, summary, said)
-    notes = [] if output.mass_per_atom else report.mass_notes(cloth)
+    notes = [] if output.mass_per_atom else report.mass_notes(cloth, output.data is not None)
     for note in said + notes:
         console.print(f"  {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     summary.show(console)

@@ -132,7 +132,10 @@ def script_for_data(cloth: Cloth, data: Path, groups: Path, mass_per_atom: bool)
 
 
 def script_for_molecule(cloth: Cloth, molecule: Path, mass_per_atom: bool) -> list[str]:
-    """Return the lines of an input script that place a molecule template as cloth."""
+    """Return the lines of an input script that place a molecule template where it was modelled.
+
+    ``create_atoms`` puts the mean of the vertices at the given point.
+    """
     types = cloth.type_counts
     room = cloth.room_per_atom()
     kinds = [kind for kind in ("bond", "angle", "dihedral") if types[kind]]
@@ -141,15 +144,18 @@ def script_for_molecule(cloth: Cloth, molecule: Path, mass_per_atom: bool) -> li
     lines = ["fix mass all property/atom rmass ghost yes"] if mass_per_atom else []
     lines.append(f"create_box {types['atom']} BOX {' '.join(words)}")
     lines.append(f"molecule cloth {_word(molecule)}")
-    lines.append("create_atoms 0 single 0 0 0 mol cloth 1 rotate 0 0 0 1 units box")
+    centre = " ".join(f"{x:.10g}" for x in cloth.surface.vertices.mean(axis=0))
+    lines.append(f"create_atoms 0 single {centre} mol cloth 1 rotate 0 0 0 1 units box")
     if not mass_per_atom:
         lines += [f"mass {t} {mass:.10g}" for t, mass in cloth.mass_of_type.items()]
-    lines.append(f"group cloth type {' '.join(str(t) for t in np.unique(cloth.types))}")
+    for name, chosen in (("cloth", cloth.types), ("pins", cloth.types[cloth.pinned])):
+        if len(chosen):
+            lines.append(f"group {name} type {' '.join(str(t) for t in np.unique(chosen))}")
     return lines + _motion(cloth)
 
 
-def mass_notes(cloth: Cloth) -> list[str]:
-    """Return what to know where masses belong to types."""
+def mass_notes(cloth: Cloth, for_data: bool) -> list[str]:
+    """Return what to know where masses belong to types; ``for_data``: of a data file too."""
     notes = []
     spread = [cloth.masses[cloth.types == t].std() / m for t, m in cloth.mass_of_type.items()]
     if max(spread) > WIDE:
@@ -157,7 +163,7 @@ def mass_notes(cloth: Cloth) -> list[str]:
             f"masses within one type scatter by {max(spread):.0%} around their mean, which all "
             "get; --per-atom-mass keeps each vertex's own"
         )
-    if not has_masses(cloth):
+    if for_data and not has_masses(cloth):
         notes.append("no section Masses: some types are not the cloth's; the groups set its masses")
     return notes
 

@@ -15,6 +15,16 @@ app = typer.Typer(
     help="SPH water on cloth in LAMMPS.", no_args_is_help=True, pretty_exceptions_enable=False
 )
 
+MESH_EXAMPLES = """
+Examples:
+
+sphcloth mesh flag.obj --areal-mass 0.2 --pin 'x<0.01' --data flag.data
+
+sphcloth mesh front.obj back.obj --areal-mass 0.2 --scale 0.01 --sew 0.004 --data shirt.data
+
+sphcloth mesh --from-dump run.lammpstrj --data shirt.data --out meshes --format vtk
+"""
+
 
 @app.callback()
 def sphcloth() -> None:
@@ -111,6 +121,135 @@ def validate(
         result.write(json_file)
     result.show(found, console)
     raise typer.Exit(0 if result.passed else 1)
+
+
+@app.command(epilog=MESH_EXAMPLES)
+def mesh(
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="FILE ...", help="Meshes: OBJ, STL, PLY and what trimesh reads."),
+    ] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option("--data", help="Data file to write; to read, with --from-dump."),
+    ] = None,
+    molecule: Annotated[
+        Path | None, typer.Option(help="Molecule template to write, for create_atoms ... mol.")
+    ] = None,
+    groups: Annotated[
+        Path | None,
+        typer.Option(help="Script of groups to write.", show_default="DATA with .groups"),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the summary here too.")
+    ] = None,
+    areal_mass: Annotated[
+        list[float] | None,
+        typer.Option(help="Mass per area; once, or once for each file, as the types below."),
+    ] = None,
+    per_atom_mass: Annotated[
+        bool, typer.Option("--per-atom-mass", help="Write each vertex's own mass.")
+    ] = False,
+    vertex_type: Annotated[
+        list[int] | None, typer.Option(help="Atom type of vertices.", show_default="1")
+    ] = None,
+    bond_type: Annotated[
+        list[int] | None, typer.Option(help="Bond type of edges.", show_default="1")
+    ] = None,
+    angle_type: Annotated[
+        list[int] | None, typer.Option(help="Angle type of triangles.", show_default="1")
+    ] = None,
+    dihedral_type: Annotated[
+        list[int] | None,
+        typer.Option(help="Dihedral type of hinges, 0 for none.", show_default="1"),
+    ] = None,
+    atom_style: Annotated[
+        str, typer.Option(help="hybrid sph molecular, or molecular.")
+    ] = "hybrid sph molecular",
+    scale: Annotated[float, typer.Option(help="Factor on all coordinates.")] = 1.0,
+    rotate: Annotated[
+        tuple[float, float, float],
+        typer.Option(metavar="X Y Z", help="Then degrees about x, then y, then z."),
+    ] = (0.0, 0.0, 0.0),
+    translate: Annotated[
+        tuple[float, float, float], typer.Option(metavar="X Y Z", help="Then a displacement.")
+    ] = (0.0, 0.0, 0.0),
+    margin: Annotated[
+        float | None,
+        typer.Option(help="Distance from cloth to box.", show_default="longest edge"),
+    ] = None,
+    box: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        typer.Option(metavar="XLO XHI YLO YHI ZLO ZHI", help="The box, instead of a margin."),
+    ] = None,
+    merge: Annotated[
+        float | None,
+        typer.Option(
+            help="Vertices of a file closer than this are one.", show_default="1e-7 of its extent"
+        ),
+    ] = None,
+    sew: Annotated[
+        float | None,
+        typer.Option(metavar="DISTANCE", help="Join borders of different pieces so close."),
+    ] = None,
+    seam_type: Annotated[
+        int | None, typer.Option(help="Sew with bonds of this type instead of welding.")
+    ] = None,
+    pins: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--pin",
+            metavar="SELECTION",
+            help="Held vertices: 'z>0.9 and x<0', 'box XLO XHI YLO YHI ZLO ZHI', 'border' or "
+            "'ids 1,5-9'; several add up.",
+        ),
+    ] = None,
+    pin_type: Annotated[int | None, typer.Option(help="Atom type of held vertices.")] = None,
+    rest: Annotated[
+        str, typer.Option(help="Hinges rest as the model is, or flat: model or flat.")
+    ] = "model",
+    from_dump: Annotated[
+        Path | None, typer.Option(metavar="DUMP", help="The other way: meshes from a dump.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the meshes.")] = None,
+    form: Annotated[str, typer.Option("--format", help="obj, ply or vtk.")] = "vtk",
+    log: Annotated[Path | None, typer.Option(help="Log of the run, for times in ParaView.")] = None,
+    first: Annotated[int, typer.Option(help="First frame, from 0.")] = 0,
+    last: Annotated[
+        int | None, typer.Option(help="Last frame.", show_default="the dump's last")
+    ] = None,
+    every: Annotated[int, typer.Option(help="Write every so many frames.")] = 1,
+) -> None:
+    """Turn triangle meshes into cloth for LAMMPS, or the cloth of a dump into meshes."""
+    from sphcloth.meshing import command
+
+    console = Console()
+    if from_dump is not None:
+        if files:
+            raise UserError("--from-dump takes no mesh files")
+        command.make_sequence(from_dump, data, out, form, log, (first, last, every), console)
+        return
+    if not files:
+        raise UserError("which mesh? sphcloth mesh FILE, or --from-dump DUMP")
+    types = {
+        "vertex_type": vertex_type or [1],
+        "bond_type": bond_type or [1],
+        "angle_type": angle_type or [1],
+        "dihedral_type": dihedral_type or [1],
+    }
+    recipe = command.Recipe(
+        materials=command.make_materials(areal_mass, types, len(files)),
+        placement=command.Placement(scale, rotate, translate),
+        merge=merge,
+        sew=sew,
+        seam_type=seam_type,
+        pins=pins or [],
+        pin_type=pin_type,
+    )
+    output = command.Output(
+        data, molecule, groups, json_file, atom_style, margin, box, per_atom_mass, rest
+    )
+    command.make_cloth(files, recipe, output, console)
 
 
 @app.command()

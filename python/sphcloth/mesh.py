@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +14,25 @@ from numpy.typing import NDArray
 from sphcloth.errors import UserError
 from sphcloth.trajectory import Frame
 
-# a row of the Atoms section under 'atom_style hybrid sph molecular'; resid is the molecule
-ATOM_STYLE = "id type x y z rho esph cv resid ix iy iz"
+# sections for 'fix property/atom' that 'sphcloth mesh' puts at the end of a data file
+MASS_SECTION, REST_SECTION = "VertexMass", "Rest"
+
+
+class _Parser(DATAParser):
+    """Reads a data file up to the sections that MDAnalysis does not know."""
+
+    def iterdata(self) -> Iterator[str]:
+        own = (MASS_SECTION, REST_SECTION)
+        return itertools.takewhile(lambda line: line not in own, super().iterdata())
+
+
+def _sections(data: Path) -> dict[str, list[str]]:
+    """Return the lines of each section of a data file; none if it is not one."""
+    try:
+        with _Parser(data) as parser:
+            return parser.grab_datafile()[1]
+    except (ValueError, IndexError):
+        return {}
 
 
 @dataclass(frozen=True)
@@ -45,21 +64,20 @@ class ClothMesh:
         data = Path(data)
         if not data.is_file():
             raise UserError(f"no data file {data}")
-        try:
-            with DATAParser(data) as parser:
-                topology = parser.parse(atom_style=ATOM_STYLE)
-        except (ValueError, KeyError, IndexError) as error:
-            raise UserError(
-                f"{data} cannot be read: write it with 'write_data FILE nofix' under "
-                "'atom_style hybrid sph molecular'"
-            ) from error
-        atoms = np.array(topology.angles.values, dtype=np.int64)
-        if not len(atoms):
+        sections = _sections(data)
+        if "Atoms" not in sections:
+            raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
+        if not sections.get("Angles"):
             raise UserError(f"{data} holds no cloth: its triangles are LAMMPS angles, it has none")
-        used, triangles = np.unique(atoms, return_inverse=True)
-        ids = np.asarray(topology.ids.values, dtype=np.int64)[used]
-        order = np.argsort(ids)
-        return cls(ids[order], np.argsort(order)[triangles.reshape(-1, 3)])
+        # MDAnalysis' own angles are turned around where the first atom is the larger one
+        try:
+            atoms = np.array([line.split()[2:5] for line in sections["Angles"]], dtype=np.int64)
+            ids, triangles = np.unique(atoms.reshape(-1, 3), return_inverse=True)
+        except ValueError as error:
+            raise UserError(
+                f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
+            ) from error
+        return cls(ids, triangles.reshape(-1, 3))
 
     def positions(self, frame: Frame) -> NDArray[np.float64]:
         """Return the vertices' positions in a frame, shape (V, 3).
@@ -69,12 +87,24 @@ class ClothMesh:
         Raises:
             UserError: the frame lacks a vertex.
         """
+        return frame.positions[self._rows(frame)]
+
+    def vectors(self, frame: Frame, *names: str) -> NDArray[np.float64]:
+        """Return columns of a frame for the vertices, shape (V, number of names).
+
+        Raises:
+            UserError: the frame lacks a vertex or a column.
+        """
+        return frame.vectors(*names)[self._rows(frame)]
+
+    def _rows(self, frame: Frame) -> NDArray[np.int64]:
+        """Return the rows of the vertices in a frame, shape (V,)."""
         rows = np.searchsorted(frame.ids, self.ids)
         rows = np.minimum(rows, len(frame) - 1)
-        lost = self.ids[frame.ids[rows] != self.ids]
+        lost = self.ids[frame.ids[rows] != self.ids] if len(frame) else self.ids
         if len(lost):
             raise UserError(f"cloth vertex {lost[0]} is not in the dump at step {frame.step}")
-        return frame.positions[rows]
+        return rows
 
     def corners(self, frame: Frame) -> NDArray[np.float64]:
         """Return the corners of each triangle in a frame, shape (T, 3 corners, 3)."""

@@ -10,7 +10,7 @@ import io
 import itertools
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
@@ -44,12 +44,16 @@ class Frame:
         time: physical time, NaN if the trajectory was opened without its log.
         box: lower and upper corner of the (bounding) box, shape (2, 3).
         columns: dump column -> float64 values, shape (N,), as written in the file.
+        periodic: whether each of the three directions is periodic.
+        is_tilted: whether the box is not rectangular.
     """
 
     step: int
     time: float
     box: NDArray[np.float64]
     columns: dict[str, NDArray[np.float64]]
+    periodic: tuple[bool, ...] = (False, False, False)
+    is_tilted: bool = False
 
     def __len__(self) -> int:
         return len(self.columns["id"])
@@ -67,20 +71,21 @@ class Frame:
     @cached_property
     def positions(self) -> NDArray[np.float64]:
         """Positions in the coordinates of the script, shape (N, 3)."""
-        return self._vectors("x", "y", "z")
+        return self.vectors("x", "y", "z")
 
     @cached_property
     def velocities(self) -> NDArray[np.float64]:
         """Velocities, shape (N, 3); UserError if the dump has none."""
-        return self._vectors("vx", "vy", "vz")
+        return self.vectors("vx", "vy", "vz")
 
     def select(self, atom_type: int) -> Frame:
         """Return the atoms of one type as a frame of their own."""
         chosen = self.types == atom_type
         columns = {name: values[chosen] for name, values in self.columns.items()}
-        return Frame(self.step, self.time, self.box, columns)
+        return replace(self, columns=columns)
 
-    def _vectors(self, *names: str) -> NDArray[np.float64]:
+    def vectors(self, *names: str) -> NDArray[np.float64]:
+        """Return some columns side by side, shape (N, number of names); UserError if absent."""
         absent = [name for name in names if name not in self.columns]
         if absent:
             raise UserError(f"the dump has no column {' '.join(absent)}: add it to 'dump custom'")
@@ -97,6 +102,8 @@ class _Entry:
     step: int
     box: NDArray[np.float64]
     columns: list[str]
+    periodic: tuple[bool, ...]
+    is_tilted: bool
 
 
 class Trajectory(Sequence[Frame]):
@@ -133,7 +140,8 @@ class Trajectory(Sequence[Frame]):
         """Read one frame; negative indices count from the end."""
         entry = self._entries[index]
         columns = _read_columns(self.path, entry)
-        return Frame(entry.step, float(self.times[index]), entry.box, columns)
+        time = float(self.times[index])
+        return Frame(entry.step, time, entry.box, columns, entry.periodic, entry.is_tilted)
 
 
 def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
@@ -148,7 +156,10 @@ def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
             return
         box = np.array([bounds.split()[:2] for bounds in header[5:8]], dtype=np.float64).T
         end = file.tell()
-        yield _Entry(offset, end - offset, line, int(header[1]), box, header[8].split()[2:])
+        columns, about_box = header[8].split()[2:], header[4].split()[3:]
+        periodic = tuple(flags == "pp" for flags in about_box[-3:])
+        size, is_tilted = end - offset, "xy" in about_box
+        yield _Entry(offset, size, line, int(header[1]), box, columns, periodic, is_tilted)
         line, offset = line + _HEADER_LINES + natoms, end
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -48,3 +49,25 @@ def test_a_scene_without_triangles_is_refused(cloth_data: Path) -> None:
 def test_triangles_wound_in_opposite_senses_are_refused() -> None:
     with pytest.raises(UserError, match="wound in opposite senses"):
         ClothMesh(np.arange(4), np.array([[0, 1, 2], [0, 3, 2]]))
+
+
+@pytest.mark.parametrize("rows", ["1 1 2 3", "1 1 2 3 x", "1 1 2"])
+def test_bad_rows_of_triangles_are_refused(cloth_data: Path, rows: str) -> None:
+    text = cloth_data.read_text()
+    before, behind = text.split("Angles\n")
+    cloth_data.write_text(f"{before}Angles\n\n{rows}\n\nDihedrals\n{behind.split('Dihedrals')[1]}")
+    with pytest.raises(UserError, match="section Angles cannot be read"):
+        ClothMesh.read(cloth_data)
+
+
+def test_noise_is_no_data_file(cloth_data: Path) -> None:
+    cloth_data.write_bytes(np.random.default_rng(1).bytes(2000))
+    with pytest.raises(UserError, match="is no data file"):
+        ClothMesh.read(cloth_data)
+
+
+def test_the_sense_of_the_triangles_stays(cloth_data: Path) -> None:
+    """Whatever the order of the corners' ids."""
+    text = re.sub(r"(Angles\n\n)1 1 2 3 4", r"\g<1>1 1 4 2 3", cloth_data.read_text())
+    cloth_data.write_text(text)
+    assert ClothMesh.read(cloth_data).triangles[0].tolist() == [2, 0, 1]

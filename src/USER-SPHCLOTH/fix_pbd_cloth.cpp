@@ -323,7 +323,7 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
       if (springs[elements.type[m]].empty()) continue;
       std::array<int, N> slots;
       int viewer = -1;
-      for (std::size_t q = 0; q < N; q++) {
+      for (std::size_t q = 0; q < N && (viewer < 0 || viewer == s); q++) {
         slots[q] = slot_of_vertex(i, elements.vertices[m][q]);
         if (viewer < 0 && !halo.is_ghost(slots[q])) viewer = slots[q];
       }

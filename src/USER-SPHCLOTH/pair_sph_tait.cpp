@@ -30,7 +30,8 @@ static const std::string STYLE = "pair_style sph/tait";
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
     Pair(lmp), materials(lmp), walls(nullptr), is_evaluated(false), measure_volume(false),
-    extrapolate(false), active(nullptr), active_column(0), elapsed(0.0), stage(Stage::DENSITY)
+    extrapolate(false), any_fluid(true), active(nullptr), active_column(0), elapsed(0.0),
+    stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -293,12 +294,13 @@ void PairSPHTait::new_lists()
   fluid->list(particles(), reach.data());
 }
 
-// Volumes of boundary particles that share space among themselves follow their motion.
+// Volumes of boundary particles that share space among themselves follow their motion, as long as
+// there is fluid to feel them.
 
 void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
 {
   int measure = measure_volume && new_neighbours;
-  if (measure_volume && !new_neighbours) {
+  if (measure_volume && !new_neighbours && any_fluid) {
     int moved = 0;
     for (int i = 0; i < p.n_owned && !moved; i++) {
       const double *v = p.v + 3 * i;
@@ -314,6 +316,10 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
   stage = Stage::AMOUNT;
   comm->forward_comm(this, 1);
   if (!new_neighbours) return;
+  int fluid_here = 0, fluid_anywhere = 0;
+  for (int i = 0; i < p.n_owned && !fluid_here; i++) fluid_here = materials.is_fluid(p.type[i]);
+  MPI_Allreduce(&fluid_here, &fluid_anywhere, 1, MPI_INT, MPI_MAX, world);
+  any_fluid = fluid_anywhere;
 
   // a mass that all particles of a type share leaves the sums
   std::vector<double> &mass = fluid->model.mass;

@@ -126,6 +126,7 @@ class PairSPHTait : public Pair {
   FixWallSPH *walls;    // null without plane walls
   bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
+  bool any_fluid;    // on any rank, at the last list build
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
   // scratch, kept from step to step

@@ -71,8 +71,7 @@ struct PBDMaterial {    // plain, for the restart file
   // as the user would write it, every digit
   std::string words(bool of_bond) const
   {
-    std::string text = compliant ? fmt::format("compliance {}", compliance)
-                                 : fmt::format("{}", k);
+    std::string text = compliant ? fmt::format("compliance {}", compliance) : fmt::format("{}", k);
     if (compress != 1.0) text += fmt::format(" compress {}", compress);
     if (limit >= 0.0) text += fmt::format(" limit {}", limit);
     if (no_rest) text += of_bond ? " rest zero" : " rest flat";

@@ -636,3 +636,38 @@ def test_boundary_takes_the_mean_pressure_of_the_fluid_around_it():
     force = -np.array([1.0, 1.4]) * 1e-4 * RHO0 * (p + at_wall) * slope * np.array([1, -1])
     np.testing.assert_allclose(by_id(lmp, "f")[:2, 0], force, rtol=1e-12)
     np.testing.assert_allclose(by_id(lmp, "f")[2, 0], -force.sum(), rtol=1e-12)
+
+
+@pytest.mark.parametrize("fluid", [False, True])
+def test_volumes_follow_a_boundary_only_while_there_is_fluid(fluid):
+    """A plane of boundary particles is drawn apart; a fluid particle is far away, or none."""
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        atom_style sph
+        comm_modify vel yes
+        region box block -1 1 -1 1 -1 1
+        create_box 2 box
+        mass * 1
+        lattice sc 0.05
+        region plane block -0.2 0.2 -0.2 0.2 -0.01 0.01 units box
+        create_atoms 2 region plane
+        {"create_atoms 1 single 0.9 0.9 0.9 units box" if fluid else ""}
+        variable u atom x
+        group plane type 2
+        velocity plane set v_u NULL NULL
+        pair_style sph/tait {H}
+        pair_coeff 1 1 fluid {RHO0} c0 {C0}
+        pair_coeff 2 2 boundary
+        neighbor 0.05 bin
+        neigh_modify delay 0 every 1 check yes
+        compute volume plane sph/atom volume
+        fix go plane nve
+        timestep 1e-2
+        run 0""")
+    lmp.commands_string("compute mean plane reduce sum c_volume\nthermo_style custom step c_mean")
+    lmp.command("run 0")
+    before = lmp.extract_compute("mean", 0, 0)
+    lmp.command("run 3")
+    grown = lmp.extract_compute("mean", 0, 0) / before
+    assert (grown > 1.01) if fluid else (grown == 1.0)

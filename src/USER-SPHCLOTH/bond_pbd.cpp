@@ -30,10 +30,10 @@ void BondPBD::allocate()
   const int n = atom->nbondtypes + 1;
   memory->create(setflag, n, "bond:setflag");
   for (int i = 1; i < n; i++) setflag[i] = 0;
-  k.assign(n, 0.0);
+  materials.allocate(atom->nbondtypes);
 }
 
-// bond_coeff N k
+// bond_coeff N k, or N compliance A, and keywords
 
 void BondPBD::coeff(int narg, char **arg)
 {
@@ -42,10 +42,9 @@ void BondPBD::coeff(int narg, char **arg)
   int ilo, ihi;
   utils::bounds(FLERR, arg[0], 1, atom->nbondtypes, ilo, ihi, error);
   ArgReader args(lmp, COEFF, narg, arg, 1);
-  const double stiffness = args.fraction("stiffness k");
-  if (args.more()) args.unknown(args.peek(), "no keyword: the only argument is the stiffness k");
+  const PBDMaterial material = PBDMaterial::read(args, true);
   for (int i = ilo; i <= ihi; i++) {
-    k[i] = stiffness;
+    materials[i] = material;
     setflag[i] = 1;
   }
 }
@@ -64,18 +63,13 @@ double BondPBD::single(int, double, int, int, double &fforce)
   return 0.0;
 }
 
-void BondPBD::write_restart(FILE *fp) { fwrite(&k[1], sizeof(double), atom->nbondtypes, fp); }
+void BondPBD::write_restart(FILE *fp) { materials.write_restart(fp); }
 
 void BondPBD::read_restart(FILE *fp)
 {
   allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, &k[1], sizeof(double), atom->nbondtypes, fp, nullptr, error);
-  MPI_Bcast(&k[1], atom->nbondtypes, MPI_DOUBLE, 0, world);
+  materials.read_restart(fp, comm, error, world);
   for (int i = 1; i <= atom->nbondtypes; i++) setflag[i] = 1;
 }
 
-void BondPBD::write_data(FILE *fp)
-{
-  for (int i = 1; i <= atom->nbondtypes; i++) fprintf(fp, "%d %.16g\n", i, k[i]);
-}
+void BondPBD::write_data(FILE *fp) { materials.write_data(fp, true); }

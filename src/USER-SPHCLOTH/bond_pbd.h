@@ -11,7 +11,7 @@ BondStyle(pbd,BondPBD);
 
 #include "bond.h"
 
-#include <vector>
+#include "pbd_material.h"
 
 namespace LAMMPS_NS {
 
@@ -29,10 +29,10 @@ class BondPBD : public Bond {
   double single(int, double, int, int, double &) override;
 
   bool owns(int type) const { return setflag && setflag[type]; }
-  double stiffness(int type) const { return k[type]; }    // k of (9), 0 to 1
+  const PBDMaterial &material(int type) const { return materials[type]; }
 
  private:
-  std::vector<double> k;
+  PBDMaterials materials;
 
   void allocate();
 };

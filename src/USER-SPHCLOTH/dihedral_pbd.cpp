@@ -30,10 +30,10 @@ void DihedralPBD::allocate()
   const int n = atom->ndihedraltypes + 1;
   memory->create(setflag, n, "dihedral:setflag");
   for (int i = 1; i < n; i++) setflag[i] = 0;
-  k.assign(n, 0.0);
+  materials.allocate(atom->ndihedraltypes);
 }
 
-// dihedral_coeff N k
+// dihedral_coeff N k, or N compliance A, and keywords
 
 void DihedralPBD::coeff(int narg, char **arg)
 {
@@ -42,10 +42,9 @@ void DihedralPBD::coeff(int narg, char **arg)
   int ilo, ihi;
   utils::bounds(FLERR, arg[0], 1, atom->ndihedraltypes, ilo, ihi, error);
   ArgReader args(lmp, COEFF, narg, arg, 1);
-  const double stiffness = args.fraction("stiffness k");
-  if (args.more()) args.unknown(args.peek(), "no keyword: the only argument is the stiffness k");
+  const PBDMaterial material = PBDMaterial::read(args, false);
   for (int i = ilo; i <= ihi; i++) {
-    k[i] = stiffness;
+    materials[i] = material;
     setflag[i] = 1;
   }
 }
@@ -58,21 +57,13 @@ void DihedralPBD::init_style()
 
 void DihedralPBD::compute(int eflag, int vflag) { ev_init(eflag, vflag); }
 
-void DihedralPBD::write_restart(FILE *fp)
-{
-  fwrite(&k[1], sizeof(double), atom->ndihedraltypes, fp);
-}
+void DihedralPBD::write_restart(FILE *fp) { materials.write_restart(fp); }
 
 void DihedralPBD::read_restart(FILE *fp)
 {
   allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, &k[1], sizeof(double), atom->ndihedraltypes, fp, nullptr, error);
-  MPI_Bcast(&k[1], atom->ndihedraltypes, MPI_DOUBLE, 0, world);
+  materials.read_restart(fp, comm, error, world);
   for (int i = 1; i <= atom->ndihedraltypes; i++) setflag[i] = 1;
 }
 
-void DihedralPBD::write_data(FILE *fp)
-{
-  for (int i = 1; i <= atom->ndihedraltypes; i++) fprintf(fp, "%d %.16g\n", i, k[i]);
-}
+void DihedralPBD::write_data(FILE *fp) { materials.write_data(fp, false); }

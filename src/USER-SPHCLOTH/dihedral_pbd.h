@@ -11,7 +11,7 @@ DihedralStyle(pbd,DihedralPBD);
 
 #include "dihedral.h"
 
-#include <vector>
+#include "pbd_material.h"
 
 namespace LAMMPS_NS {
 
@@ -27,10 +27,10 @@ class DihedralPBD : public Dihedral {
   void write_data(FILE *) override;
 
   bool owns(int type) const { return setflag && setflag[type]; }
-  double stiffness(int type) const { return k[type]; }    // k of (9), 0 to 1
+  const PBDMaterial &material(int type) const { return materials[type]; }
 
  private:
-  std::vector<double> k;
+  PBDMaterials materials;
 
   void allocate();
 };

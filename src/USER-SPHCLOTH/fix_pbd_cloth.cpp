@@ -1,9 +1,8 @@
 // Position-based dynamics of cloth: (4) to (9) and lines 19 to 29 of Algorithm 1.
 //
-// Constraints are projected colour by colour (Gauss-Seidel).  The colours follow from the global
-// IDs alone and every rank projects each constraint that touches one of its vertices, so that the
-// result does not depend on the number of ranks; after a colour only the vertices that it moved
-// are forwarded.
+// Constraints are projected colour by colour.  The colours follow from the global IDs alone and
+// every rank projects each constraint that touches one of its vertices, so that the result does not
+// depend on the number of ranks; after a colour only the vertices that it moved are forwarded.
 
 #include "fix_pbd_cloth.h"
 
@@ -13,7 +12,6 @@
 #include "bond_pbd.h"
 #include "comm.h"
 #include "core/colouring.h"
-#include "core/constraints.h"
 #include "dihedral_pbd.h"
 #include "domain.h"
 #include "error.h"
@@ -36,14 +34,16 @@ using namespace sphcloth;
 ------------------------------------------------------------------------- */
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), iterations(10), pinbit(0),
-    damping(0.0), rest_x(nullptr), mesh(lmp, label), halo(lmp), pin_force{}
+    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
+    iterations(10), from_start(false), tolerance(0.0), pinbit(0), damping(0.0), rest_x(nullptr),
+    mesh(lmp, label), halo(lmp), edge_colours(0), hinge_colours(0), edge_layers(1),
+    mean_length(0.0), pin_force{}, sweeps(0)
 {
   time_integrate = 1;
   restart_peratom = 1;
   create_attribute = 1;
   vector_flag = 1;
-  size_vector = 4;
+  size_vector = 7;
   global_freq = 1;
   extvector = 0;
   comm_forward = VertexHalo::LINK;
@@ -76,6 +76,12 @@ void FixPBDCloth::read_options(ArgReader &args)
     const std::string keyword = args.word("keyword");
     if (keyword == "iterations")
       iterations = args.integer("iterations", 1, 100000);
+    else if (keyword == "solver")
+      solver = static_cast<Solver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
+    else if (keyword == "direction")
+      from_start = args.choice(keyword, {"current", "start"});
+    else if (keyword == "tolerance")
+      tolerance = args.positive(keyword);
     else if (keyword == "pin") {
       const std::string name = args.word("pin group");
       const int pins = group->find(name);
@@ -87,8 +93,11 @@ void FixPBDCloth::read_options(ArgReader &args)
     else if (keyword == "rest")
       take_rest_positions(args.word("rest property").c_str());
     else
-      args.unknown(keyword, "iterations, pin, damping, rest");
+      args.unknown(keyword, "iterations, solver, direction, tolerance, pin, damping, rest");
   }
+  if (tolerance > 0.0 && solver == Solver::SUBSTEPS)
+    args.fail("tolerance", std::to_string(tolerance),
+              "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
 }
 
 void FixPBDCloth::check_pins()
@@ -135,7 +144,7 @@ void FixPBDCloth::init()
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
-  read_stiffness();
+  check_styles();
   measure_rest();
   colour_mesh();
 }
@@ -151,22 +160,26 @@ void FixPBDCloth::check_overlap()
   }
 }
 
-void FixPBDCloth::read_stiffness()
+void FixPBDCloth::check_styles()
 {
-  const auto *bond = dynamic_cast<BondPBD *>(force->bond ? force->bond_match("pbd") : nullptr);
-  if (!bond)
+  if (!force->bond || !dynamic_cast<BondPBD *>(force->bond_match("pbd")))
     error->all(FLERR, "{}: bond_style {} holds no stiffness: use 'bond_style pbd'", label,
                force->bond_style ? force->bond_style : "none");
-  edge_stiffness.assign(atom->nbondtypes + 1, -1.0);
-  for (int t = 1; t <= atom->nbondtypes; t++)
-    if (bond->owns(t)) edge_stiffness[t] = stiffness_per_iteration(bond->stiffness(t), iterations);
+}
 
+// null: another style's
+
+const PBDMaterial *FixPBDCloth::material_of_edge(int type) const
+{
+  const auto *bond = dynamic_cast<BondPBD *>(force->bond_match("pbd"));
+  return bond->owns(type) ? &bond->material(type) : nullptr;
+}
+
+const PBDMaterial *FixPBDCloth::material_of_hinge(int type) const
+{
   const auto *dihedral =
       dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
-  hinge_stiffness.assign(atom->ndihedraltypes + 1, -1.0);
-  for (int t = 1; t <= atom->ndihedraltypes; t++)
-    if (dihedral && dihedral->owns(t))
-      hinge_stiffness[t] = stiffness_per_iteration(dihedral->stiffness(t), iterations);
+  return dihedral && dihedral->owns(type) ? &dihedral->material(type) : nullptr;
 }
 
 // Rest lengths and rest angles from the rest positions, which each vertex carries.
@@ -197,22 +210,52 @@ void FixPBDCloth::measure_rest()
     domain->minimum_image(FLERR, d.data());
     return d;
   };
+  mean_length = 0.0;
   edge_rest.resize(mesh.edges.size());
   for (std::size_t m = 0; m < mesh.edges.size(); m++) {
     const auto &[a, b] = mesh.edges.vertices[m];
     edge_rest[m] = from(a, b).norm();
+    mean_length += edge_rest[m] / mesh.edges.size();
   }
   hinge_rest.resize(mesh.hinges.size());
   for (std::size_t m = 0; m < mesh.hinges.size(); m++) {
     const auto &[a, e1, e2, b] = mesh.hinges.vertices[m];
-    hinge_rest[m] = hinge(from(e1, a), Vec3::Zero(), from(e1, e2), from(e1, b)).angle;
+    const double angle = hinge_angle(from(e1, a), Vec3::Zero(), from(e1, e2), from(e1, b));
+    hinge_rest[m] = std::isnan(angle) ? 0.0 : angle;
   }
 }
 
 void FixPBDCloth::colour_mesh()
 {
-  distance.colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), distance.n_colours);
-  bending.colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), bending.n_colours);
+  edge_colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), edge_colours);
+  hinge_colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinge_colours);
+  edge_layers = 1;
+  for (int t = 1; t <= atom->nbondtypes; t++)
+    if (const PBDMaterial *m = material_of_edge(t))
+      edge_layers = std::max(edge_layers, m->n_springs());
+
+  crowd.assign(mesh.n_vertices(), 0);
+  count_constraints(mesh.edges, [this](int type) { return material_of_edge(type); });
+  count_constraints(mesh.hinges, [this](int type) { return material_of_hinge(type); });
+}
+
+template <std::size_t N, class MaterialOf>
+void FixPBDCloth::count_constraints(const ClothElements<N> &elements, MaterialOf material_of)
+{
+  for (std::size_t m = 0; m < elements.size(); m++)
+    if (const PBDMaterial *material = material_of(elements.type[m]))
+      for (int vertex : elements.vertices[m]) crowd[vertex] += material->n_springs();
+}
+
+// What a constraint may do of its projection in a Jacobi sweep: the same for all its vertices, so
+// that momentum is kept.
+
+double FixPBDCloth::share_of(const int *vertices, int n) const
+{
+  if (solver != Solver::JACOBI) return 1.0;
+  int most = 1;
+  for (int q = 0; q < n; q++) most = std::max(most, crowd[vertices[q]]);
+  return 1.0 / most;
 }
 
 /* ----------------------------------------------------------------------
@@ -224,10 +267,12 @@ void FixPBDCloth::post_neighbor()
   std::vector<int> owned;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) owned.push_back(i);
-  halo.reset(1 + distance.n_colours + bending.n_colours, owned);
+  halo.reset(1 + edge_colours * edge_layers + hinge_colours, owned);
 
-  collect(distance, mesh.edges, edge_rest, edge_stiffness);
-  collect(bending, mesh.hinges, hinge_rest, hinge_stiffness);
+  collect(distance, mesh.edges, edge_colour, edge_colours, edge_layers, edge_rest,
+          [this](int type) { return material_of_edge(type); });
+  collect(bending, mesh.hinges, hinge_colour, hinge_colours, 1, hinge_rest,
+          [this](int type) { return material_of_hinge(type); });
 
   std::vector<int> vertex_of_slot(halo.n_slots());
   for (int s = 0; s < halo.n_slots(); s++)
@@ -235,23 +280,30 @@ void FixPBDCloth::post_neighbor()
   ask_for_ghosts(vertex_of_slot);
   halo.connect(this);
 
-  p.resize(halo.n_slots());
-  v.resize(damping > 0.0 ? halo.n_slots() : halo.n_owned());
-  w.resize(halo.n_slots());
+  std::vector<double> w(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++) w[s] = inverse_mass(halo.atom_of(s));
   halo.forward(ALL, w);
+  const std::size_t n = halo.n_slots() + 1;    // and the idle one
+  p.assign(n, {});
+  for (int s = 0; s < halo.n_slots(); s++) p[s].w = w[s];
+  start = p;
+  v = p;
+  change.assign(solver == Solver::JACOBI ? n : 0, {});
 }
 
 // Every constraint with at least one owned vertex, once: it is taken from the view of the first
-// of its vertices that is owned here.  Constraints with k = 0 do nothing and are left out.
+// of its vertices that is owned here.
 
-template <std::size_t N>
+template <std::size_t N, class MaterialOf>
 void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
-                          const std::vector<double> &rest, const std::vector<double> &stiffness)
+                          const std::vector<int> &colour, int n_colours, int layers,
+                          const std::vector<double> &rest, MaterialOf material_of)
 {
   struct Found {
     int colour, element;
     std::array<int, N> slots;
+    Spring spring;
+    double share;
   };
   std::vector<Found> found;
   for (int s = 0; s < halo.n_owned(); s++) {
@@ -259,31 +311,32 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
     const int vertex = mesh.index_of(atom->tag[i]);
     for (int k = elements.first[vertex]; k < elements.first[vertex + 1]; k++) {
       const int m = elements.incident[k];
-      if (stiffness[elements.type[m]] <= 0.0) continue;
-      Found f{c.colour[m], m, {}};
+      const PBDMaterial *material = material_of(elements.type[m]);
+      if (!material || material->n_springs() == 0) continue;
+      std::array<int, N> slots;
       int viewer = -1;
       for (std::size_t q = 0; q < N; q++) {
-        f.slots[q] = slot_of_vertex(i, elements.vertices[m][q]);
-        if (viewer < 0 && !halo.is_ghost(f.slots[q])) viewer = f.slots[q];
+        slots[q] = slot_of_vertex(i, elements.vertices[m][q]);
+        if (viewer < 0 && !halo.is_ghost(slots[q])) viewer = slots[q];
       }
-      if (viewer == s) found.push_back(f);
+      if (viewer != s) continue;
+      int layer = 0;
+      for (const Spring &spring : material->springs(rest[m], iterations))
+        found.push_back({colour[m] + n_colours * layer++, m, slots, spring,
+                         share_of(elements.vertices[m].data(), N)});
     }
   }
   std::sort(found.begin(), found.end(), [](const Found &a, const Found &b) {
     return a.colour != b.colour ? a.colour < b.colour : a.element < b.element;
   });
 
-  c.slots.clear();
-  c.rest.clear();
-  c.stiffness.clear();
-  c.first.assign(c.n_colours + 1, 0);
-  for (const Found &f : found) {
-    c.first[f.colour + 1]++;
-    c.slots.push_back(f.slots);
-    c.rest.push_back(rest[f.element]);
-    c.stiffness.push_back(stiffness[elements.type[f.element]]);
+  c.clear(n_colours * layers, halo.n_slots());
+  auto next = found.begin();
+  for (int k = 0; k < n_colours * layers; k++) {
+    for (; next != found.end() && next->colour == k; ++next)
+      c.add(next->slots, next->spring, next->share);
+    c.close_colour();
   }
-  for (int k = 0; k < c.n_colours; k++) c.first[k + 1] += c.first[k];
 }
 
 // slot of the image of a mesh vertex that is nearest to atom i
@@ -306,9 +359,11 @@ void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
     const int vertex = vertex_of_slot[s];
     halo.need(s, ALL);
     for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++)
-      halo.need(s, channel_of_edge_colour(distance.colour[mesh.edges.incident[k]]));
+      for (int layer = 0; layer < edge_layers; layer++)
+        halo.need(
+            s, channel_of_edge_colour(edge_colour[mesh.edges.incident[k]] + edge_colours * layer));
     for (int k = mesh.hinges.first[vertex]; k < mesh.hinges.first[vertex + 1]; k++)
-      halo.need(s, channel_of_hinge_colour(bending.colour[mesh.hinges.incident[k]]));
+      halo.need(s, channel_of_hinge_colour(hinge_colour[mesh.hinges.incident[k]]));
   }
 }
 
@@ -324,113 +379,177 @@ double FixPBDCloth::inverse_mass(int i) const
 
 void FixPBDCloth::initial_integrate(int)
 {
-  predict();
-  project_all();
-  finish();
+  load();
+  for (int n = 0; n < substeps(); n++) substep(n);
+  store();
 }
 
-void FixPBDCloth::predict()
+// A pin is on its way from where its velocity says that it was to where it is.
+
+void FixPBDCloth::load()
 {
-  const double dt = update->dt;
-  const double dtf = dt * force->ftm2v;
   for (int s = 0; s < halo.n_owned(); s++) {
-    const int i = halo.atom_of(s);
-    v[s] = Vec3(atom->v[i][0], atom->v[i][1], atom->v[i][2]) +
-        dtf * w[s] * Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
+    const double *x = atom->x[halo.atom_of(s)], *u = atom->v[halo.atom_of(s)];
+    const double back = p[s].w == 0.0 ? update->dt : 0.0;
+    start[s] = {x[0] - back * u[0], x[1] - back * u[1], x[2] - back * u[2], p[s].w};
+    v[s] = {u[0], u[1], u[2], p[s].w};
+  }
+  if (from_start) halo.forward(ALL, start.data(), true);
+}
+
+void FixPBDCloth::substep(int n)
+{
+  const double dt = update->dt / substeps(), dtf = dt * force->ftm2v;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const double *f = atom->f[halo.atom_of(s)], by = dtf * p[s].w;
+    v[s].x += by * f[0];
+    v[s].y += by * f[1];
+    v[s].z += by * f[2];
   }
   if (damping > 0.0) damp();
+  const bool last = n == substeps() - 1;
   for (int s = 0; s < halo.n_owned(); s++) {
-    const int i = halo.atom_of(s);
-    p[s] = Vec3(atom->x[i][0], atom->x[i][1], atom->x[i][2]);
-    if (w[s] > 0.0) p[s] += dt * v[s];
+    p[s].x = start[s].x + dt * v[s].x;
+    p[s].y = start[s].y + dt * v[s].y;
+    p[s].z = start[s].z + dt * v[s].z;
+    if (!last || p[s].w > 0.0) continue;
+    const double *x = atom->x[halo.atom_of(s)];    // without rounding
+    p[s] = {x[0], x[1], x[2], 0.0};
   }
   halo.forward(ALL, p.data(), true);
+
+  project_all(dt);
+  const double inv_dt = 1.0 / dt;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    if (p[s].w == 0.0) continue;
+    v[s].x = inv_dt * (p[s].x - start[s].x);
+    v[s].y = inv_dt * (p[s].y - start[s].y);
+    v[s].z = inv_dt * (p[s].z - start[s].z);
+  }
+  if (!last) start = p;
 }
 
 // Takes the stretching motion out of the edges (line 29), at the rate that the user gave.
 
 void FixPBDCloth::damp()
 {
-  const double share = -std::expm1(-damping * update->dt);
-  for (int s = 0; s < halo.n_owned(); s++) {
-    const double *x = atom->x[halo.atom_of(s)];
-    p[s] = Vec3(x[0], x[1], x[2]);
-  }
-  halo.forward(ALL, p.data(), true);
+  const double share = -std::expm1(-damping * update->dt / substeps());
+  if (!from_start) halo.forward(ALL, start.data(), true);
   halo.forward(ALL, v.data(), false);
-  for (int c = 0; c < distance.n_colours; c++) {
-    for (int m = distance.first[c]; m < distance.first[c + 1]; m++) {
-      const auto [a, b] = distance.slots[m];
-      damp_edge(p[a], p[b], v[a], v[b], w[a], w[b], share);
-    }
+  for (int c = 0; c < edge_colours; c++) {
+    sphcloth::damp(distance, c, start.data(), v.data(), share);
     halo.forward(channel_of_edge_colour(c), v.data(), false);
   }
 }
 
-void FixPBDCloth::project_all()
+void FixPBDCloth::project_all(double dt)
 {
-  for (int n = 0; n < iterations; n++) {
-    for (int c = 0; c < distance.n_colours; c++) {
-      for (int m = distance.first[c]; m < distance.first[c + 1]; m++) {
-        const auto [a, b] = distance.slots[m];
-        project_distance(p[a], p[b], w[a], w[b], distance.rest[m], distance.stiffness[m]);
-      }
-      halo.forward(channel_of_edge_colour(c), p.data(), true);
-    }
-    for (int c = 0; c < bending.n_colours; c++) {
-      for (int m = bending.first[c]; m < bending.first[c + 1]; m++) {
-        const auto [a, e1, e2, b] = bending.slots[m];
-        project_hinge(p[a], p[e1], p[e2], p[b], {w[a], w[e1], w[e2], w[b]}, bending.rest[m],
-                      bending.stiffness[m]);
-      }
-      halo.forward(channel_of_hinge_colour(c), p.data(), true);
-    }
+  const ClothState state{p.data(), from_start ? start.data() : nullptr,
+                         solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
+  std::fill(distance.lambda.begin(), distance.lambda.end(), 0.0);
+  std::fill(bending.lambda.begin(), bending.lambda.end(), 0.0);
+  const int n = iterations / substeps();
+  for (sweeps = 0; sweeps < n;) {
+    solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
+    sweeps++;
+    if (tolerance > 0.0 && residual() < tolerance) break;
   }
 }
 
-// New velocities and positions.  What the vertices gained beyond the external forces came from
-// the pins.
-
-void FixPBDCloth::finish()
+void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
-  const double inv_dt = 1.0 / update->dt;
+  for (int c = 0; c < distance.colours(); c++) {
+    project(distance, c, state);
+    halo.forward(channel_of_edge_colour(c), p.data(), true);
+  }
+  for (int c = 0; c < bending.colours(); c++) {
+    project(bending, c, state);
+    halo.forward(channel_of_hinge_colour(c), p.data(), true);
+  }
+}
+
+void FixPBDCloth::jacobi(const ClothState &state)
+{
+  for (int c = 0; c < distance.colours(); c++) project(distance, c, state);
+  for (int c = 0; c < bending.colours(); c++) project(bending, c, state);
+  for (int s = 0; s < halo.n_owned(); s++) {
+    p[s].x += change[s].x;
+    p[s].y += change[s].y;
+    p[s].z += change[s].z;
+  }
+  std::fill(change.begin(), change.end(), Vertex());
+  halo.forward(ALL, p.data(), true);
+}
+
+// What the vertices gained beyond the external forces came from the pins.
+
+void FixPBDCloth::store()
+{
   Vec3 gained = Vec3::Zero(), external = Vec3::Zero();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
-    if (w[s] == 0.0) continue;
-    const Vec3 velocity = inv_dt * (p[s] - Vec3(atom->x[i][0], atom->x[i][1], atom->x[i][2]));
-    gained += (velocity - Vec3(atom->v[i][0], atom->v[i][1], atom->v[i][2])) / w[s];
+    if (p[s].w == 0.0) continue;
+    const std::array<double, 3> velocity{v[s].x, v[s].y, v[s].z}, place{p[s].x, p[s].y, p[s].z};
     for (int d = 0; d < 3; d++) {
+      gained[d] += (velocity[d] - atom->v[i][d]) / p[s].w;
       atom->v[i][d] = velocity[d];
-      atom->x[i][d] = p[s][d];
+      atom->x[i][d] = place[d];
     }
   }
-  const Vec3 from_pins = gained * (inv_dt / force->ftm2v) - external;
+  const Vec3 from_pins = gained / (update->dt * force->ftm2v) - external;
   for (int d = 0; d < 3; d++) pin_force[d] = from_pins[d];
 }
 
 /* ----------------------------------------------------------------------
-   output: force of the pins on the cloth (x, y, z), largest edge strain
+   output: force of the pins on the cloth (x, y, z), largest edge strain, residual, sweeps,
+   elastic energy
 ------------------------------------------------------------------------- */
 
 double FixPBDCloth::compute_vector(int n)
 {
-  double mine = n < 3 ? pin_force[n] : largest_strain(), all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n < 3 ? MPI_SUM : MPI_MAX, world);
+  if (n == 4) return residual();
+  if (n == 5) return substeps() * sweeps;
+  double mine, all;
+  if (n < 3)
+    mine = pin_force[n];
+  else if (n == 3)
+    mine = largest_strain();
+  else
+    mine = force->mvv2e *
+        (elastic_energy(distance, p.data(), halo.n_owned()) +
+         elastic_energy(bending, p.data(), halo.n_owned()));
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n == 3 ? MPI_MAX : MPI_SUM, world);
+  return all;
+}
+
+double FixPBDCloth::residual() const
+{
+  const double dt = update->dt / substeps(), inv_dt_sq = 1.0 / (dt * dt);
+  const double mine = std::max(sphcloth::residual(distance, p.data(), inv_dt_sq, mean_length),
+                               sphcloth::residual(bending, p.data(), inv_dt_sq));
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }
 
 double FixPBDCloth::largest_strain() const
 {
   double strain = 0.0;
-  for (std::size_t m = 0; m < distance.slots.size(); m++) {
-    const auto [slot_a, slot_b] = distance.slots[m];
-    if (w[slot_a] == 0.0 && w[slot_b] == 0.0) continue;    // the user holds both ends
-    const double *a = atom->x[halo.atom_of(slot_a)], *b = atom->x[halo.atom_of(slot_b)];
-    const double error =
-        distance_error(Vec3(a[0], a[1], a[2]), Vec3(b[0], b[1], b[2]), distance.rest[m]);
-    if (distance.rest[m] > 0.0) strain = std::max(strain, std::fabs(error) / distance.rest[m]);
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s), vertex = mesh.index_of(atom->tag[i]);
+    for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
+      const int m = mesh.edges.incident[k];
+      const PBDMaterial *material = material_of_edge(mesh.edges.type[m]);
+      if (!material || material->no_rest || material->n_springs() == 0 || edge_rest[m] == 0.0)
+        continue;
+      const auto &[a, b] = mesh.edges.vertices[m];
+      const int j = mesh.image_near(a == vertex ? b : a, i);
+      if (j < 0 || (inverse_mass(i) == 0.0 && inverse_mass(j) == 0.0)) continue;
+      const Vec3 edge(atom->x[i][0] - atom->x[j][0], atom->x[i][1] - atom->x[j][1],
+                      atom->x[i][2] - atom->x[j][2]);
+      strain = std::max(strain, std::fabs(edge.norm() / edge_rest[m] - 1.0));
+    }
   }
   return strain;
 }
@@ -496,9 +615,8 @@ int FixPBDCloth::maxsize_restart() { return 4; }
 
 double FixPBDCloth::memory_usage()
 {
-  const double constraints =
-      distance.slots.capacity() * (sizeof(std::array<int, 2>) + 2 * sizeof(double)) +
-      bending.slots.capacity() * (sizeof(std::array<int, 4>) + 2 * sizeof(double));
-  return 3.0 * sizeof(double) * atom->nmax + constraints + 7.0 * sizeof(double) * p.capacity() +
+  return 3.0 * sizeof(double) * atom->nmax + distance.bytes() + bending.bytes() +
+      static_cast<double>(sizeof(Vertex)) *
+      (p.capacity() + v.capacity() + start.capacity() + change.capacity()) +
       halo.memory_usage();
 }

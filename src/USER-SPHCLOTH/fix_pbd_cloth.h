@@ -12,6 +12,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "fix.h"
 
 #include "cloth_topology.h"
+#include "core/cloth_solver.h"
 #include "vertex_halo.h"
 
 #include <array>
@@ -21,6 +22,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 namespace LAMMPS_NS {
 
 class ArgReader;
+struct PBDMaterial;
 
 class FixPBDCloth : public Fix {
  public:
@@ -52,51 +54,69 @@ class FixPBDCloth : public Fix {
  private:
   using Vec3 = Eigen::Vector3d;
 
-  // the constraints that this rank projects, sorted by colour, vertices as slots of the halo
-  template <std::size_t N> struct Constraints {
-    std::vector<int> colour;    // of every constraint of the mesh
-    int n_colours = 0;
-    std::vector<int> first;    // of each colour in the lists below, n_colours + 1 entries
-    std::vector<std::array<int, N>> slots;
-    std::vector<double> rest, stiffness;    // rest length or angle, k' of (9)
-  };
+  // GAUSS_SEIDEL: a projection sees all before it.  JACOBI: it sees none of its own sweep, and the
+  // share that it may move is one over the number of constraints at its vertices.  SUBSTEPS: as
+  // many small steps as there are iterations, each with one sweep.
+  enum class Solver { GAUSS_SEIDEL, JACOBI, SUBSTEPS };
 
   std::string label;
+  Solver solver;
   int iterations;
-  int pinbit;              // 0: nothing is pinned
-  double damping;          // rate at which stretching motion decays, 1/time
-  double **rest_x;         // rest position of each vertex, unwrapped
+  bool from_start;    // edges are projected along where they were at the start of the step
+  double tolerance;    // of the residual, 0: all iterations are done
+  int pinbit;    // 0: nothing is pinned
+  double damping;    // rate at which stretching motion decays, 1/time
+  double **rest_x;    // rest position of each vertex, unwrapped
   ClothTopology mesh;
   VertexHalo halo;
-  std::vector<double> edge_rest, hinge_rest;              // by element of the mesh
-  std::vector<double> edge_stiffness, hinge_stiffness;    // k' by type; < 0: not a pbd type
-  Constraints<2> distance;
-  Constraints<4> bending;
-  std::vector<Vec3> p, v;      // predicted positions and velocities, by slot
-  std::vector<double> w;       // inverse masses, by slot
-  double pin_force[3];         // of the last step, this rank's part
+
+  // by element of the mesh: rest length or angle, colour
+  std::vector<double> edge_rest, hinge_rest;
+  std::vector<int> edge_colour, hinge_colour;
+  int edge_colours, hinge_colours;
+  // a type may be several constraints at once; the second of an edge has a colour of its own
+  int edge_layers;
+  double mean_length;
+  std::vector<int> crowd;    // of a mesh vertex: constraints that it is in
+
+  // what this rank projects, with slots of the halo as vertices
+  sphcloth::Constraints<2> distance;
+  sphcloth::Constraints<4> bending;
+  sphcloth::Vertices p, v, start, change;    // by slot, and one idle vertex behind
+  double pin_force[3];    // of the last step, this rank's part
+  int sweeps;    // of the last step
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
   void check_overlap();
   void check_pins();
-  void read_stiffness();
+  void check_styles();
+  const PBDMaterial *material_of_edge(int type) const;
+  const PBDMaterial *material_of_hinge(int type) const;
   void measure_rest();
   void colour_mesh();
-  template <std::size_t N>
-  void collect(Constraints<N> &, const ClothElements<N> &, const std::vector<double> &,
-               const std::vector<double> &);
+  template <std::size_t N, class MaterialOf>
+  void count_constraints(const ClothElements<N> &, MaterialOf);
+  template <std::size_t N, class MaterialOf>
+  void collect(sphcloth::Constraints<N> &, const ClothElements<N> &, const std::vector<int> &colour,
+               int n_colours, int layers, const std::vector<double> &rest, MaterialOf);
+  double share_of(const int *vertices, int n) const;
   int slot_of_vertex(int, int);
   void ask_for_ghosts(const std::vector<int> &);
-  void predict();
-  void project_all();
+  int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
+  void load();
+  void substep(int n);
   void damp();
-  void finish();
+  void project_all(double dt);
+  void gauss_seidel(const sphcloth::ClothState &);
+  void jacobi(const sphcloth::ClothState &);
+  void store();
+  double residual() const;
   double largest_strain() const;
 
   static constexpr int ALL = 0;    // halo channels: all ghosts, then one per colour
   int channel_of_edge_colour(int c) const { return 1 + c; }
-  int channel_of_hinge_colour(int c) const { return 1 + distance.n_colours + c; }
+  int channel_of_hinge_colour(int c) const { return 1 + edge_colours * edge_layers + c; }
 };
 
 }    // namespace LAMMPS_NS

@@ -160,14 +160,36 @@ void VertexHalo::exchange_requests()
 
 /* ---------------------------------------------------------------------- */
 
+static const Eigen::Vector3d &vector_of(const Eigen::Vector3d &data) { return data; }
+static Eigen::Vector3d vector_of(const sphcloth::Vertex &data) { return {data.x, data.y, data.z}; }
+
+static void put(Eigen::Vector3d &data, const Eigen::Vector3d &value) { data = value; }
+static void put(sphcloth::Vertex &data, const Eigen::Vector3d &value)
+{
+  data.x = value[0];
+  data.y = value[1];
+  data.z = value[2];
+}
+
 void VertexHalo::forward(int channel, Vec3 *data, bool positions)
+{
+  forward_all(channel, data, positions);
+}
+
+void VertexHalo::forward(int channel, sphcloth::Vertex *data, bool positions)
+{
+  forward_all(channel, data, positions);
+}
+
+template <class Data> void VertexHalo::forward_all(int channel, Data *data, bool positions)
 {
   Channel &c = channels[channel];
   const auto store = [&](int ghost, const Vec3 &value) {
-    data[ghost] = positions ? Vec3(value + shift(ghost)) : value;
+    put(data[ghost], positions ? Vec3(value + shift(ghost)) : value);
   };
   transfer(c, false, data, store);
-  for (std::size_t k = 0; k < c.self_to.size(); k++) store(c.self_to[k], data[c.self_from[k]]);
+  for (std::size_t k = 0; k < c.self_to.size(); k++)
+    store(c.self_to[k], vector_of(data[c.self_from[k]]));
 }
 
 void VertexHalo::forward(int channel, std::vector<double> &data)
@@ -185,8 +207,8 @@ void VertexHalo::reverse_add(int channel, Vec3 *data)
   for (std::size_t k = 0; k < c.self_to.size(); k++) data[c.self_from[k]] += data[c.self_to[k]];
 }
 
-template <class Store>
-void VertexHalo::transfer(Channel &c, bool reverse, const Vec3 *data, Store store)
+template <class Data, class Store>
+void VertexHalo::transfer(Channel &c, bool reverse, const Data *data, Store store)
 {
   std::vector<Message> &in = receivers(c, reverse), &out = senders(c, reverse);
   std::size_t n_in = 0, n_out = 0;
@@ -203,7 +225,7 @@ void VertexHalo::transfer(Channel &c, bool reverse, const Vec3 *data, Store stor
     at += m.slots.size();
   }
   for (const Message &m : out) {
-    for (std::size_t k = 0; k < m.slots.size(); k++) buffer[at + k] = data[m.slots[k]];
+    for (std::size_t k = 0; k < m.slots.size(); k++) buffer[at + k] = vector_of(data[m.slots[k]]);
     requests.emplace_back();
     MPI_Isend(buffer[at].data(), static_cast<int>(3 * m.slots.size()), MPI_DOUBLE, m.rank, 0, world,
               &requests.back());

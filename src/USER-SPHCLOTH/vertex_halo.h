@@ -7,6 +7,7 @@
 #ifndef SPHCLOTH_VERTEX_HALO_H
 #define SPHCLOTH_VERTEX_HALO_H
 
+#include "core/cloth_solver.h"
 #include "pointers.h"
 
 #include <Eigen/Core>
@@ -46,6 +47,7 @@ class VertexHalo : protected Pointers {
 
   // owners to ghosts; positions get the box vectors between owner and image
   void forward(int channel, Vec3 *data, bool positions);
+  void forward(int channel, sphcloth::Vertex *data, bool positions);    // x, y and z
   void forward(int channel, std::vector<double> &data);
   // sums of ghosts to owners; the ghosts' own entries stay
   void reverse_add(int channel, Vec3 *data);
@@ -77,7 +79,8 @@ class VertexHalo : protected Pointers {
   Vec3 shift(int slot) const;
   std::vector<Message> &receivers(Channel &c, bool reverse) { return reverse ? c.to : c.from; }
   std::vector<Message> &senders(Channel &c, bool reverse) { return reverse ? c.from : c.to; }
-  template <class Store> void transfer(Channel &, bool reverse, const Vec3 *, Store);
+  template <class Data> void forward_all(int channel, Data *, bool positions);
+  template <class Data, class Store> void transfer(Channel &, bool reverse, const Data *, Store);
 };
 
 }    // namespace LAMMPS_NS

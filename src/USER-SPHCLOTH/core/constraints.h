@@ -1,8 +1,11 @@
 // Position-based constraints: distance (4), hinge (5) to (6), projection (7) to (9).
 //
-// Pure functions: positions and inverse masses in, corrections out.  Equation (8) is used in its
-// mass-weighted form, dp_i = -k' w_i C grad_i C / sum_j w_j |grad_j C|^2, which keeps linear and
-// angular momentum and leaves a pinned vertex (w = 0) where it is.
+// One constraint C at a time, written without branches so that loops over many of them are vectors
+// (core/cloth_solver.h).  Equation (8) is used in its mass-weighted form with a compliance,
+//   d lambda = -k' (C + a lambda) / (sum_j w_j |grad_j C|^2 + a),   dp_i = w_i grad_i C d lambda,
+// which keeps linear and angular momentum and leaves a pinned vertex (w = 0) where it is.
+// a = 0: plain position-based dynamics with k' of (9).  k' = 1, a = compliance/dt^2, lambda kept over
+// the sweeps of a step: Macklin, Mueller & Chentanez, MIG 2016.
 // Mueller et al., J. Vis. Commun. Image R. 18 (2007) 109.
 
 #ifndef SPHCLOTH_CORE_CONSTRAINTS_H
@@ -16,6 +19,7 @@
 #include <cmath>
 
 #include "kernel.h"
+#include "simd.h"
 
 namespace sphcloth {
 
@@ -25,72 +29,149 @@ using Vec3 = Eigen::Vector3d;
 
 inline double stiffness_per_iteration(double k, int n) { return -std::expm1(std::log1p(-k) / n); }
 
-// (4)
+// What one constraint of a mesh is made of.  The multiplier never exceeds `most`: infinity, or 0 for
+// a constraint that only pulls.
 
-inline double distance_error(const Vec3 &p1, const Vec3 &p2, double rest)
+struct Spring {
+  double rest = 0.0;    // length or angle
+  double k = 1.0;    // k' of (9)
+  double compliance = 0.0;    // a dt^2
+  double most = 0.0;
+};
+
+// d lambda; weight = sum_j w_j |grad_j C|^2.  A constraint that can move nothing is left alone.
+
+SPHCLOTH_INLINE double multiplier_step(double error, double weight, double k, double a,
+                                       double lambda, double most)
 {
-  return (p1 - p2).norm() - rest;
+  const double denominator = weight + a;
+  const double share = denominator > 0.0 ? k : 0.0;
+  const double step = -share * (error + a * lambda) / (denominator > 0.0 ? denominator : 1.0);
+  return std::min(step, most - lambda);
 }
 
-// Moves both ends; returns C before the projection.  Coincident ends have no direction: they are
-// left alone until another constraint or a force parts them.
+// (4): dp_1 = w_1 d, dp_2 = -w_2 d.  Coincident ends have no direction: they are left alone until
+// another constraint or a force parts them.
 
-inline double project_distance(Vec3 &p1, Vec3 &p2, double w1, double w2, double rest, double k)
+struct DistanceStep {
+  double x, y, z;    // d
+  double lambda;    // d lambda
+};
+
+// (dx, dy, dz) = p_1 - p_2
+
+SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, double w, double rest,
+                                           double k, double a, double lambda, double most)
 {
-  const Vec3 edge = p1 - p2;
-  const double length = edge.norm();
-  const double error = length - rest;
-  const double w = w1 + w2;
-  if (length == 0.0 || w == 0.0) return error;
-  const Vec3 step = (k * error / (length * w)) * edge;
-  p1 -= w1 * step;
-  p2 += w2 * step;
-  return error;
+  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const bool apart = length > 0.0;
+  const double step = multiplier_step(length - rest, w, apart ? k : 0.0, a, lambda, most);
+  const double along = step / (apart ? length : 1.0);
+  return {along * dx, along * dy, along * dz, step};
+}
+
+// The same along the direction (sx, sy, sz) that the edge had at the start of the step, as SHAKE
+// does: second order in time.  The length changes with the cosine between the two; below 1/2 the
+// present direction is taken.
+
+SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz, double sx,
+                                                 double sy, double sz, double w, double rest,
+                                                 double k, double a, double lambda, double most)
+{
+  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const double before = std::sqrt(sx * sx + sy * sy + sz * sz);
+  const bool apart = length > 0.0;
+  const double cosine = (dx * sx + dy * sy + dz * sz) / (apart ? length : 1.0);
+  const bool turned = !(cosine >= 0.5 * before && before > 0.0);
+  const double inv = 1.0 / (turned ? (apart ? length : 1.0) : before);
+  const double nx = inv * (turned ? dx : sx), ny = inv * (turned ? dy : sy),
+               nz = inv * (turned ? dz : sz);
+  const double slope = turned ? 1.0 : inv * cosine;
+  const double step = multiplier_step(length - rest, w * slope, apart ? k : 0.0, a, lambda, most);
+  return {step * nx, step * ny, step * nz, step};
+}
+
+// Arc tangent of y/x in the right quadrant, for vectors: rational approximation of Moshier's
+// Cephes library, to the last digit or two.
+
+SPHCLOTH_INLINE double arc_tangent(double y, double x)
+{
+  const double ax = std::fabs(x), ay = std::fabs(y);
+  const double low = std::min(ax, ay), high = std::max(ax, ay);
+  const double t = low / (high > 0.0 ? high : 1.0);
+  const bool steep = t > 0.41421356237309503;    // tan(pi/8)
+  const double s = (steep ? t - 1.0 : t) / (steep ? t + 1.0 : 1.0);
+  const double z = s * s;
+  const double p = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z -
+                     7.500855792314704667340e1) *
+                        z -
+                    1.228866684490136173410e2) *
+          z -
+      6.485021904942025371773e1;
+  const double q = ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z +
+                     4.328810604912902668951e2) *
+                        z +
+                    4.853903996359136964868e2) *
+          z +
+      1.945506571482613964425e2;
+  double angle = s + s * z * p / q + (steep ? 0.25 * PI : 0.0);
+  angle = ay > ax ? 0.5 * PI - angle : angle;
+  angle = x < 0.0 ? PI - angle : angle;
+  return std::copysign(angle, y);
 }
 
 // Hinge: vertices in the order of a LAMMPS dihedral, wing a, edge 1, edge 2, wing b.  The angle is
-// signed, 0 when flat, positive or negative for ridge and valley, in (-pi, pi].
+// signed, 0 when flat, positive or negative for ridge and valley, in (-pi, pi]: by arc tangent, since
+// arccos of (5) has no sign and no digits near flat.  Gradients as in Bridson, Marino & Fedkiw, SCA
+// 2003, equation for the bending mode: each wing moves along its triangle's normal, the ends of the
+// edge by shares of that.
 
-struct Hinge {
-  double angle = 0.0;
-  std::array<Vec3, 4> grad;    // d angle / d position of wing a, edge 1, edge 2, wing b
-  bool valid = false;          // false for a degenerate triangle, where no angle exists
+struct HingeShape {
+  double angle;
+  double ax, ay, az, bx, by, bz;    // gradients of the wings a and b
+  double a1, a2, b1, b2;    // gradient of edge i: -(a_i grad_a + b_i grad_b)
+  double valid;    // 1, or 0 for a degenerate triangle, where no angle exists
 };
 
-// Angle by atan2 (arccos of (5) has no sign and no digits near flat), gradients as in
-// Bridson, Marino & Fedkiw, SCA 2003, equation for the bending mode.
+// positions relative to edge 1: (ux, ..) wing a, (ex, ..) edge 2, (vx, ..) wing b
 
-inline Hinge hinge(const Vec3 &a, const Vec3 &e1, const Vec3 &e2, const Vec3 &b)
+SPHCLOTH_INLINE HingeShape hinge_shape(double ux, double uy, double uz, double ex, double ey,
+                                       double ez, double vx, double vy, double vz)
 {
-  Hinge h;
-  const Vec3 edge = e2 - e1;
-  const Vec3 na = (e1 - a).cross(e2 - a);
-  const Vec3 nb = (e2 - b).cross(e1 - b);
-  const double length_sq = edge.squaredNorm();
-  const double na_sq = na.squaredNorm();
-  const double nb_sq = nb.squaredNorm();
+  HingeShape h;
+  // na = (e1 - a) x (e2 - a) = u x e turned, nb = (e2 - b) x (e1 - b)
+  const double nax = ey * uz - ez * uy, nay = ez * ux - ex * uz, naz = ex * uy - ey * ux;
+  const double nbx = vy * ez - vz * ey, nby = vz * ex - vx * ez, nbz = vx * ey - vy * ex;
+  const double length_sq = ex * ex + ey * ey + ez * ez;
+  const double na_sq = nax * nax + nay * nay + naz * naz;
+  const double nb_sq = nbx * nbx + nby * nby + nbz * nbz;
   // a triangle thinner than 1e-7 of its edge carries no usable normal
   const double tiny = 1e-14 * length_sq;
-  if (!(na_sq > tiny * (e1 - a).squaredNorm()) || !(nb_sq > tiny * (e1 - b).squaredNorm()))
-    return h;
-
-  const double length = std::sqrt(length_sq);
-  h.angle = std::atan2(na.cross(nb).dot(edge) / length, na.dot(nb));
-  const Vec3 ga = na / na_sq;
-  const Vec3 gb = nb / nb_sq;
-  h.grad[0] = -length * ga;
-  h.grad[3] = -length * gb;
-  h.grad[1] = ((e2 - a).dot(edge) / length) * ga + ((e2 - b).dot(edge) / length) * gb;
-  h.grad[2] = ((a - e1).dot(edge) / length) * ga + ((b - e1).dot(edge) / length) * gb;
-  h.valid = true;
+  const double thin_a = na_sq - tiny * (ux * ux + uy * uy + uz * uz),
+               thin_b = nb_sq - tiny * (vx * vx + vy * vy + vz * vz);
+  // of what is not valid nothing is used; it must only be finite
+  const bool valid = std::min(thin_a, thin_b) > 0.0;
+  h.valid = valid ? 1.0 : 0.0;
+  const double length = std::sqrt(valid ? length_sq : 1.0);
+  const double cx = nay * nbz - naz * nby, cy = naz * nbx - nax * nbz, cz = nax * nby - nay * nbx;
+  h.angle = arc_tangent((cx * ex + cy * ey + cz * ez) / length, nax * nbx + nay * nby + naz * nbz);
+  const double ga = -length / (valid ? na_sq : 1.0), gb = -length / (valid ? nb_sq : 1.0);
+  h.ax = ga * nax, h.ay = ga * nay, h.az = ga * naz;
+  h.bx = gb * nbx, h.by = gb * nby, h.bz = gb * nbz;
+  const double inv = 1.0 / (valid ? length_sq : 1.0);
+  h.a2 = inv * (ux * ex + uy * ey + uz * ez);
+  h.b2 = inv * (vx * ex + vy * ey + vz * ez);
+  h.a1 = 1.0 - h.a2;
+  h.b1 = 1.0 - h.b2;
   return h;
 }
 
 // (5) with the difference wrapped to (-pi, pi], so that a rest angle near 180 degrees holds
 
-inline double angle_difference(double angle, double rest)
+SPHCLOTH_INLINE double angle_difference(double angle, double rest)
 {
-  return std::remainder(angle - rest, 2.0 * PI);
+  const double d = angle - rest;
+  return d > PI ? d - 2.0 * PI : (d <= -PI ? d + 2.0 * PI : d);
 }
 
 // If only vertices can move that hardly turn the hinge (an edge vertex below a right angle, the
@@ -98,43 +179,26 @@ inline double angle_difference(double angle, double rest)
 // wing has, squared, the hinge is left to its neighbours.
 inline constexpr double LEAST_LEVER = 1e-3;
 
-// Moves the four vertices; returns C before the projection, 0 for a degenerate hinge.
+// the share of the relative velocity (vx, vy, vz) of two ends along their edge, over the sum of the
+// inverse masses: what is taken from the one times its w, and given to the other
 
-inline double project_hinge(Vec3 &a, Vec3 &e1, Vec3 &e2, Vec3 &b, const std::array<double, 4> &w,
-                            double rest, double k)
+SPHCLOTH_INLINE DistanceStep damping_step(double dx, double dy, double dz, double vx, double vy,
+                                          double vz, double w, double share)
 {
-  const Hinge h = hinge(a, e1, e2, b);
-  if (!h.valid) return 0.0;
-  const double error = angle_difference(h.angle, rest);
-  double denominator = 0.0, w_sum = 0.0, steepest = 0.0;
-  for (int i = 0; i < 4; i++) {
-    const double slope = h.grad[i].squaredNorm();
-    denominator += w[i] * slope;
-    w_sum += w[i];
-    steepest = std::max(steepest, slope);
-  }
-  if (denominator <= LEAST_LEVER * w_sum * steepest) return error;
-  const double step = -k * error / denominator;
-  a += step * w[0] * h.grad[0];
-  e1 += step * w[1] * h.grad[1];
-  e2 += step * w[2] * h.grad[2];
-  b += step * w[3] * h.grad[3];
-  return error;
+  const double length_sq = dx * dx + dy * dy + dz * dz;
+  const bool can = length_sq > 0.0 && w > 0.0;
+  const double along = -share * (vx * dx + vy * dy + vz * dz) / (can ? length_sq * w : 1.0);
+  const double step = can ? along : 0.0;
+  return {step * dx, step * dy, step * dz, step};
 }
 
-// Takes away the fraction `share` of the velocity with which two ends stretch or shorten their
-// edge.  Rigid motion, and so free fall, is not damped; momentum is kept.
+// angle of a hinge, for rest angles; NaN for a degenerate one
 
-inline void damp_edge(const Vec3 &p1, const Vec3 &p2, Vec3 &v1, Vec3 &v2, double w1, double w2,
-                      double share)
+inline double hinge_angle(const Vec3 &a, const Vec3 &e1, const Vec3 &e2, const Vec3 &b)
 {
-  const Vec3 edge = p1 - p2;
-  const double length_sq = edge.squaredNorm();
-  const double w = w1 + w2;
-  if (length_sq == 0.0 || w == 0.0) return;
-  const Vec3 impulse = (share * (v1 - v2).dot(edge) / (length_sq * w)) * edge;
-  v1 -= w1 * impulse;
-  v2 += w2 * impulse;
+  const Vec3 u = a - e1, e = e2 - e1, v = b - e1;
+  const HingeShape h = hinge_shape(u[0], u[1], u[2], e[0], e[1], e[2], v[0], v[1], v[2]);
+  return h.valid > 0.0 ? h.angle : std::nan("");
 }
 
 }    // namespace sphcloth

@@ -127,6 +127,43 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lan
 #endif
 }
 
+// The way back, of doubles: records of index[k] for k up to GROUP, one after the other, so that of
+// several with one index the last one stays.
+
+SPHCLOTH_INLINE void records(const double *x, const double *y, const double *z, const double *w,
+                             const int *index, double *records)
+{
+  const auto record = [&](int k) { return records + 4 * static_cast<std::ptrdiff_t>(index[k]); };
+#ifdef SPHCLOTH_X86_TARGETS
+  typedef double Group __attribute__((vector_size(32), aligned(8), may_alias));
+  const auto get = [](Group &g, const double *column) {
+    g = *reinterpret_cast<const Group *>(column);
+  };
+  Group cx, cy, cz, cw;
+  get(cx, x);
+  get(cy, y);
+  get(cz, z);
+  get(cw, w);
+  const Group xy02 = __builtin_shufflevector(cx, cy, 0, 4, 2, 6);
+  const Group xy13 = __builtin_shufflevector(cx, cy, 1, 5, 3, 7);
+  const Group zw02 = __builtin_shufflevector(cz, cw, 0, 4, 2, 6);
+  const Group zw13 = __builtin_shufflevector(cz, cw, 1, 5, 3, 7);
+  const auto put = [&](int k, const Group &g) { *reinterpret_cast<Group *>(record(k)) = g; };
+  put(0, __builtin_shufflevector(xy02, zw02, 0, 1, 4, 5));
+  put(1, __builtin_shufflevector(xy13, zw13, 0, 1, 4, 5));
+  put(2, __builtin_shufflevector(xy02, zw02, 2, 3, 6, 7));
+  put(3, __builtin_shufflevector(xy13, zw13, 2, 3, 6, 7));
+#else
+  for (int k = 0; k < GROUP<double>; k++) {
+    double *r = record(k);
+    r[0] = x[k];
+    r[1] = y[k];
+    r[2] = z[k];
+    r[3] = w[k];
+  }
+#endif
+}
+
 // Compaction: of n pairs (key, index) keeps those with key < limit, in order; returns how many.
 // Up to 16 places past the end are read from the input and written to the output.  Keys may be
 // compacted in place.

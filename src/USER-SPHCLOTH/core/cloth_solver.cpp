@@ -1,0 +1,245 @@
+#include "cloth_solver.h"
+
+namespace sphcloth {
+
+namespace {
+
+  constexpr int WIDE = GROUP<double>;
+
+  // one vertex of each constraint of a group
+
+  struct Column {
+    alignas(64) double x[WIDE], y[WIDE], z[WIDE], w[WIDE];
+
+    SPHCLOTH_INLINE void read(const Vertex *v, const int *slot)
+    {
+      columns(&v[0].x, slot, x, y, z, w);
+    }
+    SPHCLOTH_INLINE void write(Vertex *v, const int *slot) const
+    {
+      records(x, y, z, w, slot, &v[0].x);
+    }
+    SPHCLOTH_INLINE void move(int l, double by, double dx, double dy, double dz)
+    {
+      x[l] += by * dx;
+      y[l] += by * dy;
+      z[l] += by * dz;
+    }
+  };
+
+  // p goes back moved, or what it would move by is added to the change
+
+  template <bool JACOBI>
+  SPHCLOTH_INLINE void give(const ClothState &s, const Column &before, Column &after,
+                            const int *slot)
+  {
+    if (!JACOBI) return after.write(s.p, slot);
+    Column sum;
+    sum.read(s.change, slot);
+#pragma omp simd
+    for (int l = 0; l < WIDE; l++) {
+      sum.x[l] += after.x[l] - before.x[l];
+      sum.y[l] += after.y[l] - before.y[l];
+      sum.z[l] += after.z[l] - before.z[l];
+    }
+    sum.write(s.change, slot);
+  }
+
+  template <bool START, bool JACOBI>
+  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int colour, const ClothState &s)
+  {
+    for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+      const int *one = &c.slot[0][m], *two = &c.slot[1][m];
+      Column p1, p2, s1, s2;
+      p1.read(s.p, one);
+      p2.read(s.p, two);
+      if (START) {
+        s1.read(s.start, one);
+        s2.read(s.start, two);
+      }
+      const Column before1 = p1, before2 = p2;
+      const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
+                   *most = &c.most[m];
+      double *lambda = &c.lambda[m];
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const double dx = p1.x[l] - p2.x[l], dy = p1.y[l] - p2.y[l], dz = p1.z[l] - p2.z[l];
+        const double w = p1.w[l] + p2.w[l], a = compliance[l] * s.inv_dt_sq;
+        const DistanceStep d = START
+            ? distance_step_along(dx, dy, dz, s1.x[l] - s2.x[l], s1.y[l] - s2.y[l],
+                                  s1.z[l] - s2.z[l], w, rest[l], k[l], a, lambda[l], most[l])
+            : distance_step(dx, dy, dz, w, rest[l], k[l], a, lambda[l], most[l]);
+        lambda[l] += d.lambda;
+        p1.move(l, p1.w[l], d.x, d.y, d.z);
+        p2.move(l, -p2.w[l], d.x, d.y, d.z);
+      }
+      give<JACOBI>(s, before1, p1, one);
+      give<JACOBI>(s, before2, p2, two);
+    }
+  }
+
+  SPHCLOTH_INLINE HingeShape shape_of(const Column &a, const Column &e1, const Column &e2,
+                                      const Column &b, int l)
+  {
+    return hinge_shape(a.x[l] - e1.x[l], a.y[l] - e1.y[l], a.z[l] - e1.z[l], e2.x[l] - e1.x[l],
+                       e2.y[l] - e1.y[l], e2.z[l] - e1.z[l], b.x[l] - e1.x[l], b.y[l] - e1.y[l],
+                       b.z[l] - e1.z[l]);
+  }
+
+  template <bool JACOBI>
+  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
+  {
+    for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+      Column a, e1, e2, b;
+      a.read(s.p, &c.slot[0][m]);
+      e1.read(s.p, &c.slot[1][m]);
+      e2.read(s.p, &c.slot[2][m]);
+      b.read(s.p, &c.slot[3][m]);
+      const Column before_a = a, before_e1 = e1, before_e2 = e2, before_b = b;
+      const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
+                   *most = &c.most[m];
+      double *lambda = &c.lambda[m];
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const HingeShape h = shape_of(a, e1, e2, b, l);
+        const double x1 = -(h.a1 * h.ax + h.b1 * h.bx), y1 = -(h.a1 * h.ay + h.b1 * h.by),
+                     z1 = -(h.a1 * h.az + h.b1 * h.bz);
+        const double x2 = -(h.a2 * h.ax + h.b2 * h.bx), y2 = -(h.a2 * h.ay + h.b2 * h.by),
+                     z2 = -(h.a2 * h.az + h.b2 * h.bz);
+        const double ga = h.ax * h.ax + h.ay * h.ay + h.az * h.az,
+                     gb = h.bx * h.bx + h.by * h.by + h.bz * h.bz, g1 = x1 * x1 + y1 * y1 + z1 * z1,
+                     g2 = x2 * x2 + y2 * y2 + z2 * z2;
+        const double weight = a.w[l] * ga + b.w[l] * gb + e1.w[l] * g1 + e2.w[l] * g2;
+        const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
+        const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
+        const double lever = weight - LEAST_LEVER * w * steepest;
+        const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
+        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
+                                            compliance[l] * s.inv_dt_sq, lambda[l], most[l]);
+        lambda[l] += step;
+        a.move(l, step * a.w[l], h.ax, h.ay, h.az);
+        b.move(l, step * b.w[l], h.bx, h.by, h.bz);
+        e1.move(l, step * e1.w[l], x1, y1, z1);
+        e2.move(l, step * e2.w[l], x2, y2, z2);
+      }
+      give<JACOBI>(s, before_a, a, &c.slot[0][m]);
+      give<JACOBI>(s, before_e1, e1, &c.slot[1][m]);
+      give<JACOBI>(s, before_e2, e2, &c.slot[2][m]);
+      give<JACOBI>(s, before_b, b, &c.slot[3][m]);
+    }
+  }
+
+}    // namespace
+
+void project(Constraints<2> &c, int colour, const ClothState &s)
+{
+  if (s.change)
+    s.start ? project_distances<true, true>(c, colour, s)
+            : project_distances<false, true>(c, colour, s);
+  else
+    s.start ? project_distances<true, false>(c, colour, s)
+            : project_distances<false, false>(c, colour, s);
+}
+
+void project(Constraints<4> &c, int colour, const ClothState &s)
+{
+  s.change ? project_hinges<true>(c, colour, s) : project_hinges<false>(c, colour, s);
+}
+
+SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int colour, const Vertex *p, Vertex *v,
+                                double share)
+{
+  for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+    const int *one = &c.slot[0][m], *two = &c.slot[1][m];
+    Column p1, p2, v1, v2;
+    p1.read(p, one);
+    p2.read(p, two);
+    v1.read(v, one);
+    v2.read(v, two);
+#pragma omp simd
+    for (int l = 0; l < WIDE; l++) {
+      const DistanceStep d =
+          damping_step(p1.x[l] - p2.x[l], p1.y[l] - p2.y[l], p1.z[l] - p2.z[l], v1.x[l] - v2.x[l],
+                       v1.y[l] - v2.y[l], v1.z[l] - v2.z[l], p1.w[l] + p2.w[l], share);
+      v1.move(l, p1.w[l], d.x, d.y, d.z);
+      v2.move(l, -p2.w[l], d.x, d.y, d.z);
+    }
+    v1.write(v, one);
+    v2.write(v, two);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what is asked for now and then
+------------------------------------------------------------------------- */
+
+namespace {
+
+  Vec3 place(const Vertex &v) { return {v.x, v.y, v.z}; }
+
+  double error_of(const Constraints<2> &c, const Vertex *p, int m)
+  {
+    return (place(p[c.slot[0][m]]) - place(p[c.slot[1][m]])).norm() - c.rest[m];
+  }
+
+  double error_of(const Constraints<4> &c, const Vertex *p, int m)
+  {
+    const double angle = hinge_angle(place(p[c.slot[0][m]]), place(p[c.slot[1][m]]),
+                                     place(p[c.slot[2][m]]), place(p[c.slot[3][m]]));
+    return std::isnan(angle) ? 0.0 : angle_difference(angle, c.rest[m]);
+  }
+
+  // unit: of a constraint's error
+
+  template <std::size_t N, class Unit>
+  double largest_residual(const Constraints<N> &c, const Vertex *p, double inv_dt_sq, Unit unit)
+  {
+    double largest = 0.0;
+    for (int m = 0; m < c.size(); m++) {
+      if (!c.in_full[m]) continue;
+      bool any_moves = false;
+      for (std::size_t q = 0; q < N; q++) any_moves = any_moves || p[c.slot[q][m]].w > 0.0;
+      if (!any_moves) continue;
+      const double left = error_of(c, p, m) + c.compliance[m] * inv_dt_sq * c.lambda[m];
+      if (left < 0.0 && c.lambda[m] >= c.most[m]) continue;    // slack
+      largest = std::max(largest, std::fabs(left) / unit(c.rest[m]));
+    }
+    return largest;
+  }
+
+  template <std::size_t N>
+  double sum_of_energies(const Constraints<N> &c, const Vertex *p, int n_owned)
+  {
+    double sum = 0.0;
+    for (int m = 0; m < c.size(); m++) {
+      if (c.compliance[m] == 0.0 || c.slot[0][m] >= n_owned) continue;
+      const double error = error_of(c, p, m);
+      if (error < 0.0 && c.most[m] == 0.0) continue;
+      sum += 0.5 * error * error / c.compliance[m];
+    }
+    return sum;
+  }
+
+}    // namespace
+
+double residual(const Constraints<2> &c, const Vertex *p, double inv_dt_sq, double length)
+{
+  return largest_residual(c, p, inv_dt_sq, [&](double rest) { return rest > 0.0 ? rest : length; });
+}
+
+double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
+{
+  return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
+}
+
+double elastic_energy(const Constraints<2> &c, const Vertex *p, int n_owned)
+{
+  return sum_of_energies(c, p, n_owned);
+}
+
+double elastic_energy(const Constraints<4> &c, const Vertex *p, int n_owned)
+{
+  return sum_of_energies(c, p, n_owned);
+}
+
+}    // namespace sphcloth

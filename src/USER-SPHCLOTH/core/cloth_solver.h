@@ -1,0 +1,103 @@
+// Projection of the constraints of a cloth, colour by colour.
+//
+// No two constraints of one colour share a vertex, so a colour is a loop without order: groups of
+// four constraints become columns, are projected as vectors, and are written back.  The result
+// does not depend on where in a group a constraint stands.
+
+#ifndef SPHCLOTH_CORE_CLOTH_SOLVER_H
+#define SPHCLOTH_CORE_CLOTH_SOLVER_H
+
+#include <array>
+#include <vector>
+
+#include "constraints.h"
+#include "simd.h"
+
+namespace sphcloth {
+
+// a vertex, or its velocity, or its displacement, with the inverse mass
+
+struct Vertex {
+  double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
+};
+
+using Vertices = AlignedVector<Vertex>;
+
+// Constraints of N vertices sorted by colour.  Every colour is filled up to whole groups with
+// constraints of a vertex that has no mass, `idle`.
+
+template <std::size_t N> class Constraints {
+ public:
+  void clear(int colours, int idle_vertex)
+  {
+    idle = idle_vertex;
+    begin.assign(1, 0);
+    begin.reserve(colours + 1);
+    for (auto &s : slot) s.clear();
+    in_full.clear();
+    for (auto *list : {&rest, &k, &compliance, &most, &lambda}) list->clear();
+  }
+  // one after the other, colour by colour
+  // share: what one sweep may do of it
+  void add(const std::array<int, N> &vertices, const Spring &spring, double share = 1.0)
+  {
+    for (std::size_t q = 0; q < N; q++) slot[q].push_back(vertices[q]);
+    rest.push_back(spring.rest);
+    k.push_back(share * spring.k);
+    in_full.push_back(spring.k == 1.0);
+    compliance.push_back(spring.compliance);
+    most.push_back(spring.most);
+    lambda.push_back(0.0);
+  }
+  void close_colour()
+  {
+    std::array<int, N> vertices;
+    vertices.fill(idle);
+    while (size() % GROUP<double> != 0) add(vertices, {0.0, 0.0, 0.0, 0.0});
+    begin.push_back(size());
+  }
+
+  int size() const { return static_cast<int>(rest.size()); }
+  int colours() const { return static_cast<int>(begin.size()) - 1; }
+  bool is_idle(int m) const { return slot[0][m] == idle; }
+  double bytes() const
+  {
+    return static_cast<double>(rest.capacity()) * (5 * sizeof(double) + N * sizeof(int));
+  }
+
+  std::vector<int> begin{0};    // of each colour, and the end
+  std::array<std::vector<int>, N> slot;
+  AlignedVector<double> rest, k, compliance, most, lambda;
+  std::vector<char> in_full;    // not in part, as (9) with k < 1
+
+ private:
+  int idle = 0;
+};
+
+// What a sweep works on.  Vertices of constraints are indices into these.
+
+struct ClothState {
+  Vertex *p = nullptr;              // positions, moved (Gauss-Seidel)
+  const Vertex *start = nullptr;    // at the start of the step: project along these edges, or null
+  Vertex *change = nullptr;    // Jacobi: add up here what p would move, or null
+  double inv_dt_sq = 0.0;
+};
+
+void project(Constraints<2> &, int colour, const ClothState &);
+void project(Constraints<4> &, int colour, const ClothState &);
+
+// takes the share of the stretching motion out of the velocities v of one colour
+void damp(const Constraints<2> &, int colour, const Vertex *p, Vertex *v, double share);
+
+// C + a lambda, which vanishes in a converged step: largest of the constraints that are to be met in
+// full and are not slack.  Of lengths it is relative, to the rest length or to `length` if that is 0.
+double residual(const Constraints<2> &, const Vertex *p, double inv_dt_sq, double length);
+double residual(const Constraints<4> &, const Vertex *p, double inv_dt_sq);
+
+// C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
+double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);
+double elastic_energy(const Constraints<4> &, const Vertex *p, int n_owned);
+
+}    // namespace sphcloth
+
+#endif

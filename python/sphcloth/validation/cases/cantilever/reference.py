@@ -53,12 +53,12 @@ class HeavyElastica:
         gamma = min(self.gamma, 1.0)
         guess = np.stack([gamma * (1 - (1 - s) ** 3) / 6, gamma * (1 - s) ** 2 / 2, s, 0 * s])
         while True:
-            found = solve_bvp(_slope_for(gamma), _ends, s, guess, tol=1e-10, max_nodes=100_000)
+            found = solve_bvp(_slope_for(gamma), _ends, s, guess, tol=1e-9, max_nodes=100_000)
             if not found.success:
                 raise ArithmeticError(f"heavy elastica, Gamma = {gamma:g}: {found.message}")
             if gamma == self.gamma:
                 return found.sol
-            s, guess = found.x, found.y
+            guess = found.sol(s)
             gamma = min(GROWTH * gamma, self.gamma)
 
 

@@ -43,16 +43,16 @@ QUANTITIES = (
 
 def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     """Run the chain to rest, and again for a table over sweeps and time steps."""
-    chain = _chain(values)
-    run = _run(values, bench, "converged")
-    heights, force = _heights(run), float(run.thermo["f_chain[3]"][-1])
+    chain = chain_of(values)
+    run = run_chain(values, bench, "converged")
+    heights, force = heights_of(run), float(run.thermo["f_chain[3]"][-1])
     at_rest = chain.links * chain.length
     errors, forces = {}, {}
     for share in STEPS:
         for sweeps in SWEEPS:
             changed = {**values, "dt": share * values["dt"], "iterations": sweeps}
-            each = _run(changed, bench, f"dt_{share:g}_sweeps_{sweeps}")
-            errors[share, sweeps] = (-_heights(each)[-1] - at_rest) / chain.stretch - 1
+            each = run_chain(changed, bench, f"dt_{share:g}_sweeps_{sweeps}")
+            errors[share, sweeps] = (-heights_of(each)[-1] - at_rest) / chain.stretch - 1
             forces[share, sweeps] = each.thermo["f_chain[3]"][-1] / _carried(chain) - 1
     few = SWEEPS[0]
     _plot(chain, heights, values["dt"], errors, bench.out / f"{bench.name}.png")
@@ -67,7 +67,8 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _chain(values: Mapping[str, Value]) -> HangingChain:
+def chain_of(values: Mapping[str, Value]) -> HangingChain:
+    """Return the reference."""
     names = ("links", "mass", "length", "compliance", "gravity")
     return HangingChain(*(values[name] for name in names))
 
@@ -77,15 +78,16 @@ def _carried(chain: HangingChain) -> float:
     return chain.support + chain.mass * chain.gravity
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
-    chain = _chain(values)
+def run_chain(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+    """Run the script until the chain is at rest."""
+    chain = chain_of(values)
     time = values["settle"] / chain.slowest
     shared = {name: values[name] for name in values if name != "settle"}
     steps = cloth.stepping(time, values["dt"], frames=10)
     return bench.run(label, time, shared | steps | {"drag": DRAG * chain.slowest})
 
 
-def _heights(run: Run) -> NDArray[np.float64]:
+def heights_of(run: Run) -> NDArray[np.float64]:
     """Return the heights of the masses in the last frame, from the top, m."""
     return run.trajectory[-1].positions[1:, 2]
 

@@ -1,12 +1,13 @@
 """Motion of a chain of rigid links, the reference of several cases.
 
-Point masses at the ends of massless rigid links hang from a fixed point. With theta_i the angle of
-link i from the downward vertical and mu_k the mass that hangs on link k,
+Point masses m_i at the ends of massless rigid links hang from a fixed point. Link i has the length
+l_i, the angle theta_i from the downward vertical, the direction u_i and, across it, t_i. With
+tensions T_i the accelerations are a_i = g + (T_{i+1} u_{i+1} - T_i u_i) / m_i, a_0 = 0, and
 
-    sum_j mu_max(i,j) l_j (theta_j'' cos(theta_i - theta_j) + theta_j'^2 sin(theta_i - theta_j))
-        = -mu_i g sin(theta_i)
+    (a_i - a_{i-1}) . u_i = -l_i theta_i'^2      (a tridiagonal system for the tensions)
+    (a_i - a_{i-1}) . t_i =  l_i theta_i''
 
-These are Lagrange's equations in minimal coordinates: there are no constraints to drift.
+The state is angles and their rates: there are no constraints to drift.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import OdeSolution, solve_ivp
+from scipy.linalg import solve_banded
 
 Array = NDArray[np.float64]
 
@@ -28,7 +30,7 @@ class LinkedPendulum:
 
     Attributes:
         lengths: of the links from the fixed point on, m, shape (N,).
-        masses: at the outer end of each link, shape (N,); only their ratios matter.
+        masses: at the outer end of each link, kg, shape (N,).
         angles: of the links from the downward vertical at the start, rad, shape (N,).
         gravity: acceleration, m/s^2.
     """
@@ -57,30 +59,36 @@ class LinkedPendulum:
     def accelerations(self) -> Array:
         """Return the accelerations of the masses at the start, shape (N, 2)."""
         angles = np.asarray(self.angles, dtype=np.float64)
-        turning = self._angular_acceleration(angles, np.zeros_like(angles))
-        along = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-        return np.cumsum((self._lengths * turning)[:, None] * along, axis=0)
+        return np.cumsum(self._relative(angles, np.zeros_like(angles)), axis=0)
 
     @cached_property
     def _lengths(self) -> Array:
         return np.asarray(self.lengths, dtype=np.float64)
 
     @cached_property
-    def _hanging(self) -> Array:
-        """mu: mass that hangs on each link, shape (N,)."""
-        return np.cumsum(np.asarray(self.masses, dtype=np.float64)[::-1])[::-1]
+    def _inverse_masses(self) -> Array:
+        """1 / m of the fixed point, which is 0, and of the masses, shape (N + 1,)."""
+        return np.concatenate([[0.0], 1 / np.asarray(self.masses, dtype=np.float64)])
 
-    @cached_property
-    def _coupling(self) -> Array:
-        """mu_max(i,j) l_j, shape (N, N)."""
-        number = np.arange(len(self._lengths))
-        return self._hanging[np.maximum.outer(number, number)] * self._lengths
+    def _relative(self, angles: Array, rates: Array) -> Array:
+        """Return a_i - a_{i-1}, shape (N, 2)."""
+        along = np.stack([np.sin(angles), -np.cos(angles)], axis=-1)
+        w = self._inverse_masses
+        fall = np.zeros_like(along)
+        fall[0, 1] = -self.gravity
+        beside = np.cos(np.diff(angles)) * w[1:-1]
+        bands = np.zeros((3, len(angles)))
+        bands[0, 1:], bands[1], bands[2, :-1] = beside, -(w[:-1] + w[1:]), beside
+        right = -self._lengths * rates**2 - np.sum(fall * along, axis=-1)
+        pulls = solve_banded((1, 1), bands, right)[:, None] * along
+        forces = np.concatenate([pulls, np.zeros((1, 2))]) - np.concatenate(
+            [np.zeros((1, 2)), pulls]
+        )
+        return fall + np.diff(w[:, None] * forces, axis=0)
 
     def _angular_acceleration(self, angles: Array, rates: Array) -> Array:
-        between = angles[:, None] - angles
-        pull = -self._hanging * self.gravity * np.sin(angles)
-        whirl = (self._coupling * np.sin(between)) @ rates**2
-        return np.linalg.solve(self._coupling * np.cos(between), pull - whirl)
+        across = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        return np.sum(self._relative(angles, rates) * across, axis=-1) / self._lengths
 
     def _slope(self, _: float, state: Array) -> Array:
         angles, rates = np.split(state, 2)

@@ -86,13 +86,8 @@ def _rows(run: Run, values: Mapping[str, Value]) -> NDArray[np.float64]:
 
 
 def _pairs(run: Run) -> NDArray[np.float64]:
-    """Return the two vertices of each row in the last frame, shape (rows, 2, 3).
-
-    The rows of the first frame are level, and in the order of x.
-    """
-    first, last = run.trajectory[0].positions, run.trajectory[-1].positions
-    by_row = np.lexsort((first[:, 1], np.round(first[:, 0], 9)))
-    return last[by_row].reshape(-1, 2, 3)
+    """Return the two vertices of each row in the last frame, shape (rows, 2, 3)."""
+    return run.trajectory[-1].positions.reshape(-1, 2, 3)
 
 
 def _exact(elastica: HeavyElastica, links: int) -> NDArray[np.float64]:

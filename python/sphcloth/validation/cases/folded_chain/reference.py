@@ -40,7 +40,7 @@ def folded(links: int, length: float, gravity: float) -> LinkedPendulum:
 def time_of_fall(chain: LinkedPendulum) -> float:
     """Return when the free end is lowest for the first time, s."""
     expected = fall_over_free_fall() * free_fall(float(np.sum(chain.lengths)), chain.gravity)
-    times = np.linspace(0.0, 1.3 * expected, 1301)
+    times = np.linspace(0.0, 1.15 * expected, 1151)
     first = times[first_lowest(chain.positions(times)[:, -1, 1])]
     step = times[1]
     found = minimize_scalar(

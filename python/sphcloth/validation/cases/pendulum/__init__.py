@@ -19,7 +19,7 @@ from sphcloth.validation.chain import LinkedPendulum
 # time steps of the coarse runs of the order of convergence, in that of the fine ones
 COARSE = 2.0
 ORDER = 1.9
-FRAMES = 200
+FRAMES = 400
 
 PARAMETERS = (
     Parameter("links", 3, "1", "links N of the chain that starts level", 1, 50),
@@ -28,7 +28,7 @@ PARAMETERS = (
     Parameter("angle", 90.0, "degrees", "amplitude of the single link", 1.0, 170.0),
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
     Parameter("time", 1.0, "s", "time over which the chain is followed", 0.1, 10.0),
-    *cloth.solver(1e-3, 50),
+    *cloth.solver(5e-4, 50),
 )
 
 QUANTITIES = (

@@ -37,10 +37,12 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
     iterations(10), from_start(false), tolerance(0.0), pinbit(0), damping(0.0), rest_x(nullptr),
     mesh(lmp, label), halo(lmp), edge_colours(0), hinge_colours(0), edge_layers(1),
-    mean_length(0.0), pin_force{}, sweeps(0)
+    mean_length(0.0), pin_force{}, sweeps(0), remembered(true), last_residual(0.0),
+    last_energy(0.0), started(false)
 {
   time_integrate = 1;
   restart_peratom = 1;
+  restart_global = 1;
   create_attribute = 1;
   vector_flag = 1;
   size_vector = 7;
@@ -264,14 +266,15 @@ double FixPBDCloth::share_of(const int *vertices, int n) const
 
 void FixPBDCloth::post_neighbor()
 {
+  if (sweeps) remember();    // what the vertices of the last step say before they are gone
   std::vector<int> owned;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) owned.push_back(i);
   halo.reset(1 + edge_colours * edge_layers + hinge_colours, owned);
 
-  collect(distance, mesh.edges, edge_colour, edge_colours, edge_layers, edge_rest,
+  collect(distance, mesh.edges, edge_colour, edge_colours, edge_layers, edge_rest, atom->nbondtypes,
           [this](int type) { return material_of_edge(type); });
-  collect(bending, mesh.hinges, hinge_colour, hinge_colours, 1, hinge_rest,
+  collect(bending, mesh.hinges, hinge_colour, hinge_colours, 1, hinge_rest, atom->ndihedraltypes,
           [this](int type) { return material_of_hinge(type); });
 
   std::vector<int> vertex_of_slot(halo.n_slots());
@@ -297,7 +300,7 @@ void FixPBDCloth::post_neighbor()
 template <std::size_t N, class MaterialOf>
 void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
                           const std::vector<int> &colour, int n_colours, int layers,
-                          const std::vector<double> &rest, MaterialOf material_of)
+                          const std::vector<double> &rest, int n_types, MaterialOf material_of)
 {
   struct Found {
     int colour, element;
@@ -305,14 +308,19 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
     Spring spring;
     double share;
   };
+  // of a unit rest length or angle, by type
+  std::vector<std::vector<Spring>> springs(1);
+  for (int t = 1; t <= n_types; t++) {
+    const PBDMaterial *material = material_of(t);
+    springs.push_back(material ? material->springs(1.0, iterations) : std::vector<Spring>());
+  }
   std::vector<Found> found;
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     const int vertex = mesh.index_of(atom->tag[i]);
     for (int k = elements.first[vertex]; k < elements.first[vertex + 1]; k++) {
       const int m = elements.incident[k];
-      const PBDMaterial *material = material_of(elements.type[m]);
-      if (!material || material->n_springs() == 0) continue;
+      if (springs[elements.type[m]].empty()) continue;
       std::array<int, N> slots;
       int viewer = -1;
       for (std::size_t q = 0; q < N; q++) {
@@ -321,9 +329,11 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
       }
       if (viewer != s) continue;
       int layer = 0;
-      for (const Spring &spring : material->springs(rest[m], iterations))
+      for (Spring spring : springs[elements.type[m]]) {
+        spring.rest *= rest[m];
         found.push_back({colour[m] + n_colours * layer++, m, slots, spring,
                          share_of(elements.vertices[m].data(), N)});
+      }
     }
   }
   std::sort(found.begin(), found.end(), [](const Found &a, const Found &b) {
@@ -382,6 +392,8 @@ void FixPBDCloth::initial_integrate(int)
   load();
   for (int n = 0; n < substeps(); n++) substep(n);
   store();
+  remembered = false;
+  started = true;
 }
 
 // A pin is on its way from where its velocity says that it was to where it is.
@@ -399,14 +411,16 @@ void FixPBDCloth::load()
 
 void FixPBDCloth::substep(int n)
 {
-  const double dt = update->dt / substeps(), dtf = dt * force->ftm2v;
+  const double dt = update->dt / substeps();
+  // from velocities at the time of the positions to those of half a step later
+  const double dtf = (from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v;
+  if (damping > 0.0) damp();    // before the forces: weight is not damped
   for (int s = 0; s < halo.n_owned(); s++) {
     const double *f = atom->f[halo.atom_of(s)], by = dtf * p[s].w;
     v[s].x += by * f[0];
     v[s].y += by * f[1];
     v[s].z += by * f[2];
   }
-  if (damping > 0.0) damp();
   const bool last = n == substeps() - 1;
   for (int s = 0; s < halo.n_owned(); s++) {
     p[s].x = start[s].x + dt * v[s].x;
@@ -452,7 +466,7 @@ void FixPBDCloth::project_all(double dt)
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
     sweeps++;
-    if (tolerance > 0.0 && residual() < tolerance) break;
+    if (tolerance > 0.0 && converged()) break;
   }
 }
 
@@ -508,29 +522,40 @@ void FixPBDCloth::store()
 
 double FixPBDCloth::compute_vector(int n)
 {
-  if (n == 4) return residual();
   if (n == 5) return substeps() * sweeps;
-  double mine, all;
-  if (n < 3)
-    mine = pin_force[n];
-  else if (n == 3)
-    mine = largest_strain();
-  else
-    mine = force->mvv2e *
-        (elastic_energy(distance, p.data(), halo.n_owned()) +
-         elastic_energy(bending, p.data(), halo.n_owned()));
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n == 3 ? MPI_MAX : MPI_SUM, world);
+  if (!remembered) remember();
+  double mine = 0.0, all;
+  if (n < 3) mine = pin_force[n];
+  if (n == 3) mine = largest_strain();
+  if (n == 4) mine = last_residual;
+  if (n == 6) mine = last_energy;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n == 3 || n == 4 ? MPI_MAX : MPI_SUM, world);
   return all;
+}
+
+// residual and energy of the last step, once and only if they are asked for or the lists change
+
+void FixPBDCloth::remember()
+{
+  remembered = true;
+  last_residual = residual();
+  last_energy = force->mvv2e *
+      (elastic_energy(distance, p.data(), halo.n_owned()) +
+       elastic_energy(bending, p.data(), halo.n_owned()));
 }
 
 double FixPBDCloth::residual() const
 {
   const double dt = update->dt / substeps(), inv_dt_sq = 1.0 / (dt * dt);
-  const double mine = std::max(sphcloth::residual(distance, p.data(), inv_dt_sq, mean_length),
-                               sphcloth::residual(bending, p.data(), inv_dt_sq));
-  double all;
+  return std::max(sphcloth::residual(distance, p.data(), inv_dt_sq, mean_length),
+                  sphcloth::residual(bending, p.data(), inv_dt_sq));
+}
+
+bool FixPBDCloth::converged() const
+{
+  double mine = residual(), all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
+  return all < tolerance;
 }
 
 double FixPBDCloth::largest_strain() const
@@ -612,6 +637,16 @@ void FixPBDCloth::unpack_restart(int i, int nth)
 
 int FixPBDCloth::size_restart(int) { return 4; }
 int FixPBDCloth::maxsize_restart() { return 4; }
+
+void FixPBDCloth::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const int bytes = sizeof(int), value = started;
+  fwrite(&bytes, sizeof(int), 1, fp);
+  fwrite(&value, sizeof(int), 1, fp);
+}
+
+void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(buf); }
 
 double FixPBDCloth::memory_usage()
 {

@@ -46,6 +46,8 @@ class FixPBDCloth : public Fix {
   void unpack_restart(int, int) override;
   int size_restart(int) override;
   int maxsize_restart() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
   double memory_usage() override;
 
   const ClothTopology &topology() const { return mesh; }
@@ -85,6 +87,9 @@ class FixPBDCloth : public Fix {
   sphcloth::Vertices p, v, start, change;    // by slot, and one idle vertex behind
   double pin_force[3];    // of the last step, this rank's part
   int sweeps;    // of the last step
+  bool remembered;    // the next two are of the last step, this rank's part
+  double last_residual, last_energy;
+  bool started;    // velocities are those of half a step ago, see direction start
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
@@ -99,7 +104,7 @@ class FixPBDCloth : public Fix {
   void count_constraints(const ClothElements<N> &, MaterialOf);
   template <std::size_t N, class MaterialOf>
   void collect(sphcloth::Constraints<N> &, const ClothElements<N> &, const std::vector<int> &colour,
-               int n_colours, int layers, const std::vector<double> &rest, MaterialOf);
+               int n_colours, int layers, const std::vector<double> &rest, int n_types, MaterialOf);
   double share_of(const int *vertices, int n) const;
   int slot_of_vertex(int, int);
   void ask_for_ghosts(const std::vector<int> &);
@@ -112,6 +117,8 @@ class FixPBDCloth : public Fix {
   void jacobi(const sphcloth::ClothState &);
   void store();
   double residual() const;
+  bool converged() const;
+  void remember();
   double largest_strain() const;
 
   static constexpr int ALL = 0;    // halo channels: all ghosts, then one per colour

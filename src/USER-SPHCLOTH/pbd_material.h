@@ -71,10 +71,10 @@ struct PBDMaterial {    // plain, for the restart file
   // as the user would write it, every digit
   std::string words(bool of_bond) const
   {
-    std::string text = compliant ? fmt::format("compliance {:.17g}", compliance)
-                                 : fmt::format("{:.17g}", k);
-    if (compress != 1.0) text += fmt::format(" compress {:.17g}", compress);
-    if (limit >= 0.0) text += fmt::format(" limit {:.17g}", limit);
+    std::string text = compliant ? fmt::format("compliance {}", compliance)
+                                 : fmt::format("{}", k);
+    if (compress != 1.0) text += fmt::format(" compress {}", compress);
+    if (limit >= 0.0) text += fmt::format(" limit {}", limit);
     if (no_rest) text += of_bond ? " rest zero" : " rest flat";
     return text;
   }

@@ -131,7 +131,7 @@ create_bonds single/bond 1 1 2
 """
 
 
-def one_edge(k, iterations, extra, mass=0.1):
+def one_edge(k, iterations, extra, mass=0.1, fix=""):
     lmp = instance()
     lmp.commands_string(
         HEADER.format(boundary="p p p")
@@ -139,7 +139,7 @@ def one_edge(k, iterations, extra, mass=0.1):
         + PAIR.format(mass=mass)
         + STYLES.format(k=k, bend=0).replace("zero 0.3", "zero 1.5")
         + "fix gravity all gravity 9.81 vector 0 0 -1\n"
-        + f"fix sheet all pbd/cloth iterations {iterations} pin pins\n"
+        + f"fix sheet all pbd/cloth iterations {iterations} pin pins {fix}\n"
         + extra
     )
     return lmp
@@ -243,3 +243,151 @@ def test_rest_shape_from_a_property():
     )
     assert lmp.extract_fix("sheet", 0, 1, 3) < 1e-6
     assert np.ptp(by_id(lmp, "x")[:, 2]) == 0
+
+
+def hanging(coefficient, extra, iterations=10, fix=""):
+    """A mass of 0.1 kg on a vertical edge of 1 m, at rest after damping."""
+    lmp = one_edge(coefficient, iterations, f"{extra}\ntimestep 0.01\n", fix=fix)
+    lmp.command("run 2000")
+    return -1.0 - by_id(lmp, "x")[1, 2], lmp
+
+
+@pytest.mark.parametrize("solver", ["gs", "jacobi", "substeps"])
+@pytest.mark.parametrize("direction", ["current", "start"])
+@pytest.mark.parametrize("iterations", [1, 100])
+def test_a_compliant_edge_stretches_by_the_weight(solver, direction, iterations):
+    """100 N/m under 0.981 N: 9.81 mm, whatever the solver does."""
+    stretch, lmp = hanging(
+        "compliance 0.01", "", iterations, f"solver {solver} direction {direction} damping 2"
+    )
+    assert stretch == pytest.approx(9.81e-3, rel=1e-9)
+    assert lmp.extract_fix("sheet", 0, 1, 6) == pytest.approx(0.5 * 100 * stretch**2, rel=1e-8)
+    if solver != "jacobi":
+        assert lmp.extract_fix("sheet", 0, 1, 4) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("iterations", "stretch"), [(1, 8.8e-3), (2, 4.2e-3), (5, 1.4e-3), (20, 0.14e-3)]
+)
+def test_plain_stiffness_is_no_compliance(iterations, stretch):
+    """k' = 0.1 in every iteration: another material at every count."""
+    k = 1 - 0.9**iterations
+    found, _ = hanging(f"{k:.17g}", "", iterations, "damping 2")
+    assert found == pytest.approx(stretch, rel=0.04)
+
+
+@pytest.mark.parametrize(("compress", "height"), [(0, 0), (0.25, 4), (1, 1)])
+def test_stiffness_in_compression(compress, height):
+    """The mass stands on the edge: it shortens by 1/compress of what it would hang, or falls."""
+    damping = "damping 2" if compress else ""
+    lmp = one_edge(f"compliance 0.01 compress {compress}", 50, "", fix=damping)
+    lmp.commands_string("unfix gravity\nfix gravity all gravity 9.81 vector 0 0 1\ntimestep 0.01")
+    lmp.command("run 30" if compress == 0 else "run 2000")
+    rise = 1.0 + by_id(lmp, "x")[1, 2]
+    if compress == 0:
+        assert rise == pytest.approx(-free_fall(0.3, 30), rel=1e-9)
+    else:
+        assert rise == pytest.approx(9.81e-3 * height, rel=1e-9)
+
+
+def test_a_strain_limit_holds_what_a_soft_edge_would_not():
+    stretch, _ = hanging("compliance 1 limit 0.05", "", 20, "damping 2")
+    assert stretch == pytest.approx(0.05, rel=1e-9)
+    stretch, _ = hanging("compliance 0.01 limit 0.05", "", 20, "damping 2")
+    assert stretch == pytest.approx(9.81e-3, rel=1e-9)
+    stretch, _ = hanging("0 limit 0.05", "", 20, "damping 2")
+    assert stretch == pytest.approx(0.05, rel=1e-9)
+
+
+def test_an_edge_without_rest_length_closes():
+    lmp = one_edge("1 rest zero", 5, "unfix gravity\ntimestep 1e-3\nrun 5")
+    assert np.abs(by_id(lmp, "x")[1]).max() < 1e-12
+
+
+def test_direction_of_the_start_is_second_order():
+    """Half a swing of a rigid link by a large angle, against the smallest step."""
+    ends = {}
+    for direction in ("current", "start"):
+        for steps in (200, 400, 6400):
+            lmp = one_edge(1.0, 1, "", fix=f"direction {direction}")
+            lmp.commands_string(f"set atom 2 x 1.0 z 0.0\ntimestep {0.8 / steps}\nrun {steps}")
+            ends[direction, steps] = by_id(lmp, "x")[1]
+    exact = ends["start", 6400]
+    error = {key: np.linalg.norm(x - exact) for key, x in ends.items()}
+    assert 1.8 < error["current", 200] / error["current", 400] < 2.3
+    assert 3.5 < error["start", 200] / error["start", 400] < 4.5
+    assert error["start", 200] < 0.02 * error["current", 200]
+
+
+def test_a_folded_sheet_with_flat_hinges_unfolds():
+    fold = (
+        "variable z atom abs(x)\nset group all z v_z\n"
+        "unfix sheet\nfix sheet cloth pbd/cloth iterations 20 damping 20\nunfix gravity\n"
+    )
+    heights = {}
+    for rest in ("model", "flat"):
+        lmp = cloth(fold + "run 0", bend=1.0)
+        lmp.commands_string(f"dihedral_coeff * 0.1 rest {rest}\nrun 300")
+        heights[rest] = np.ptp(by_id(lmp, "x")[:, 2])
+    assert heights["model"] == pytest.approx(0.5, rel=1e-9)
+    assert heights["flat"] < 0.4
+
+
+@pytest.mark.parametrize("solver", ["gs", "jacobi", "substeps"])
+@pytest.mark.parametrize("direction", ["current", "start"])
+def test_every_solver_keeps_momentum(solver, direction):
+    lmp = cloth(
+        "unfix gravity\nvelocity all create 1e22 777 loop geom\n"
+        "displace_atoms all random 0.01 0.01 0.01 55 units box\nrun 0",
+        k="compliance 1e-4 compress 0.5 limit 0.1",
+        bend="compliance 10",
+        fix=f"solver {solver} direction {direction}",
+    )
+    before = momenta(lmp)[0]
+    lmp.command("run 50")
+    after = momenta(lmp)[0]
+    assert np.isfinite(after).all()
+    assert np.abs(after - before).max() < 1e-12 * np.abs(by_id(lmp, "v")).sum()
+
+
+def test_a_tolerance_stops_the_sweeps():
+    """One step of a crumpled sheet: the smaller the tolerance, the more sweeps, up to it."""
+    used = []
+    for tolerance in (1e-2, 3e-3, 1e-3):
+        lmp = cloth(
+            "displace_atoms all random 0.01 0.01 0.01 55 units box\nrun 1",
+            fix=f"iterations 2000 tolerance {tolerance}",
+        )
+        used.append(lmp.extract_fix("sheet", 0, 1, 5))
+        assert lmp.extract_fix("sheet", 0, 1, 4) < tolerance
+        assert lmp.extract_fix("sheet", 0, 1, 3) < 1.01 * tolerance
+    assert 1 < used[0] < used[1] < used[2] < 2000
+
+
+@pytest.mark.parametrize("solver", ["gs", "jacobi", "substeps"])
+def test_stiffer_solvers_at_equal_cost(solver):
+    """A sheet held at one edge falls as a sheet, at every stiffness: no growth, no explosion."""
+    lmp = cloth(
+        "run 100",
+        k="compliance 1e-5",
+        options="pin left pins",
+        fix=f"pin pins iterations 10 solver {solver}",
+        regions="region left block INF -0.45 INF INF INF INF\n",
+    )
+    x = by_id(lmp, "x")
+    assert np.isfinite(x).all() and np.linalg.norm(by_id(lmp, "v"), axis=1).max() < 2.0
+    assert x[:, 2].min() == pytest.approx(free_fall(0.1, 100), rel=0.15)
+
+
+@pytest.mark.parametrize("solver", ["gs", "substeps"])
+def test_pins_that_move_carry_the_cloth_along(solver):
+    """Pins at constant speed: after damping all moves with them, in substeps too."""
+    lmp = one_edge(
+        "1.0",
+        10,
+        "unfix sheet\nunfix gravity\nfix pull pins move linear 0.3 0 0\n"
+        f"fix sheet all pbd/cloth iterations 10 solver {solver} pin pins\n"
+        "velocity all set 0.3 0 0\ntimestep 0.01\nrun 100",
+    )
+    np.testing.assert_allclose(by_id(lmp, "x"), [[0.3, 0, 0], [0.3, 0, -1]], atol=1e-9)
+    np.testing.assert_allclose(by_id(lmp, "v")[1], [0.3, 0, 0], atol=1e-9)

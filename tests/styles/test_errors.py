@@ -103,12 +103,42 @@ CASES = [
     case("bond: k > 1", SHEET + "bond_coeff 1 1.5", r"bond_coeff .*stiffness k is '1.5'.*0 to 1"),
     case("bond: none", SHEET + "bond_coeff 1", r"stiffness k is missing"),
     case("bond: many", SHEET + "bond_coeff 1 0.5 3", r"'3'"),
+    case("bond: compliance", SHEET + "bond_coeff 1 compliance -1", r"compliance is '-1'.*>= 0"),
+    case("bond: no compliance", SHEET + "bond_coeff 1 compliance", r"compliance is missing"),
+    case("bond: compress", SHEET + "bond_coeff 1 1 compress 2", r"compress is '2'.*0 to 1"),
+    case(
+        "bond: share of nothing",
+        SHEET + "bond_coeff 1 1 compress 0.5",
+        r"compress is '0.5.*compliance > 0",
+    ),
+    case("bond: limit", SHEET + "bond_coeff 1 1 limit -0.1", r"limit is '-0.1'.*>= 0"),
+    case("bond: rest", SHEET + "bond_coeff 1 1 rest flat", r"rest is 'flat': use model or zero"),
+    case(
+        "hinge: rest", SHEET + "dihedral_coeff 1 1 rest zero", r"rest is 'zero': use model or flat"
+    ),
+    case("hinge: limit", SHEET + "dihedral_coeff 1 1 limit 1", r"unknown keyword 'limit'"),
     case("hinge: k < 0", SHEET + "dihedral_coeff 1 -0.5", r"dihedral_coeff .*'-0.5'.*0 to 1"),
     # fix pbd/cloth
     case(
         "cloth: keyword", SHEET + "fix s cloth pbd/cloth stretch 1", r"fix s pbd/cloth.*'stretch'"
     ),
     case("cloth: sweeps", SHEET + "fix s cloth pbd/cloth iterations 0", r"iterations is '0'"),
+    case(
+        "cloth: solver",
+        SHEET + "fix s cloth pbd/cloth solver sor",
+        r"solver is 'sor': use gs or jacobi or substeps",
+    ),
+    case(
+        "cloth: direction",
+        SHEET + "fix s cloth pbd/cloth direction end",
+        r"direction is 'end': use current or start",
+    ),
+    case("cloth: tolerance", SHEET + "fix s cloth pbd/cloth tolerance 0", r"tolerance is '0'.*> 0"),
+    case(
+        "cloth: tolerance of substeps",
+        SHEET + "fix s cloth pbd/cloth tolerance 0.1 solver substeps",
+        r"tolerance is '0.1.*one sweep each.*solver gs",
+    ),
     case("cloth: damping", SHEET + "fix s cloth pbd/cloth damping -1", r"damping rate is '-1'"),
     case(
         "cloth: no pin group", SHEET + "fix s cloth pbd/cloth pin who", r"pin group is 'who'.*group"

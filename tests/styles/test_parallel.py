@@ -131,6 +131,39 @@ def test_data_file_keeps_cloth_and_coefficients(scene):
     assert largest_difference(scene, "first.txt", "second.txt") < 1e-10
 
 
+# every kind of constraint at once, with substeps and edges projected along their start
+RICH = {
+    "bond_coeff 1 1.0": "bond_coeff 1 compliance 1e-5 compress 0.5 limit 0.02",
+    "dihedral_coeff 1 0.1": "dihedral_coeff 1 compliance 1 rest flat",
+    "iterations 5": "iterations 5 direction start solver {}",
+}
+
+
+def rich(script, solver):
+    for plain, other in RICH.items():
+        script = script.replace(plain, other.format(solver))
+    return script
+
+
+@pytest.mark.parametrize("solver", ["gs", "jacobi", "substeps"])
+def test_compliant_cloth_on_ranks_after_restart_and_from_data(scene, solver):
+    first = "run 30\nwrite_restart mid.restart\nwrite_data mid.data nofix\n"
+    whole = write(scene, rich(DROP, solver) + first + END.replace("${steps}", "30"), "in.rich")
+    run(whole, dump="rich1.txt")
+    run(whole, ranks=2, newton="off", dump="rich2.txt")
+    assert largest_difference(scene, "rich1.txt", "rich2.txt") < 1e-10
+    assert largest_difference(scene, "rich1.txt", "serial.txt") > 1e-4
+
+    run(write(scene, rich(DROP, solver) + first + END.replace("${steps}", "30"), "in.rich"))
+    again = write(scene, rich(RESTARTED, solver).replace("index 60", "index 30") + END, "in.more")
+    run(again, dump="again.txt")
+    run(whole, dump="rich1.txt")
+    np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "rich1.txt"))
+    coefficients = (scene / "mid.data").read_text()
+    assert "1 compliance 1e-05 compress 0.5 limit 0.02" in coefficients
+    assert "1 compliance 1 rest flat" in coefficients
+
+
 def test_two_instances_and_clear(scene, monkeypatch):
     monkeypatch.chdir(scene)
     script = (DROP + END).replace("${steps}", "20")

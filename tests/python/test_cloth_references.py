@@ -224,6 +224,7 @@ def test_steps_of_a_free_vertex_and_of_one_on_an_edge() -> None:
         z += v * 0.01
     assert stiffness.free_fall(G, 0.01, 30) == pytest.approx(-z, rel=1e-12)
     assert stiffness.first_stretch(0.0, G, 0.01) == stiffness.free_fall(G, 0.01, 1)
+    assert stiffness.free_fall(G, 0.01, 30, 0.5) == pytest.approx(0.5 * G * 0.3**2, rel=1e-12)
     assert stiffness.first_stretch(1.0, G, 0.01) == 0
 
 
@@ -239,3 +240,11 @@ def test_steps_end_at_the_time_and_are_not_too_large(
     steps = cloth.stepping(time, largest, frames)
     assert steps["dt"] <= largest * (1 + 1e-9)
     assert steps["dt"] * steps["every"] * frames == pytest.approx(time, rel=1e-12)
+
+
+@pytest.mark.parametrize(("time", "largest"), [(1.0, 2e-3), (2.486, 1e-3), (1.0, 0.02), (0.01, 1)])
+def test_frames_near_a_number_leave_the_step_as_it_is(time: float, largest: float) -> None:
+    frames = cloth.frames_near(time, largest, 200)
+    assert frames <= 400
+    step = cloth.stepping(time, largest, frames)["dt"]
+    assert min(time, largest) * 0.99 < step <= largest * (1 + 1e-9)

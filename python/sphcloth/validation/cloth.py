@@ -48,18 +48,15 @@ def solver(
     )
 
 
-SOLVER_NAMES = tuple(parameter.name for parameter in solver(1.0, 1))
-
-
-def of_solver(values: Mapping[str, Value]) -> dict[str, Value]:
-    """Return the values of the solver's parameters alone."""
-    return {name: values[name] for name in SOLVER_NAMES}
-
-
 def substep(values: Mapping[str, Value]) -> float:
     """Return the time between two projections of positions that start anew, s."""
     divided = values["iterations"] if values["solver"] == "substeps" else 1
     return values["dt"] / divided
+
+
+def first_kick(values: Mapping[str, Value]) -> float:
+    """Return the share of the forces that acts in the first step."""
+    return 0.5 if values["direction"] == "start" else 1.0
 
 
 def stepping(time: float, largest: float, frames: int = 1) -> dict[str, Value]:
@@ -74,9 +71,10 @@ def stepping(time: float, largest: float, frames: int = 1) -> dict[str, Value]:
     return {"dt": time / (frames * every), "every": every}
 
 
-def projections(run: Run, values: Mapping[str, Value], constraints: int) -> float:
-    """Return how often a constraint was projected in a run without tolerance."""
-    return float(run.thermo["Step"][-1]) * values["iterations"] * constraints
+def frames_near(time: float, largest: float, wanted: int) -> int:
+    """Return a number of frames near the one wanted for which :func:`stepping` hardly rounds."""
+    every = max(1, int(time / wanted / largest + 1e-9))
+    return max(1, int(np.ceil(time / every / largest - 1e-9)))
 
 
 def energies(run: Run, mass: float, gravity: float) -> NDArray[np.float64]:

@@ -50,8 +50,9 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     halved = _sheet({**values, "dt": 0.5 * values["dt"]}, bench, "half_step", 0.3)
     doubled = {**values, "iterations": 2 * values["iterations"]}
     doubled = _sheet(doubled, bench, "twice_the_sweeps", 0.3)
-    steps = int(runs[0.0].thermo["Step"][-1])
-    fall = reference.free_fall(values["gravity"], cloth.substep(_stepped(values)), steps)
+    step = cloth.substep(_stepped(values))
+    steps = round(FRAMES[-1] * values["frame"] / step)
+    fall = reference.free_fall(values["gravity"], step, steps, cloth.first_kick(values))
     _picture(runs, values, bench.out / f"{bench.name}.png")
     return {
         "sag_middle": sags[0.3] / sags[0.0],
@@ -88,8 +89,9 @@ def _edge(values: Mapping[str, Value], bench: Bench, sweeps: int, k: float = 0.3
     # sweeps do not divide the step here, whatever the solver of the sheet
     changed["solver"] = "gs" if values["solver"] == "substeps" else values["solver"]
     run = bench.run(f"edge_{sweeps}", step, shared | changed)
+    exact = reference.first_stretch(k, values["gravity"], step, cloth.first_kick(values))
     stretch = -float(run.trajectory[-1].positions[1, 2]) - values["size"]
-    return abs(stretch / reference.first_stretch(k, values["gravity"], step) - 1)
+    return abs(stretch / exact - 1)
 
 
 def _picture(runs: Mapping[float, Run], values: Mapping[str, Value], path: Path) -> None:

@@ -16,7 +16,7 @@ from sphcloth.validation.cases.catenary.reference import HangingPolygon
 
 # rate of the drag in sqrt(g / length)
 DRAG = 4.0
-# the coarse run of the order of convergence: its time step in that of the fine one
+# time step of the coarse run of the order of convergence, in that of the case
 COARSE = 2.0
 
 PARAMETERS = (
@@ -37,29 +37,31 @@ QUANTITIES = (
     Quantity("force", "1", "force of the fixed points / weight - 1", 1e-6, 1e-6),
     Quantity("strain", "1", "largest strain of a rigid link"),
     Quantity("speed", "m/s", "largest speed of a joint in the end"),
-    Quantity("order", "1", "order in dt of the shape"),
+    Quantity("shape_current", "L", "shape when edges are projected along their current direction"),
+    Quantity("order", "1", "order in dt of shape_current"),
 )
 
 
 def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
-    """Run two time steps to rest and compare with the polygon."""
+    """Run to rest and compare with the polygon, for the order along current directions."""
     polygon = _polygon(values)
-    runs = [
-        _run({**values, "dt": COARSE * values["dt"]}, bench, "coarse"),
-        _run(values, bench, "fine"),
+    fine = _run(values, bench, "fine")
+    current = [
+        _error(_run({**values, "direction": "current", "dt": dt}, bench, label), polygon)
+        for label, dt in (("coarse", COARSE * values["dt"]), ("current", values["dt"]))
     ]
-    errors = [float(np.max(np.linalg.norm(_joints(run) - polygon.joints, axis=1))) for run in runs]
-    joints, fine = _joints(runs[-1]), runs[-1]
+    joints = _joints(fine)
     weight = (polygon.links + 1) * polygon.mass * polygon.gravity
     _plot(polygon, joints, bench.out / f"{bench.name}.png")
     return {
-        "shape": errors[-1] / polygon.length,
+        "shape": _error(fine, polygon),
         "sag": (-float(np.min(joints[:, 1])) - polygon.sag) / polygon.length,
         "sag_reference": polygon.sag / polygon.length,
         "force": float(fine.thermo["f_chain[3]"][-1]) / weight - 1,
         "strain": float(fine.thermo["f_chain[4]"][-1]),
         "speed": float(np.max(np.abs(fine.trajectory[-1].velocities))),
-        "order": compare.order(errors, [1, COARSE]),
+        "shape_current": current[-1],
+        "order": compare.order(current, [1, COARSE]),
     }
 
 
@@ -80,6 +82,12 @@ def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
     shared = {name: values[name] for name in values if name != "settle"}
     changed = {"span": values["span"] * values["length"], "drag": DRAG / unit}
     return bench.run(label, time, shared | changed | cloth.stepping(time, values["dt"], frames=10))
+
+
+def _error(run: Run, polygon: HangingPolygon) -> float:
+    """Return the largest distance of a joint from the polygon, in L."""
+    distance = np.linalg.norm(_joints(run) - polygon.joints, axis=1)
+    return float(np.max(distance)) / polygon.length
 
 
 def _joints(run: Run) -> NDArray[np.float64]:

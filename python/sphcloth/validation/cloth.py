@@ -18,6 +18,7 @@ def solver(
     dt: float,
     iterations: int,
     *,
+    method: str = "gs",
     direction: str = "start",
     quick_dt: float | None = None,
     quick_iterations: int | None = None,
@@ -27,6 +28,7 @@ def solver(
     Args:
         dt: default of the time step, s.
         iterations: default of the sweeps or substeps in a step.
+        method: default of what the iterations are.
         direction: default of the direction in which edges are projected.
         quick_dt: time step with ``--quick``.
         quick_iterations: sweeps or substeps with ``--quick``.
@@ -42,7 +44,7 @@ def solver(
             100_000,
             quick=quick_iterations,
         ),
-        Parameter("solver", "gs", "1", "what the iterations are", choices=SOLVERS),
+        Parameter("solver", method, "1", "what the iterations are", choices=SOLVERS),
         Parameter("direction", direction, "1", "of the projection", choices=DIRECTIONS),
         Parameter("tolerance", 0.0, "1", "error that ends the sweeps", 0.0, 1.0),
     )

@@ -28,7 +28,7 @@ PARAMETERS = (
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
     Parameter("links", 20, "1", "cells along the strip, a clamped one included", 6, 200),
     Parameter("settle", 20.0, "1/omega", "time to rest, omega the lowest mode", 1.0, 1e3),
-    *cloth.solver(2e-4, 10, quick_dt=5e-4),
+    *cloth.solver(2e-4, 50, method="substeps", quick_iterations=20),
 )
 
 QUANTITIES = (

@@ -17,7 +17,9 @@ from sphcloth.validation.cases.folded_chain import reference
 # the coarse run of the order of convergence: share of the links
 COARSE = 0.5
 # time of the run, in that of the fall of a chain of no thickness, and its frames
-UNTIL, FRAMES = 1.15, 500
+UNTIL, FRAMES = 1.15, 1000
+# between the shapes of the plot, in L
+SHIFT = 0.1
 
 PARAMETERS = (
     Parameter("links", 101, "1", "links N, odd: the next odd number is taken", 11, 401, quick=61),
@@ -91,11 +93,14 @@ def _time_of_fall(run: Run) -> float:
 def _plot(run: Run, exact: NDArray, free: float, length: float, path: Path) -> None:
     """Draw some shapes of the chain, and the height of its free end over time."""
     figure, (shapes, height) = compare.panels(1, 2)
-    for number in range(0, len(run.trajectory), len(run.trajectory) // 10):
+    shown = np.arange(0, len(run.trajectory), len(run.trajectory) // 10)
+    places = SHIFT * length * np.arange(len(shown))
+    for number, place in zip(shown, places, strict=True):
         x, _, z = run.trajectory[number].positions.T
-        shapes.plot(x, z, label=f"{run.trajectory.times[number] / free:.2f}")
-    shapes.set(xlabel="x (m)", ylabel="z (m)", aspect="equal")
-    shapes.legend(title="t / free fall", fontsize="small")
+        shapes.plot(place + x, z)
+    labels = [f"{time:.2f}" for time in run.trajectory.times[shown] / free]
+    shapes.set_xticks(places, labels)
+    shapes.set(xlabel="time / time of free fall", ylabel="z (m)")
     times = run.trajectory.times / free
     height.plot(times[: len(exact)], exact[:, 1], "k-", label="rigid links")
     height.plot(times, _tip(run)[:, 1], "--", label="fix pbd/cloth")

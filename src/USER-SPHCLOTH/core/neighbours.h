@@ -95,7 +95,7 @@ class NeighbourLists {
     lists.finish();
     // lists live long, what they are made of need not
     for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
-    give_back(cell);
+    for (auto *list : {&cell, &cell_start, &place, &id}) give_back(*list);
   }
 
   // owned particles by type and then in space: those of a type are the slots begin(t) to

@@ -109,7 +109,7 @@ def _picture(runs: Mapping[float, Run], values: Mapping[str, Value], path: Path)
             half = values["size"] / 2
             axes.set(xlim=(-half, half), ylim=(-half, half), zlim=(deepest, 0.1 * half))
             axes.set_box_aspect((1, 1, max(0.3, -deepest / values["size"])))
-            sag = -float(sheet[:, 2].min())
+            sag = 0.0 - float(sheet[:, 2].min())
             axes.set(xticks=[], yticks=[], title=f"k = {k:g}, frame {frame}, sag {sag:.2g} m")
             axes.tick_params(labelsize="x-small")
     FigureCanvasAgg(figure).print_figure(path, dpi=100)

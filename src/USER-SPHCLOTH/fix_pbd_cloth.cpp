@@ -266,7 +266,7 @@ double FixPBDCloth::share_of(const int *vertices, int n) const
 
 void FixPBDCloth::post_neighbor()
 {
-  if (sweeps) remember();    // what the vertices of the last step say before they are gone
+  if (!remembered) remember();    // what the vertices of the last step say before they are gone
   std::vector<int> owned;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) owned.push_back(i);
@@ -523,7 +523,7 @@ void FixPBDCloth::store()
 double FixPBDCloth::compute_vector(int n)
 {
   if (n == 5) return substeps() * sweeps;
-  if (!remembered) remember();
+  if ((n == 4 || n == 6) && !remembered) remember();
   double mine = 0.0, all;
   if (n < 3) mine = pin_force[n];
   if (n == 3) mine = largest_strain();

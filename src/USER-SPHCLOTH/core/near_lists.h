@@ -7,8 +7,9 @@
 // lasts saves one pass over the lists.  (A dual list: Pall et al., J. Chem. Phys. 153 (2020) 134110.)
 //
 // Nothing is kept from one list to the next, so a run that is continued from a restart file goes on
-// with the same fronts.  Every rank decides for itself.  A list is refreshed when it is asked for, from the positions at
-// which the present inner skin began, so particles that nobody asks for cost nothing.
+// with the same fronts.  Every rank decides for itself.  A list is refreshed when it is asked for,
+// from the positions at which the present inner skin began, so particles that nobody asks for cost
+// nothing.
 
 #ifndef SPHCLOTH_CORE_NEAR_LISTS_H
 #define SPHCLOTH_CORE_NEAR_LISTS_H
@@ -56,7 +57,8 @@ class NearLists {
   {
     if (refreshed[slot] == epoch) return;
     refreshed[slot] = epoch;
-    for (int t = 1; t <= types; t++) move_to_front(slot, t);
+    const double *supports = &limit[type_of(slot) * (types + 1)];
+    for (int t = 1; t <= types; t++) move_to_front(slot, t, supports[t]);
   }
 
   // owned particles by type and in space, see NeighbourLists
@@ -65,7 +67,6 @@ class NearLists {
   int at(int slot) const { return outer.at(slot); }
   // everyone up to the reach
   Stretch all(int slot, int t) const { return outer(slot, t); }
-  std::int64_t size() const { return outer.size(); }
   // Everyone inside the support and some a little outside, as of the last refresh.
   Stretch operator()(int slot, int t) const { return {outer(slot, t).of, front[of(slot, t)]}; }
   int slot(int owned) const { return slot_of[owned]; }
@@ -137,20 +138,9 @@ class NearLists {
 
   void hold(const double *x, int n_all)
   {
-    std::array<double, 3> lo, hi;
-    lo.fill(std::numeric_limits<double>::max());
-    hi.fill(std::numeric_limits<double>::lowest());
-    for (int i = 0; i < n_all; i++)
-      for (int d = 0; d < 3; d++) {
-        lo[d] = std::min(lo[d], x[3 * i + d]);
-        hi[d] = std::max(hi[d], x[3 * i + d]);
-      }
-    double extent = 0.0;
-    for (int d = 0; d < 3; d++) {
-      centre[d] = 0.5 * (lo[d] + hi[d]);
-      extent = std::max(extent, hi[d] - lo[d]);
-    }
-    rounding = extent * 4.0 * std::numeric_limits<float>::epsilon();
+    const Bounds bounds(x, n_all);
+    centre = bounds.centre;
+    rounding = bounds.rounding;
     held.resize(n_all + LANES);
     for (int i = 0; i < n_all; i++)
       held[i] = {static_cast<float>(x[3 * i] - centre[0]),
@@ -172,11 +162,10 @@ class NearLists {
     return std::sqrt(static_cast<double>(most));
   }
 
-  SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t)
+  SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t, double support)
   {
     const Stretch list = outer(slot, t);
     const int i = outer.at(slot);
-    const double support = limit[type_of(slot) * (types + 1) + t];
     if (list.n == 0 || support == 0.0) return;
     const Place self = held[i];
     static_assert(LANES == GROUP<float>);

@@ -20,6 +20,30 @@
 
 namespace sphcloth {
 
+// Where particles are, to count coordinates from the centre in single precision
+
+struct Bounds {
+  std::array<double, 3> lo, hi, centre;
+  double rounding;    // what that may do to a distance
+
+  Bounds(const double *x, int n)
+  {
+    lo.fill(std::numeric_limits<double>::max());
+    hi.fill(std::numeric_limits<double>::lowest());
+    for (int i = 0; i < n; i++)
+      for (int d = 0; d < 3; d++) {
+        lo[d] = std::min(lo[d], x[3 * i + d]);
+        hi[d] = std::max(hi[d], x[3 * i + d]);
+      }
+    double extent = 0.0;
+    for (int d = 0; d < 3; d++) {
+      centre[d] = 0.5 * (lo[d] + hi[d]);
+      extent = std::max(extent, hi[d] - lo[d]);
+    }
+    rounding = extent * 4.0 * std::numeric_limits<float>::epsilon();
+  }
+};
+
 // one group of neighbours; LANES indices past the end are readable and valid
 
 struct Stretch {
@@ -65,7 +89,6 @@ class Stretches {
     int *end = room(0);
     std::fill(end, end + SLACK, 0);
   }
-  std::int64_t size() const { return first.empty() ? 0 : first.back(); }
   double bytes() const
   {
     return sizeof(int) * static_cast<double>(entries.capacity()) +
@@ -106,7 +129,6 @@ class NeighbourLists {
   Stretch operator()(int slot, int t) const { return lists(slot, t); }
   // a stretch whose order may be changed
   int *open(int slot, int t) { return lists.open(slot, t); }
-  std::int64_t size() const { return lists.size(); }
   double bytes() const
   {
     return lists.bytes() + sizeof(float) * 3.0 * px.capacity() + sizeof(float) * key.capacity() +
@@ -136,26 +158,20 @@ class NeighbourLists {
 
   void set_grid(const double *x, int n_all, double reach)
   {
-    std::array<double, 3> lo, hi;
-    lo.fill(std::numeric_limits<double>::max());
-    hi.fill(std::numeric_limits<double>::lowest());
-    for (int i = 0; i < n_all; i++)
-      for (int d = 0; d < 3; d++) {
-        lo[d] = std::min(lo[d], x[3 * i + d]);
-        hi[d] = std::max(hi[d], x[3 * i + d]);
-      }
-    double side = 0.5 * reach, extent = 0.0;
-    const auto cells_along = [&](int d) { return 1.0 + std::floor((hi[d] - lo[d]) / side); };
+    const Bounds bounds(x, n_all);
+    double side = 0.5 * reach;
+    const auto cells_along = [&](int d) {
+      return 1.0 + std::floor((bounds.hi[d] - bounds.lo[d]) / side);
+    };
     // few particles far apart: larger cells, not more of them
     while (cells_along(0) * cells_along(1) * cells_along(2) > 4.0 * n_all + 64.0) side *= 1.3;
+    grid.lo = bounds.lo;
+    grid.centre = bounds.centre;
+    grid.slack = bounds.rounding;
     for (int d = 0; d < 3; d++) {
-      grid.lo[d] = lo[d];
-      grid.centre[d] = 0.5 * (lo[d] + hi[d]);
       grid.inv_side[d] = 1.0 / side;
       grid.n[d] = static_cast<int>(cells_along(d));
-      extent = std::max(extent, hi[d] - lo[d]);
     }
-    grid.slack = extent * 4.0 * std::numeric_limits<float>::epsilon();
   }
 
   int cell_along(int d, double x) const

@@ -21,6 +21,8 @@ STYLES = (
     ("fix", "sph/drain"),
     ("fix", "sph/shift"),
     ("fix", "wall/sph"),
+    ("compute", "pbd/atom"),
+    ("compute", "pbd/local"),
     ("compute", "sph/atom"),
     ("command", "create_cloth"),
     ("command", "sph_write"),

@@ -58,6 +58,24 @@ int ClothTopology::image_near(int vertex, int i) const
   return domain->minimum_image_check(a[0] - b[0], a[1] - b[1], a[2] - b[2]) ? -1 : j;
 }
 
+int ClothTopology::image_here(int vertex, int i) const
+{
+  const int j = image_near(vertex, i);
+  if (j < 0)
+    error->one(
+        FLERR,
+        "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
+        "'comm_modify cutoff' to the size of two edges",
+        owner, ids[vertex], atom->tag[i]);
+  return j;
+}
+
+Eigen::Vector3d ClothTopology::from(int i, int vertex) const
+{
+  const double *a = atom->x[i], *b = atom->x[image_here(vertex, i)];
+  return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+}
+
 void ClothTopology::gather(int groupbit)
 {
   const int nlocal = atom->nlocal;

@@ -6,6 +6,8 @@
 
 #include "pointers.h"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -43,6 +45,10 @@ class ClothTopology : protected Pointers {
 
   // the image of a vertex next to atom i, owned or ghost; -1 if this rank holds none
   int image_near(int vertex, int i) const;
+
+  // the same, and the vector to it from atom i; it is an error if this rank holds none
+  int image_here(int vertex, int i) const;
+  Eigen::Vector3d from(int i, int vertex) const;
 
  private:
   std::string owner;

@@ -29,15 +29,22 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace sphcloth;
 
+// columns of `hold`: pull of the cloth, and gap between an attached vertex and where the solver left it
+static constexpr int GAP = 3, HOLD = 6;
+
+// Share of that gap which is closed in a step.  A quarter damps any oscillation between the
+// body and what holds it within a few steps, whatever their masses; with 1 it would go on for ever.
+static constexpr double CLOSED = 0.25;
+
 /* ----------------------------------------------------------------------
    fix ID group pbd/cloth keyword value ...
 ------------------------------------------------------------------------- */
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
-    iterations(10), from_start(false), tolerance(0.0), pinbit(0), damping(0.0), rest_x(nullptr),
-    mesh(lmp, label), halo(lmp), edge_colours(0), hinge_colours(0), edge_layers(1),
-    mean_length(0.0), pin_force{}, sweeps(0), remembered(true), last_residual(0.0),
+    iterations(10), from_start(false), tolerance(0.0), pinbit(0), attachbit(0), damping(0.0),
+    rest_x(nullptr), hold(nullptr), mesh(lmp, label), halo(lmp), edge_colours(0), hinge_colours(0),
+    edge_layers(1), mean_length(0.0), holding{}, sweeps(0), remembered(true), last_residual(0.0),
     last_energy(0.0), started(false)
 {
   time_integrate = 1;
@@ -84,32 +91,43 @@ void FixPBDCloth::read_options(ArgReader &args)
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
       tolerance = args.positive(keyword);
-    else if (keyword == "pin") {
-      const std::string name = args.word("pin group");
-      const int pins = group->find(name);
-      if (pins < 0) args.fail("pin group", name, "define it with the group command first");
-      pinbit = group->bitmask[pins];
-      check_pins();
-    } else if (keyword == "damping")
+    else if (keyword == "pin")
+      pinbit = read_held(args, keyword);
+    else if (keyword == "attach")
+      attachbit = read_held(args, keyword);
+    else if (keyword == "damping")
       damping = args.at_least("damping rate", 0.0);
     else if (keyword == "rest")
       take_rest_positions(args.word("rest property").c_str());
     else
-      args.unknown(keyword, "iterations, solver, direction, tolerance, pin, damping, rest");
+      args.unknown(keyword, "iterations, solver, direction, tolerance, pin, attach, damping, rest");
   }
+  if (pinbit && attachbit && share_atoms(atom, pinbit, attachbit, world))
+    error->all(FLERR, "{}: a vertex is in the group of pin and in that of attach: it can be in one",
+               label);
+  if (attachbit && solver == Solver::SUBSTEPS)
+    args.fail("solver", "substeps",
+              "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
+  if (attachbit) want_holding_forces();
   if (tolerance > 0.0 && solver == Solver::SUBSTEPS)
     args.fail("tolerance", std::to_string(tolerance),
               "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
 }
 
-void FixPBDCloth::check_pins()
+// group of the vertices that something else moves
+
+int FixPBDCloth::read_held(ArgReader &args, const std::string &keyword)
 {
-  if (!share_atoms(atom, groupbit, pinbit, world))
-    error->all(
-        FLERR,
-        "{}: the pin group has no vertex of group {}: choose pins among the cloth's vertices "
-        "or leave the pin keyword away",
-        label, group->names[igroup]);
+  const std::string name = args.word(keyword + " group");
+  const int held = group->find(name);
+  if (held < 0) args.fail(keyword + " group", name, "define it with the group command first");
+  if (!share_atoms(atom, groupbit, group->bitmask[held], world))
+    args.fail(
+        keyword + " group", name,
+        fmt::format("it has no vertex of group {}: choose among the cloth's vertices or leave "
+                    "the keyword away",
+                    group->names[igroup]));
+  return group->bitmask[held];
 }
 
 void FixPBDCloth::take_rest_positions(const char *property)
@@ -131,9 +149,22 @@ FixPBDCloth::~FixPBDCloth()
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
   memory->destroy(rest_x);
+  memory->destroy(hold);
 }
 
-int FixPBDCloth::setmask() { return INITIAL_INTEGRATE | POST_NEIGHBOR; }
+FixPBDCloth *FixPBDCloth::find(LAMMPS *lmp, const std::string &asking, const std::string &id)
+{
+  auto *fix = dynamic_cast<FixPBDCloth *>(lmp->modify->get_fix_by_id(id));
+  if (!fix)
+    lmp->error->all(FLERR, "{}: there is no fix pbd/cloth with the ID '{}': define it before",
+                    asking, id);
+  return fix;
+}
+
+int FixPBDCloth::setmask()
+{
+  return INITIAL_INTEGRATE | POST_NEIGHBOR | (attachbit ? PRE_REVERSE : 0);
+}
 
 /* ----------------------------------------------------------------------
    the mesh and what follows from it
@@ -142,6 +173,7 @@ int FixPBDCloth::setmask() { return INITIAL_INTEGRATE | POST_NEIGHBOR; }
 void FixPBDCloth::init()
 {
   check_overlap();
+  check_order();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
@@ -159,6 +191,26 @@ void FixPBDCloth::check_overlap()
       error->all(FLERR,
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
+  }
+}
+
+// The cloth follows where the held vertices have gone in the same step.
+
+void FixPBDCloth::check_order()
+{
+  bool behind = false;
+  for (const Fix *other : modify->get_fix_list()) {
+    if (behind && other->time_integrate) {
+      int mine = 0, any = 0;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & groupbit && is_held(i) && atom->mask[i] & other->groupbit) mine = 1;
+      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+      if (any)
+        error->all(FLERR,
+                   "{}: fix {} {} moves held vertices and is defined behind: define it before",
+                   label, other->id, other->style);
+    }
+    behind = behind || other == this;
   }
 }
 
@@ -284,13 +336,20 @@ void FixPBDCloth::post_neighbor()
   halo.connect(this);
 
   std::vector<double> w(halo.n_slots());
-  for (int s = 0; s < halo.n_owned(); s++) w[s] = inverse_mass(halo.atom_of(s));
+  attached.clear();
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    w[s] = atom->mask[i] & pinbit ? 0.0 : 1.0 / atom_mass(atom, i);
+    if (atom->mask[i] & attachbit) attached.push_back(s);
+  }
   halo.forward(ALL, w);
   const std::size_t n = halo.n_slots() + 1;    // and the idle one
   p.assign(n, {});
   for (int s = 0; s < halo.n_slots(); s++) p[s].w = w[s];
   start = p;
   v = p;
+  kick = w;
+  for (int s : attached) kick[s] = 0.0;
   change.assign(solver == Solver::JACOBI ? n : 0, {});
 }
 
@@ -324,7 +383,7 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
       std::array<int, N> slots;
       int viewer = -1;
       for (std::size_t q = 0; q < N && (viewer < 0 || viewer == s); q++) {
-        slots[q] = slot_of_vertex(i, elements.vertices[m][q]);
+        slots[q] = halo.slot_of(mesh.image_here(elements.vertices[m][q], i));
         if (viewer < 0 && !halo.is_ghost(slots[q])) viewer = slots[q];
       }
       if (viewer != s) continue;
@@ -349,20 +408,6 @@ void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
   }
 }
 
-// slot of the image of a mesh vertex that is nearest to atom i
-
-int FixPBDCloth::slot_of_vertex(int i, int vertex)
-{
-  const int j = mesh.image_near(vertex, i);
-  if (j < 0)
-    error->one(
-        FLERR,
-        "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
-        "'comm_modify cutoff' to the size of two edges",
-        label, mesh.ids[vertex], atom->tag[i]);
-  return halo.slot_of(j);
-}
-
 void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
 {
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) {
@@ -377,10 +422,11 @@ void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
   }
 }
 
+bool FixPBDCloth::is_held(int i) const { return atom->mask[i] & (pinbit | attachbit); }
+
 double FixPBDCloth::inverse_mass(int i) const
 {
-  if (atom->mask[i] & pinbit) return 0.0;
-  return 1.0 / atom_mass(atom, i);
+  return is_held(i) ? 0.0 : 1.0 / atom_mass(atom, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -390,23 +436,43 @@ double FixPBDCloth::inverse_mass(int i) const
 void FixPBDCloth::initial_integrate(int)
 {
   load();
+  if (hold) start_pulls();
   for (int n = 0; n < substeps(); n++) substep(n);
+  if (hold) let_bodies_feel();
   store();
   remembered = false;
   started = true;
 }
 
-// A pin is on its way from where its velocity says that it was to where it is.
+// A held vertex is on its way from where its velocity says that it was to where it is.
 
 void FixPBDCloth::load()
 {
   for (int s = 0; s < halo.n_owned(); s++) {
     const double *x = atom->x[halo.atom_of(s)], *u = atom->v[halo.atom_of(s)];
-    const double back = p[s].w == 0.0 ? update->dt : 0.0;
+    const double back = kick[s] == 0.0 ? update->dt : 0.0;
     start[s] = {x[0] - back * u[0], x[1] - back * u[1], x[2] - back * u[2], p[s].w};
     v[s] = {u[0], u[1], u[2], p[s].w};
   }
+  for (int s : attached) load_attached(s);
   if (from_start) halo.forward(ALL, start.data(), true);
+}
+
+// An attached vertex starts where the solver left it and goes with its body, but for the part of
+// the gap to its place there that it closes.
+
+void FixPBDCloth::load_attached(int s)
+{
+  const double *gap = hold[halo.atom_of(s)] + GAP;
+  start[s] = {start[s].x - gap[0], start[s].y - gap[1], start[s].z - gap[2], p[s].w};
+  v[s] = velocity_of_attached(s);
+}
+
+Vertex FixPBDCloth::velocity_of_attached(int s) const
+{
+  const double *u = atom->v[halo.atom_of(s)], *gap = hold[halo.atom_of(s)] + GAP;
+  const double by = CLOSED / update->dt;
+  return {u[0] + by * gap[0], u[1] + by * gap[1], u[2] + by * gap[2], p[s].w};
 }
 
 void FixPBDCloth::substep(int n)
@@ -416,7 +482,7 @@ void FixPBDCloth::substep(int n)
   const double dtf = (from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v;
   if (damping > 0.0) damp();    // before the forces: weight is not damped
   for (int s = 0; s < halo.n_owned(); s++) {
-    const double *f = atom->f[halo.atom_of(s)], by = dtf * p[s].w;
+    const double *f = atom->f[halo.atom_of(s)], by = dtf * kick[s];
     v[s].x += by * f[0];
     v[s].y += by * f[1];
     v[s].z += by * f[2];
@@ -433,6 +499,10 @@ void FixPBDCloth::substep(int n)
   halo.forward(ALL, p.data(), true);
 
   project_all(dt);
+  if (hold) {
+    add_pull_on_pins(distance);
+    add_pull_on_pins(bending);
+  }
   const double inv_dt = 1.0 / dt;
   for (int s = 0; s < halo.n_owned(); s++) {
     if (p[s].w == 0.0) continue;
@@ -495,15 +565,15 @@ void FixPBDCloth::jacobi(const ClothState &state)
   halo.forward(ALL, p.data(), true);
 }
 
-// What the vertices gained beyond the external forces came from the pins.
+// What the free vertices gained beyond the external forces came from those that are held.
 
 void FixPBDCloth::store()
 {
   Vec3 gained = Vec3::Zero(), external = Vec3::Zero();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
-    if (p[s].w == 0.0) continue;
+    if (!(atom->mask[i] & attachbit)) external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
+    if (kick[s] == 0.0) continue;
     const std::array<double, 3> velocity{v[s].x, v[s].y, v[s].z}, place{p[s].x, p[s].y, p[s].z};
     for (int d = 0; d < 3; d++) {
       gained[d] += (velocity[d] - atom->v[i][d]) / p[s].w;
@@ -511,12 +581,71 @@ void FixPBDCloth::store()
       atom->x[i][d] = place[d];
     }
   }
-  const Vec3 from_pins = gained / (update->dt * force->ftm2v) - external;
-  for (int d = 0; d < 3; d++) pin_force[d] = from_pins[d];
+  const Vec3 from_holders = gained / (update->dt * force->ftm2v) - external;
+  for (int d = 0; d < 3; d++) holding[d] = from_holders[d];
 }
 
 /* ----------------------------------------------------------------------
-   output: force of the pins on the cloth (x, y, z), largest edge strain, residual, sweeps,
+   pull of the cloth on what holds its vertices
+------------------------------------------------------------------------- */
+
+void FixPBDCloth::want_holding_forces()
+{
+  if (hold) return;
+  memory->create(hold, atom->nmax, HOLD, "pbd/cloth:hold");
+  std::fill_n(hold[0], HOLD * atom->nmax, 0.0);
+}
+
+// A pin carries what acts on it, in addition to the pull of its constraints.
+
+void FixPBDCloth::start_pulls()
+{
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    for (int d = 0; d < 3; d++)
+      if (p[s].w == 0.0) hold[i][d] = atom->f[i][d];
+  }
+}
+
+template <std::size_t N> void FixPBDCloth::add_pull_on_pins(const Constraints<N> &c)
+{
+  const double dt = update->dt / substeps();
+  const double by = 1.0 / (dt * dt * force->ftm2v * substeps());
+  for_each_held(c, p.data(), from_start ? start.data() : nullptr, [&](int s, const Vec3 &gradient) {
+    if (!halo.is_ghost(s))
+      for (int d = 0; d < 3; d++) hold[halo.atom_of(s)][d] += by * gradient[d];
+  });
+}
+
+// An attached vertex took part with its own mass: what it gained is the body's, from now on.
+
+void FixPBDCloth::let_bodies_feel()
+{
+  for (int s : attached) {
+    const int i = halo.atom_of(s);
+    const double by = 1.0 / (p[s].w * update->dt * force->ftm2v);
+    const Vertex was = velocity_of_attached(s);
+    const std::array<double, 6> now{by * (v[s].x - was.x),  by * (v[s].y - was.y),
+                                    by * (v[s].z - was.z),  atom->x[i][0] - p[s].x,
+                                    atom->x[i][1] - p[s].y, atom->x[i][2] - p[s].z};
+    std::copy(now.begin(), now.end(), hold[i]);
+  }
+}
+
+void FixPBDCloth::pre_reverse(int, int)
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && atom->mask[i] & attachbit)
+      for (int d = 0; d < 3; d++) atom->f[i][d] += hold[i][d];
+}
+
+Eigen::Vector3d FixPBDCloth::holding_force(int i) const
+{
+  return is_held(i) ? Vec3(-hold[i][0], -hold[i][1], -hold[i][2]) : Vec3::Zero();
+}
+
+/* ----------------------------------------------------------------------
+   output: force of the holders on the cloth (x, y, z), largest edge strain, residual, sweeps,
    elastic energy
 ------------------------------------------------------------------------- */
 
@@ -525,7 +654,7 @@ double FixPBDCloth::compute_vector(int n)
   if (n == 5) return substeps() * sweeps;
   if ((n == 4 || n == 6) && !remembered) remember();
   double mine = 0.0, all;
-  if (n < 3) mine = pin_force[n];
+  if (n < 3) mine = holding[n];
   if (n == 3) mine = largest_strain();
   if (n == 4) mine = last_residual;
   if (n == 6) mine = last_energy;
@@ -558,6 +687,12 @@ bool FixPBDCloth::converged() const
   return all < tolerance;
 }
 
+bool FixPBDCloth::has_strain(int m) const
+{
+  const PBDMaterial *material = material_of_edge(mesh.edges.type[m]);
+  return material && !material->no_rest && material->n_springs() > 0 && edge_rest[m] > 0.0;
+}
+
 double FixPBDCloth::largest_strain() const
 {
   double strain = 0.0;
@@ -565,12 +700,10 @@ double FixPBDCloth::largest_strain() const
     const int i = halo.atom_of(s), vertex = mesh.index_of(atom->tag[i]);
     for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
       const int m = mesh.edges.incident[k];
-      const PBDMaterial *material = material_of_edge(mesh.edges.type[m]);
-      if (!material || material->no_rest || material->n_springs() == 0 || edge_rest[m] == 0.0)
-        continue;
+      if (!has_strain(m)) continue;
       const auto &[a, b] = mesh.edges.vertices[m];
       const int j = mesh.image_near(a == vertex ? b : a, i);
-      if (j < 0 || (inverse_mass(i) == 0.0 && inverse_mass(j) == 0.0)) continue;
+      if (j < 0 || (is_held(i) && is_held(j))) continue;
       const Vec3 edge(atom->x[i][0] - atom->x[j][0], atom->x[i][1] - atom->x[j][1],
                       atom->x[i][2] - atom->x[j][2]);
       strain = std::max(strain, std::fabs(edge.norm() / edge_rest[m] - 1.0));
@@ -594,49 +727,59 @@ void FixPBDCloth::unpack_forward_comm(int n, int first, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   rest positions travel with their vertices
+   rest positions, and holds where they are wanted, travel with their vertices
 ------------------------------------------------------------------------- */
 
-void FixPBDCloth::grow_arrays(int nmax) { memory->grow(rest_x, nmax, 3, "pbd/cloth:rest"); }
+void FixPBDCloth::grow_arrays(int nmax)
+{
+  memory->grow(rest_x, nmax, 3, "pbd/cloth:rest");
+  if (hold) memory->grow(hold, nmax, HOLD, "pbd/cloth:hold");
+}
 
-void FixPBDCloth::copy_arrays(int i, int j, int) { std::copy(rest_x[i], rest_x[i] + 3, rest_x[j]); }
+void FixPBDCloth::copy_arrays(int i, int j, int)
+{
+  std::copy(rest_x[i], rest_x[i] + 3, rest_x[j]);
+  if (hold) std::copy(hold[i], hold[i] + HOLD, hold[j]);
+}
 
 void FixPBDCloth::set_arrays(int i)
 {
   std::fill(rest_x[i], rest_x[i] + 3, std::numeric_limits<double>::quiet_NaN());
+  if (hold) std::fill(hold[i], hold[i] + HOLD, 0.0);
 }
 
 int FixPBDCloth::pack_exchange(int i, double *buf)
 {
   std::copy(rest_x[i], rest_x[i] + 3, buf);
-  return 3;
+  if (hold) std::copy(hold[i], hold[i] + HOLD, buf + 3);
+  return hold ? 3 + HOLD : 3;
 }
 
 int FixPBDCloth::unpack_exchange(int i, double *buf)
 {
   std::copy(buf, buf + 3, rest_x[i]);
-  return 3;
+  if (hold) std::copy(buf + 3, buf + 3 + HOLD, hold[i]);
+  return hold ? 3 + HOLD : 3;
 }
 
 // the first value of a restart record is its length
 
 int FixPBDCloth::pack_restart(int i, double *buf)
 {
-  buf[0] = 4;
-  std::copy(rest_x[i], rest_x[i] + 3, buf + 1);
-  return 4;
+  buf[0] = 1 + pack_exchange(i, buf + 1);
+  return static_cast<int>(buf[0]);
 }
 
 void FixPBDCloth::unpack_restart(int i, int nth)
 {
-  const double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  std::copy(extra + m + 1, extra + m + 4, rest_x[i]);
+  const double *record = atom->extra[i];
+  for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
+  std::copy(record + 1, record + 4, rest_x[i]);
+  if (hold && *record > 4) std::copy(record + 4, record + 4 + HOLD, hold[i]);
 }
 
-int FixPBDCloth::size_restart(int) { return 4; }
-int FixPBDCloth::maxsize_restart() { return 4; }
+int FixPBDCloth::size_restart(int) { return maxsize_restart(); }
+int FixPBDCloth::maxsize_restart() { return hold ? 4 + HOLD : 4; }
 
 void FixPBDCloth::write_restart(FILE *fp)
 {
@@ -650,7 +793,8 @@ void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(
 
 double FixPBDCloth::memory_usage()
 {
-  return 3.0 * sizeof(double) * atom->nmax + distance.bytes() + bending.bytes() +
+  return (hold ? 3.0 + HOLD : 3.0) * sizeof(double) * atom->nmax + distance.bytes() +
+      bending.bytes() +
       static_cast<double>(sizeof(Vertex)) *
       (p.capacity() + v.capacity() + start.capacity() + change.capacity()) +
       halo.memory_usage();

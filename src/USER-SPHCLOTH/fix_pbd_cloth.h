@@ -33,6 +33,8 @@ class FixPBDCloth : public Fix {
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;
   void initial_integrate(int) override;
+  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
+  void pre_reverse(int, int) override;
   double compute_vector(int) override;
 
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -50,8 +52,21 @@ class FixPBDCloth : public Fix {
   void restart(char *) override;
   double memory_usage() override;
 
+  // the fix of that ID, or an error in the name of the style that asks
+  static FixPBDCloth *find(LAMMPS *, const std::string &asking, const std::string &id);
+
   const ClothTopology &topology() const { return mesh; }
-  double inverse_mass(int owned_atom) const;    // 0 for a pinned vertex
+  double inverse_mass(int owned_atom) const;    // 0 for a vertex that something else moves
+
+  // of edge and hinge m of the topology; an edge without a length or a constraint has no strain
+  double rest_length(int m) const { return edge_rest[m]; }
+  double rest_angle(int m) const { return hinge_rest[m]; }
+  bool has_strain(int m) const;
+
+  // force of an atom's holder on the cloth in the last step: 0 for a free vertex.  Known from the
+  // next step on if it is asked for before a run.
+  void want_holding_forces();
+  Eigen::Vector3d holding_force(int owned_atom) const;
 
  private:
   using Vec3 = Eigen::Vector3d;
@@ -67,8 +82,10 @@ class FixPBDCloth : public Fix {
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
   int pinbit;    // 0: nothing is pinned
+  int attachbit;    // vertices that another fix integrates, with the pull of the cloth on them
   double damping;    // rate at which stretching motion decays, 1/time
   double **rest_x;    // rest position of each vertex, unwrapped
+  double **hold;    // what the cloth does to the holder of a vertex; null: not wanted
   ClothTopology mesh;
   VertexHalo halo;
 
@@ -85,7 +102,9 @@ class FixPBDCloth : public Fix {
   sphcloth::Constraints<2> distance;
   sphcloth::Constraints<4> bending;
   sphcloth::Vertices p, v, start, change;    // by slot, and one idle vertex behind
-  double pin_force[3];    // of the last step, this rank's part
+  std::vector<int> attached;    // slots
+  std::vector<double> kick;    // inverse mass to the forces: 0 also for attached vertices
+  double holding[3];    // force of the holders in the last step, this rank's part
   int sweeps;    // of the last step
   bool remembered;    // the next two are of the last step, this rank's part
   double last_residual, last_energy;
@@ -94,7 +113,9 @@ class FixPBDCloth : public Fix {
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
   void check_overlap();
-  void check_pins();
+  int read_held(ArgReader &, const std::string &keyword);
+  bool is_held(int atom) const;
+  void check_order();
   void check_styles();
   const PBDMaterial *material_of_edge(int type) const;
   const PBDMaterial *material_of_hinge(int type) const;
@@ -106,16 +127,20 @@ class FixPBDCloth : public Fix {
   void collect(sphcloth::Constraints<N> &, const ClothElements<N> &, const std::vector<int> &colour,
                int n_colours, int layers, const std::vector<double> &rest, int n_types, MaterialOf);
   double share_of(const int *vertices, int n) const;
-  int slot_of_vertex(int, int);
   void ask_for_ghosts(const std::vector<int> &);
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
   void load();
+  void load_attached(int slot);
+  sphcloth::Vertex velocity_of_attached(int slot) const;
   void substep(int n);
   void damp();
   void project_all(double dt);
   void gauss_seidel(const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   void store();
+  void start_pulls();
+  template <std::size_t N> void add_pull_on_pins(const sphcloth::Constraints<N> &);
+  void let_bodies_feel();
   double residual() const;
   bool converged() const;
   void remember();

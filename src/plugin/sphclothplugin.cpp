@@ -6,6 +6,8 @@
 #include "library.h"
 
 #include "bond_pbd.h"
+#include "compute_pbd_atom.h"
+#include "compute_pbd_local.h"
 #include "compute_sph_atom.h"
 #include "create_cloth.h"
 #include "dihedral_pbd.h"
@@ -92,6 +94,10 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "sph/shift", "particle shifting");
   plugin.creator.v2 = &create_with_args<FixWallSPH>;
   add("fix", "wall/sph", "plane walls without particles");
+  plugin.creator.v2 = &create_with_args<ComputePBDAtom>;
+  add("compute", "pbd/atom", "strain, curvature and holding forces of cloth by vertex");
+  plugin.creator.v2 = &create_with_args<ComputePBDLocal>;
+  add("compute", "pbd/local", "strain of edges and angles of hinges of cloth");
   plugin.creator.v2 = &create_with_args<ComputeSPHAtom>;
   add("compute", "sph/atom", "per-atom quantities of SPH particles");
   plugin.creator.v1 = &create<SPHWrite>;

@@ -1,5 +1,7 @@
 #include "cloth_solver.h"
 
+#include <algorithm>
+
 namespace sphcloth {
 
 namespace {
@@ -221,6 +223,38 @@ namespace {
   }
 
 }    // namespace
+
+void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)
+{
+  for (int m = 0; m < c.size(); m++) {
+    const int one = c.slot[0][m], two = c.slot[1][m];
+    if (c.lambda[m] == 0.0 || (p[one].w > 0.0 && p[two].w > 0.0)) continue;
+    Vec3 edge = place(p[one]) - place(p[two]);
+    if (start) {
+      const Vec3 before = place(start[one]) - place(start[two]);
+      if (!has_turned(edge.normalized().dot(before), before.norm())) edge = before;
+    }
+    const Vec3 pull = c.lambda[m] * edge.normalized();
+    if (p[one].w == 0.0) on(one, pull);
+    if (p[two].w == 0.0) on(two, -pull);
+  }
+}
+
+void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, const OnHeld &on)
+{
+  for (int m = 0; m < c.size(); m++) {
+    const std::array<int, 4> s{c.slot[0][m], c.slot[1][m], c.slot[2][m], c.slot[3][m]};
+    if (c.lambda[m] == 0.0 || std::all_of(s.begin(), s.end(), [&](int q) { return p[q].w > 0.0; }))
+      continue;
+    const Vec3 e1 = place(p[s[1]]), a = place(p[s[0]]) - e1, e = place(p[s[2]]) - e1,
+               b = place(p[s[3]]) - e1;
+    const HingeShape h = hinge_shape(a[0], a[1], a[2], e[0], e[1], e[2], b[0], b[1], b[2]);
+    const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
+    const std::array<Vec3, 4> gradient{ga, -h.a1 * ga - h.b1 * gb, -h.a2 * ga - h.b2 * gb, gb};
+    for (int q = 0; q < 4; q++)
+      if (p[s[q]].w == 0.0) on(s[q], c.lambda[m] * gradient[q]);
+  }
+}
 
 double residual(const Constraints<2> &c, const Vertex *p, double inv_dt_sq, double length)
 {

@@ -8,6 +8,7 @@
 #define SPHCLOTH_CORE_CLOTH_SOLVER_H
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "constraints.h"
@@ -93,6 +94,12 @@ void damp(const Constraints<2> &, int colour, const Vertex *p, Vertex *v, double
 // full and are not slack.  Of lengths it is relative, to the rest length or to `length` if that is 0.
 double residual(const Constraints<2> &, const Vertex *p, double inv_dt_sq, double length);
 double residual(const Constraints<4> &, const Vertex *p, double inv_dt_sq);
+
+// lambda grad C on every vertex with w = 0: on(slot, vector), once for each constraint that it is in.
+// With `start` edges have the directions that they had there.
+using OnHeld = std::function<void(int, const Vec3 &)>;
+void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
+void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 
 // C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
 double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);

@@ -70,9 +70,17 @@ SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, doub
   return {along * dx, along * dy, along * dz, step};
 }
 
+// Has an edge turned by more than 60 degrees since the start of the step, where its length was
+// `before`?  cosine: of the angle, times that length.
+
+SPHCLOTH_INLINE bool has_turned(double cosine, double before)
+{
+  return !(cosine >= 0.5 * before && before > 0.0);
+}
+
 // The same along the direction (sx, sy, sz) that the edge had at the start of the step, as SHAKE
-// does: second order in time.  The length changes with the cosine between the two; below 1/2 the
-// present direction is taken.
+// does: second order in time.  The length changes with the cosine between the two; where the edge has
+// turned the present direction is taken.
 
 SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz, double sx,
                                                  double sy, double sz, double w, double rest,
@@ -82,7 +90,7 @@ SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz
   const double before = std::sqrt(sx * sx + sy * sy + sz * sz);
   const bool apart = length > 0.0;
   const double cosine = (dx * sx + dy * sy + dz * sz) / (apart ? length : 1.0);
-  const bool turned = !(cosine >= 0.5 * before && before > 0.0);
+  const bool turned = has_turned(cosine, before);
   const double inv = 1.0 / (turned ? (apart ? length : 1.0) : before);
   const double nx = inv * (turned ? dx : sx), ny = inv * (turned ? dy : sy),
                nz = inv * (turned ? dz : sz);

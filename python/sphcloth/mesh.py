@@ -14,16 +14,15 @@ from numpy.typing import NDArray
 from sphcloth.errors import UserError
 from sphcloth.trajectory import Frame
 
-# sections for 'fix property/atom' that 'sphcloth mesh' puts at the end of a data file
-MASS_SECTION, REST_SECTION = "VertexMass", "Rest"
+# section for 'fix property/atom' that 'sphcloth mesh' puts at the end of a data file
+MASS_SECTION = "VertexMass"
 
 
 class _Parser(DATAParser):
-    """Reads a data file up to the sections that MDAnalysis does not know."""
+    """Reads a data file up to the section that MDAnalysis does not know."""
 
     def iterdata(self) -> Iterator[str]:
-        own = (MASS_SECTION, REST_SECTION)
-        return itertools.takewhile(lambda line: line not in own, super().iterdata())
+        return itertools.takewhile(lambda line: line != MASS_SECTION, super().iterdata())
 
 
 def _sections(data: Path) -> dict[str, list[str]]:

@@ -137,7 +137,7 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     start, end = before.select(fluid_type), after.select(fluid_type)
     ids, first, second = np.intersect1d(start.ids, end.ids, True, return_indices=True)
     here = start.positions[first]
-    there = here + _nearest_image(end.positions[second] - here, before.box)
+    there = here + before.shortest(end.positions[second] - here)
     corners = np.stack([mesh.corners(before), mesh.corners(after)])
     paths = np.stack([here, there])
     crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
@@ -147,12 +147,6 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
         points.append(where)
     found = np.concatenate(crossed)
     return Crossings(found, np.full(len(found), after.step), np.concatenate(points))
-
-
-def _nearest_image(displacements: NDArray, box: NDArray) -> NDArray:
-    """Undo a wrap around a periodic box: no particle moves half the box between two frames."""
-    lengths = box[1] - box[0]
-    return displacements - lengths * np.round(displacements / lengths)
 
 
 def _net_passes(paths: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:

@@ -45,7 +45,7 @@ class Frame:
         box: lower and upper corner of the (bounding) box, shape (2, 3).
         columns: dump column -> float64 values, shape (N,), as written in the file.
         periodic: whether each of the three directions is periodic.
-        is_tilted: whether the box is not rectangular.
+        tilt: xy, xz and yz of the box, 0 if it is rectangular.
     """
 
     step: int
@@ -53,7 +53,7 @@ class Frame:
     box: NDArray[np.float64]
     columns: dict[str, NDArray[np.float64]]
     periodic: tuple[bool, ...] = (False, False, False)
-    is_tilted: bool = False
+    tilt: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def __len__(self) -> int:
         return len(self.columns["id"])
@@ -77,6 +77,24 @@ class Frame:
     def velocities(self) -> NDArray[np.float64]:
         """Velocities, shape (N, 3); UserError if the dump has none."""
         return self.vectors("vx", "vy", "vz")
+
+    @cached_property
+    def cell(self) -> NDArray[np.float64]:
+        """The edges of the box that start at its lower corner, one in each row, shape (3, 3)."""
+        xy, xz, yz = self.tilt
+        # the bounding box is larger by what the tilted edges reach beyond the others
+        beyond = np.array([np.ptp([0, xy, xz, xy + xz]), abs(yz), 0])
+        cell = np.diag(self.box[1] - self.box[0] - beyond)
+        cell[[1, 2, 2], [0, 0, 1]] = self.tilt
+        return cell
+
+    def shortest(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return displacements, shape (N, 3), without the periodic wraps that are in them.
+
+        They must be shorter than half the distance of opposite faces of the box.
+        """
+        wraps = np.round(displacements @ np.linalg.inv(self.cell)) * self.periodic
+        return displacements - wraps @ self.cell
 
     def select(self, atom_type: int) -> Frame:
         """Return the atoms of one type as a frame of their own."""
@@ -103,7 +121,7 @@ class _Entry:
     box: NDArray[np.float64]
     columns: list[str]
     periodic: tuple[bool, ...]
-    is_tilted: bool
+    tilt: tuple[float, ...]
 
 
 class Trajectory(Sequence[Frame]):
@@ -141,7 +159,7 @@ class Trajectory(Sequence[Frame]):
         entry = self._entries[index]
         columns = _read_columns(self.path, entry)
         time = float(self.times[index])
-        return Frame(entry.step, time, entry.box, columns, entry.periodic, entry.is_tilted)
+        return Frame(entry.step, time, entry.box, columns, entry.periodic, entry.tilt)
 
 
 def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
@@ -154,12 +172,13 @@ def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
         if not is_whole or _skip_lines(file, natoms) < natoms:
             warnings.warn(f"{path}: the frame at line {line} is cut off: left out", stacklevel=3)
             return
-        box = np.array([bounds.split()[:2] for bounds in header[5:8]], dtype=np.float64).T
+        bounds = np.array([row.split() for row in header[5:8]], dtype=np.float64)
         end = file.tell()
         columns, about_box = header[8].split()[2:], header[4].split()[3:]
         periodic = tuple(flags == "pp" for flags in about_box[-3:])
-        size, is_tilted = end - offset, "xy" in about_box
-        yield _Entry(offset, size, line, int(header[1]), box, columns, periodic, is_tilted)
+        tilt = tuple(bounds[:, 2]) if "xy" in about_box else (0.0, 0.0, 0.0)
+        size, box = end - offset, bounds[:, :2].T
+        yield _Entry(offset, size, line, int(header[1]), box, columns, periodic, tilt)
         line, offset = line + _HEADER_LINES + natoms, end
 
 

@@ -22,8 +22,8 @@ static const std::string STYLE = "create_cloth";
 
 CreateCloth::CreateCloth(LAMMPS *lmp) :
     Command(lmp), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
-    axis_v(Vec3::UnitY()), length(0.0), width(0.0), spacing(0.0), pattern(Pattern::DIAGONAL),
-    bond_type(1), shear_type(0), triangle_type(1), hinge_type(1), groupbit(0), first_id(0)
+    axis_v(Vec3::UnitY()), length(0.0), width(0.0), radius(0.0), spacing(0.0), bond_type(1),
+    shear_type(0), triangle_type(1), hinge_type(1), groupbit(0), first_id(0)
 {
 }
 
@@ -46,7 +46,8 @@ void CreateCloth::command(int narg, char **arg)
   areal_mass = args.positive("mass per area");
   read_options(args);
 
-  sheet = make_sheet(pattern, length, width, spacing);
+  sheet = radius > 0.0 ? make_disc(radius, spacing)
+                       : make_sheet(pattern.value_or(Pattern::DIAGONAL), length, width, spacing);
   mesh = mesh_topology(sheet.triangles);
   check_types();
   check_box();
@@ -69,7 +70,9 @@ void CreateCloth::read_options(ArgReader &args)
     else if (keyword == "size") {
       length = args.positive("size, first side");
       width = args.positive("size, second side");
-    } else if (keyword == "spacing")
+    } else if (keyword == "disc")
+      radius = args.positive("disc, radius");
+    else if (keyword == "spacing")
       spacing = args.positive(keyword);
     else if (keyword == "axes") {
       axis_u = read_vector(args, "axes, first");
@@ -96,18 +99,35 @@ void CreateCloth::read_options(ArgReader &args)
     } else
       args.unknown(
           keyword,
-          "center, size, spacing, axes, pattern, bond, shear, triangle, hinge, group, pin");
+          "center, size, disc, spacing, axes, pattern, bond, shear, triangle, hinge, group, pin");
   }
-  if (length == 0.0) error->all(FLERR, "{}: the size is missing: add 'size LX LY'", STYLE);
-  if (spacing == 0.0) error->all(FLERR, "{}: the spacing is missing: add 'spacing D'", STYLE);
-  if (spacing > std::min(length, width))
-    error->all(FLERR, "{}: spacing {} is larger than the sheet: lower it", STYLE, spacing);
+  check_shape();
   if (axis_u.cross(axis_v).norm() < 1e-6 * axis_u.norm() * axis_v.norm() || axis_u.norm() == 0.0)
     error->all(FLERR, "{}: the two axes are parallel or zero: give two directions in the sheet",
                STYLE);
   axis_u.normalize();
   axis_v = (axis_v - axis_v.dot(axis_u) * axis_u).normalized();
   if (!shear_type) shear_type = bond_type;
+}
+
+void CreateCloth::check_shape() const
+{
+  const bool is_disc = radius > 0.0;
+  if (length == 0.0 && !is_disc)
+    error->all(FLERR, "{}: the size is missing: add 'size LX LY', or 'disc R' for a round sheet",
+               STYLE);
+  if (length > 0.0 && is_disc)
+    error->all(FLERR, "{}: the sheet has both size {} {} and disc {}: remove one of them", STYLE,
+               length, width, radius);
+  if (is_disc && (pattern || shear_type))
+    error->all(FLERR, "{}: {} is about the cells of a rectangle, and disc {} has none: remove {}",
+               STYLE, pattern ? "pattern" : "shear", radius, pattern ? "pattern" : "shear");
+  if (spacing == 0.0) error->all(FLERR, "{}: the spacing is missing: add 'spacing D'", STYLE);
+  if (is_disc && spacing > radius)
+    error->all(FLERR, "{}: spacing {} is larger than the radius {}: lower it", STYLE, spacing,
+               radius);
+  if (!is_disc && spacing > std::min(length, width))
+    error->all(FLERR, "{}: spacing {} is larger than the sheet: lower it", STYLE, spacing);
 }
 
 Pattern CreateCloth::read_pattern(ArgReader &args) const
@@ -233,14 +253,6 @@ void CreateCloth::set_masses(int before)
   }
 }
 
-int CreateCloth::bond_type_of(const std::array<int, 2> &e) const
-{
-  if (pattern == Pattern::EQUILATERAL) return bond_type;
-  const Eigen::Vector2d d = sheet.vertices[e[1]] - sheet.vertices[e[0]];
-  const bool along_axis = d.cwiseAbs().minCoeff() < 1e-6 * spacing;
-  return along_axis ? bond_type : shear_type;
-}
-
 // Each element is stored with one of its atoms, or with all of them if newton_bond is off.
 
 void CreateCloth::create_topology()
@@ -255,7 +267,7 @@ void CreateCloth::create_topology()
       const int i = owned(e[k]);
       if (i < 0) continue;
       const int m = atom->num_bond[i]++;
-      atom->bond_type[i][m] = bond_type_of(e);
+      atom->bond_type[i][m] = is_diagonal_of_cell(sheet, e) ? shear_type : bond_type;
       atom->bond_atom[i][m] = first_id + e[1 - k];
     }
   for (const auto &t : sheet.triangles)

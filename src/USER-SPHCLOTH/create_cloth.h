@@ -1,4 +1,4 @@
-// create_cloth: a rectangular sheet of vertices, bonds, triangles and hinges.
+// create_cloth: a rectangular or round sheet of vertices, bonds, triangles and hinges.
 
 #ifdef COMMAND_CLASS
 // clang-format off
@@ -13,6 +13,7 @@ CommandStyle(create_cloth,CreateCloth);
 
 #include "core/sheet.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +33,8 @@ class CreateCloth : public Command {
   int itype;
   double areal_mass;
   Vec3 centre, axis_u, axis_v;
-  double length, width, spacing;
-  sphcloth::Pattern pattern;
+  double length, width, radius, spacing;    // either length and width or radius
+  std::optional<sphcloth::Pattern> pattern;
   int bond_type, shear_type, triangle_type, hinge_type;
   int groupbit;
   std::vector<std::pair<class Region *, int>> pins;    // region, group bit
@@ -46,11 +47,11 @@ class CreateCloth : public Command {
   sphcloth::Pattern read_pattern(ArgReader &) const;
   Vec3 read_vector(ArgReader &, const std::string &) const;
   int read_group(ArgReader &) const;
+  void check_shape() const;
   void check_types() const;
   void check_box() const;
   void check_capacity() const;
   Vec3 place(int) const;
-  int bond_type_of(const std::array<int, 2> &) const;
   void create_vertices();
   void set_masses(int);
   void create_topology();

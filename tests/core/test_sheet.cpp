@@ -37,6 +37,46 @@ CASE("sheet: corners where they belong, edges of the right length")
   CHECK(full > static_cast<int>(mesh.edges.size()) * 9 / 10);    // the cut ones are at the border
 }
 
+CASE("disc: counts of rings, an area once, the border on the circle, every inner edge a hinge")
+{
+  for (double radius : {1.0, 1.3, 1.7, 2.2, 3.1, 5.0, 9.7, 20.0}) {
+    const Sheet disc = make_disc(radius, 1.0);
+    const MeshTopology mesh = mesh_topology(disc.triangles);
+    const auto v = disc.vertices.size(), e = mesh.edges.size(), t = disc.triangles.size();
+    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(t / 6.0)));
+    CHECK(t == 6 * n * n && v == 1 + 3 * n * (n + 1));
+    CHECK(v + t == e + 1);
+    CHECK(3 * t == e + mesh.hinges.size());
+    const std::vector<double> area = vertex_areas(disc);
+    CHECK_NEAR(std::accumulate(area.begin(), area.end(), 0.0),
+               3.0 * n * radius * radius * std::sin(PI / (3.0 * n)), 1e-12 * radius * radius);
+    for (std::size_t k = v - 6 * n; k < v; k++)
+      CHECK_NEAR(disc.vertices[k].norm(), radius, 1e-15 * radius);
+    for (const auto &c : disc.triangles) {
+      const Eigen::Vector2d e1 = disc.vertices[c[1]] - disc.vertices[c[0]];
+      const Eigen::Vector2d e2 = disc.vertices[c[2]] - disc.vertices[c[0]];
+      CHECK(e1[0] * e2[1] - e1[1] * e2[0] > 0.0);
+    }
+  }
+}
+
+CASE("disc: edges of 0.68 to 1.41 of the spacing, six triangles at every inner vertex")
+{
+  for (double radius = 1.0; radius < 30.0; radius += 0.01) {
+    const Sheet disc = make_disc(radius, 1.0);
+    const MeshTopology mesh = mesh_topology(disc.triangles);
+    for (const auto &e : mesh.edges) {
+      const double length = (disc.vertices[e[0]] - disc.vertices[e[1]]).norm();
+      CHECK(length > (radius > 10.0 ? 0.86 : 0.68) && length < (radius > 10.0 ? 1.35 : 1.41));
+    }
+    std::vector<int> triangles_at(disc.vertices.size(), 0);
+    for (const auto &t : disc.triangles)
+      for (int v : t) triangles_at[v]++;
+    for (std::size_t v = 0; v < disc.vertices.size(); v++)
+      CHECK(disc.vertices[v].norm() > 0.999 * radius ? triangles_at[v] <= 3 : triangles_at[v] == 6);
+  }
+}
+
 CASE("colours: no two constraints of one colour share a vertex")
 {
   const Sheet sheet = make_sheet(Pattern::DIAGONAL, 1.0, 1.0, 0.05);

@@ -99,7 +99,7 @@ def make_frame(
     types = np.where(ids < first_fluid_id, 2, 1)
     values = [ids, types, *positions.T]
     columns = dict(zip(("id", "type", "x", "y", "z"), np.array(values, float), strict=True))
-    return Frame(step, 0.1 * step, np.array([[-50.0] * 3, [50.0] * 3]), columns)
+    return Frame(step, 0.1 * step, np.array([[-50.0] * 3, [50.0] * 3]), columns, (True,) * 3)
 
 
 def square_sheet(cells: int) -> tuple[ClothMesh, np.ndarray]:

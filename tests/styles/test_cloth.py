@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance
+from harness import by_id, instance, last_frame, run, write
 from scenes import HEADER
 
 BOX = """
@@ -84,6 +84,77 @@ def test_create_cloth_orientation_pins_and_bond_types():
         [np.ptp(x[b - 1, 0]) > 1e-9 and np.ptp(x[b - 1, 2]) > 1e-9 for b in bonds[:, 1:]]
     )
     assert np.array_equal(bonds[:, 0] == 2, diagonal)
+
+
+DISC = """
+fix mass all property/atom rmass ghost yes
+create_cloth 1 2.0 disc 0.5 spacing 0.1 center 0.1 0.2 0.3 axes 0 1 0 0 0 1 group cloth pin rim pins
+"""
+RIM = "region rim cylinder x 0.2 0.3 0.45 INF INF side out\n"
+
+
+@pytest.mark.parametrize("newton", ["on", "off"])
+def test_a_disc_is_round_and_has_its_mass(newton):
+    """Five rings: 6 k vertices at the radius k/5."""
+    lmp = instance()
+    lmp.commands_string(f"newton {newton}" + HEADER.format(boundary="p p p") + BOX + RIM + DISC)
+    counts = [lmp.get_natoms()]
+    counts += [lmp.extract_global(name) for name in ("nbonds", "nangles", "ndihedrals")]
+    assert counts == [91, 240, 150, 210]
+    x = by_id(lmp, "x") - [0.1, 0.2, 0.3]
+    assert np.ptp(x[:, 0]) == 0
+    radius = np.linalg.norm(x, axis=1)
+    assert radius == pytest.approx(np.repeat(np.arange(6) / 10, [1, 6, 12, 18, 24, 30]), rel=1e-14)
+    bonds = lmp.numpy.gather_bonds()[:, 1:] - 1
+    edges = np.linalg.norm(x[bonds[:, 1]] - x[bonds[:, 0]], axis=1)
+    assert edges.min() == pytest.approx(0.1) and 0.13 < edges.max() < 0.1 * np.hypot(1, np.pi / 3)
+    area = 15 * 0.25 * np.sin(np.pi / 15)  # of a regular polygon of 30 corners
+    assert by_id(lmp, "rmass").sum() == pytest.approx(2.0 * area, rel=1e-12)
+    corners = x[lmp.numpy.gather_angles()[:, 1:] - 1]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert normals[:, 0].min() > 0  # first axis times second
+    assert normals[:, 0].sum() / 2 == pytest.approx(area, rel=1e-12)
+    lmp.command("variable n equal count(pins)-count(pins,rim)+count(cloth,rim)")
+    assert lmp.extract_variable("n") == 30
+
+
+MAKE_DISC = (
+    "processors 1 ${n} 1"
+    + HEADER.format(boundary="p p p")
+    + BOX
+    + RIM
+    + DISC
+    + STYLES.format(k=1.0, bend=0.1)
+    + """
+write_dump all custom made${n}.txt id mass x y z modify sort id format float %.17g
+write_data made${n}.data nofix
+fix gravity all gravity 9.81 vector 1 0 0
+fix sheet cloth pbd/cloth pin pins
+timestep 1e-3
+run 50
+write_dump all custom fallen${n}.txt id x y z modify sort id format float %.17g
+"""
+)
+
+
+def elements(data, section):
+    """The bonds, angles or dihedrals of a data file as a sorted list."""
+    rows = data.read_text().split(f"\n{section}\n\n")[1].split("\n\n")[0].splitlines()
+    return sorted(row.split()[1:] for row in rows)
+
+
+def test_a_disc_does_not_depend_on_the_ranks(tmp_path):
+    script = write(tmp_path, MAKE_DISC)
+    for ranks in (1, 2):
+        run(script, ranks, n=ranks)
+    made, again = (last_frame(tmp_path / f"made{ranks}.txt") for ranks in (1, 2))
+    assert np.array_equal(made, again) and np.array_equal(made[:, 0], np.arange(1, 92))
+    for section in ("Bonds", "Angles", "Dihedrals"):
+        one, two = (elements(tmp_path / f"made{ranks}.data", section) for ranks in (1, 2))
+        assert one == two and len(one) > 100
+    fallen, again = (last_frame(tmp_path / f"fallen{ranks}.txt") for ranks in (1, 2))
+    assert np.abs(fallen - again).max() < 1e-12
+    assert np.ptp(fallen[:, 1]) > 1e-3
 
 
 def free_fall(t, steps):

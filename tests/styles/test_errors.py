@@ -288,8 +288,38 @@ CASES = [
     # create_cloth
     case("create: type", SHEET + "create_cloth 5 1.0", r"create_cloth: atom type is '5'"),
     case("create: mass", SHEET + "create_cloth 2 0", r"mass per area is '0'"),
-    case("create: size", SHEET + "create_cloth 2 1 spacing 0.1", r"size is missing"),
+    case(
+        "create: size",
+        SHEET + "create_cloth 2 1 spacing 0.1",
+        r"size is missing.*size LX LY.*disc R",
+    ),
     case("create: spacing", SHEET + "create_cloth 2 1 size 1 1", r"spacing is missing"),
+    case(
+        "create: size and disc",
+        SHEET + "create_cloth 2 1 size 1 1 disc 0.5 spacing 0.1",
+        r"create_cloth: .*both size 1 1 and disc 0.5: remove one",
+    ),
+    case("create: disc", SHEET + "create_cloth 2 1 disc -0.5", r"disc, radius is '-0.5'.*> 0"),
+    case(
+        "create: pattern of a disc",
+        SHEET + "create_cloth 2 1 disc 0.5 spacing 0.1 pattern square",
+        r"create_cloth: pattern is .*disc 0.5 .*remove pattern",
+    ),
+    case(
+        "create: shear of a disc",
+        SHEET + "create_cloth 2 1 disc 0.5 spacing 0.1 shear 1",
+        r"create_cloth: shear is .*disc 0.5 .*remove shear",
+    ),
+    case(
+        "create: coarse disc",
+        SHEET + "create_cloth 2 1 disc 0.5 spacing 0.6",
+        r"spacing 0.6 is larger than the radius 0.5: lower it",
+    ),
+    case(
+        "create: disc out of the box",
+        SHEET.replace("boundary p p p", "boundary f f f") + "create_cloth 2 1 disc 2 spacing 0.1",
+        r"sheet reaches out of the box",
+    ),
     case("create: coarse", SHEET + "create_cloth 2 1 size 1 1 spacing 3", r"spacing 3 is larger"),
     case(
         "create: pattern",

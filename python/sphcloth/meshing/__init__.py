@@ -8,7 +8,7 @@ from sphcloth.meshing.cloth import Cloth, Material, build_cloth
 from sphcloth.meshing.lammps_files import write_data, write_groups, write_molecule
 from sphcloth.meshing.load import read_surface
 from sphcloth.meshing.sequence import write_sequence
-from sphcloth.meshing.sewing import Seams, add_seam_bonds, weld
+from sphcloth.meshing.sewing import Seams, weld
 from sphcloth.meshing.surface import Surface
 
 __all__ = [
@@ -16,7 +16,6 @@ __all__ = [
     "Material",
     "Seams",
     "Surface",
-    "add_seam_bonds",
     "build_cloth",
     "read_surface",
     "weld",

@@ -47,7 +47,6 @@ class Cloth:
 
     Attributes:
         surface: positions and triangles, all wound in the same sense within a piece.
-        rest: rest positions, shape (V, 3); None if they are the positions.
         molecules: molecule ID of each vertex, from 1 in the order of the files, shape (V,).
         types: atom type of each vertex, shape (V,).
         masses: a third of the mass of the triangles around each vertex, shape (V,).
@@ -59,7 +58,6 @@ class Cloth:
     """
 
     surface: Surface
-    rest: NDArray[np.float64] | None
     molecules: NDArray[np.int64]
     types: NDArray[np.int64]
     masses: NDArray[np.float64]
@@ -68,6 +66,11 @@ class Cloth:
     dihedrals: NDArray[np.int64]
     pinned: NDArray[np.bool_]
     names: list[str] = field(default_factory=lambda: ["cloth"])
+
+    @property
+    def seams(self) -> NDArray[np.int64]:
+        """Type and two vertices of each seam bond, shape (S, 3)."""
+        return self.bonds[len(self.surface.edges) :]
 
     @property
     def type_counts(self) -> dict[str, int]:
@@ -111,7 +114,6 @@ def build_cloth(
     *,
     seams: NDArray[np.int64] | None = None,
     seam_type: int = 0,
-    rest: NDArray[np.float64] | None = None,
     pinned: NDArray[np.bool_] | None = None,
     pin_type: int | None = None,
     names: Sequence[str] = ("cloth",),
@@ -123,7 +125,6 @@ def build_cloth(
         materials: one for each part of the surface.
         seams: pairs of vertices that get a bond more, shape (S, 2).
         seam_type: bond type of the seams.
-        rest: rest positions, shape (V, 3), if they are not the positions.
         pinned: which vertices are held, shape (V,).
         pin_type: atom type of these, if of their own.
         names: name of each part.
@@ -150,7 +151,6 @@ def build_cloth(
         raise UserError("a vertex has no mass: the areas are too small for the number format")
     return Cloth(
         surface=surface,
-        rest=rest,
         molecules=vertex_part + 1,
         types=types,
         masses=masses,

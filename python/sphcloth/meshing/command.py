@@ -23,7 +23,7 @@ from sphcloth.meshing.lammps_files import ATOM_STYLES, write_data, write_groups,
 from sphcloth.meshing.load import LARGEST, read_surface
 from sphcloth.meshing.pins import select_vertices
 from sphcloth.meshing.sequence import write_sequence
-from sphcloth.meshing.sewing import Seams, add_seam_bonds, weld
+from sphcloth.meshing.sewing import Seams, weld
 from sphcloth.meshing.surface import Surface, check_manifold, join, orient
 from sphcloth.trajectory import Trajectory
 
@@ -111,14 +111,16 @@ class Recipe:
         """
         said: list[str] = []
         surface = join([self._read(file, said) for file in files])
-        seams, rest = None, None
+        seams = None
         if self.sew is not None:
             found = Seams.find(surface, self.sew)
             if self.seam_type is None:
                 surface, done = weld(surface, found)
+                said += done
             else:
-                rest, seams, done = add_seam_bonds(surface, found)
-            said += done
+                seams = found.pairs
+                said.append(f"{len(seams):,} seam bonds, up to {found.widest:g} long")
+            said += found.unpaired_note()
         check_manifold(surface)
         surface, turned = orient(surface)
         if turned:
@@ -128,7 +130,6 @@ class Recipe:
             per_file(self.materials, len(files), "materials"),
             seams=seams,
             seam_type=self.seam_type or 0,
-            rest=rest,
             pinned=self._pinned(surface),
             pin_type=self.pin_type,
             names=group_names(files),

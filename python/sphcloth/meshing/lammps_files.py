@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.errors import UserError
-from sphcloth.mesh import MASS_SECTION, REST_SECTION
+from sphcloth.mesh import MASS_SECTION
 from sphcloth.meshing.cloth import Cloth
 
 ATOM_STYLES = ("hybrid sph molecular", "molecular")
@@ -29,7 +29,7 @@ def write_data(
     """Write a data file for ``read_data``.
 
     The section Masses is left out where the file names a type that it does not use: the script
-    knows the mass of that one. ``Rest`` holds rest positions, where they are not the positions.
+    knows the mass of that one.
 
     Args:
         cloth: what to write.
@@ -52,9 +52,6 @@ def write_data(
             _write_section(file, name, "%d", np.column_stack([np.arange(1, len(rows) + 1), rows]))
         if mass_per_atom:
             _write_section(file, MASS_SECTION, "%d %.17g", np.column_stack([ids, cloth.masses]))
-        if cloth.rest is not None:
-            rows = np.column_stack([ids, cloth.rest])
-            _write_section(file, REST_SECTION, "%d %.17g %.17g %.17g", rows)
 
 
 def write_molecule(cloth: Cloth, path: str | Path, mass_per_atom: bool = False) -> None:
@@ -64,14 +61,7 @@ def write_molecule(cloth: Cloth, path: str | Path, mass_per_atom: bool = False) 
         cloth: what to write.
         path: the file.
         mass_per_atom: also write the mass of each vertex, for ``property/atom rmass``.
-
-    Raises:
-        UserError: rest positions differ from positions: a template cannot hold them.
     """
-    if cloth.rest is not None:
-        raise UserError(
-            "--molecule cannot hold the rest positions of --seam-type: use --data, or weld"
-        )
     ids = np.arange(1, len(cloth.types) + 1)
     topology = _topology(cloth)
     with Path(path).open("w", encoding="utf-8") as file:

@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from sphcloth.mesh import MASS_SECTION, REST_SECTION
+from sphcloth.mesh import MASS_SECTION
 from sphcloth.meshing.cloth import Cloth, longest_bond
 from sphcloth.meshing.lammps_files import has_masses
 
@@ -68,7 +68,7 @@ class MeshSummary:
         return cls(
             vertices=len(surface.vertices),
             edges=len(surface.edges),
-            seams=len(cloth.bonds) - len(surface.edges),
+            seams=len(cloth.seams),
             triangles=len(surface.triangles),
             hinges=len(cloth.dihedrals),
             pieces=len(np.unique(surface.pieces)),
@@ -120,14 +120,11 @@ class MeshSummary:
 
 def script_for_data(cloth: Cloth, data: Path, groups: Path, mass_per_atom: bool) -> list[str]:
     """Return the lines of an input script that read a data file and make it move."""
-    lines, sections = [], ""
+    lines, section = [], ""
     if mass_per_atom:
         lines.append("fix mass all property/atom rmass ghost yes")
-        sections += f" fix mass NULL {MASS_SECTION}"
-    if cloth.rest is not None:
-        lines.append("fix rest all property/atom d2_rest 3")
-        sections += f" fix rest NULL {REST_SECTION}"
-    lines += [f"read_data {_word(data)}{sections}", f"include {_word(groups)}"]
+        section = f" fix mass NULL {MASS_SECTION}"
+    lines += [f"read_data {_word(data)}{section}", f"include {_word(groups)}"]
     return lines + _motion(cloth)
 
 
@@ -180,12 +177,12 @@ def _motion(cloth: Cloth) -> list[str]:
         f"comm_modify cutoff {2.2 * longest_bond(cloth):.3g}",
         "bond_style pbd",
         "bond_coeff * 1.0",
-        "angle_style zero",
-        "angle_coeff *",
     ]
+    if len(cloth.seams):
+        lines.append(f"bond_coeff {cloth.seams[0, 0]} 1.0 rest zero")
+    lines += ["angle_style zero", "angle_coeff *"]
     if len(cloth.dihedrals):
         lines += ["dihedral_style pbd", "dihedral_coeff * 0.02"]
     fix = "fix sheet cloth pbd/cloth"
     fix += " pin pins" if cloth.pinned.any() else ""
-    fix += " rest d2_rest" if cloth.rest is not None else ""
     return [*lines, fix]

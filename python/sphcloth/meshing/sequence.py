@@ -55,8 +55,7 @@ def write_sequence(
         The numbered files.
 
     Raises:
-        UserError: an unknown format, no such frame, a vertex that is not in the dump, or a
-            periodic box that is not rectangular.
+        UserError: an unknown format, no such frame, or a vertex that is not in the dump.
     """
     if form not in FORMATS:
         raise UserError(f"--format {form}: use {', '.join(FORMATS)}")
@@ -94,34 +93,25 @@ class Unwrapper:
         """Return the vertices' unwrapped positions, shape (V, 3).
 
         Raises:
-            UserError: a vertex is not in the frame, or the periodic box is not rectangular.
+            UserError: a vertex is not in the frame.
         """
         positions = self._mesh.positions(frame)
         if not any(frame.periodic):
             return positions
-        if frame.is_tilted:
-            raise UserError("a periodic box must be rectangular for a sequence of meshes")
-        size = frame.box[1] - frame.box[0]
         if all(name in frame.columns for name in ("ix", "iy", "iz")):
-            return positions + size * self._mesh.vectors(frame, "ix", "iy", "iz")
-        return self._follow_edges(positions, np.where(frame.periodic, size, np.inf))
+            return positions + self._mesh.vectors(frame, "ix", "iy", "iz") @ frame.cell
+        return self._follow_edges(positions, frame)
 
-    def _follow_edges(self, positions: NDArray, period: NDArray) -> NDArray[np.float64]:
+    def _follow_edges(self, positions: NDArray, frame: Frame) -> NDArray[np.float64]:
         whole = positions.copy()
         for children, parents in self._levels:
-            whole[children] = _nearest_image(whole[children], whole[parents], period)
+            whole[children] = whole[parents] + frame.shortest(whole[children] - whole[parents])
         roots = whole[self._roots]
         if self._last_roots is not None:
-            moved = _nearest_image(roots, self._last_roots, period)
+            moved = self._last_roots + frame.shortest(roots - self._last_roots)
             whole += (moved - roots)[self._root_of]
         self._last_roots = whole[self._roots]
         return whole
-
-
-def _nearest_image(points: NDArray, to: NDArray, period: NDArray) -> NDArray[np.float64]:
-    """Return the periodic images of points that are nearest to others; all shapes (N, 3)."""
-    shift = np.round((points - to) / period)
-    return points - np.where(np.isfinite(period), shift * np.nan_to_num(period, posinf=0), 0)
 
 
 def _tree(

@@ -64,6 +64,15 @@ class Seams:
         centre = np.stack([np.bincount(joined, axis) / count for axis in positions.T], axis=1)
         return np.where((count[joined] > 1)[:, None], centre[joined], positions)
 
+    def unpaired_note(self) -> list[str]:
+        """Return a line about border vertices without a partner, or none."""
+        if not self.unpaired:
+            return []
+        return [
+            f"{self.unpaired:,} border vertices within {self.distance:g} of another piece have no "
+            "partner there: the borders are divided differently"
+        ]
+
 
 def weld(surface: Surface, seams: Seams) -> tuple[Surface, list[str]]:
     """Make one vertex of each seam's two; return the surface and what was done."""
@@ -74,24 +83,7 @@ def weld(surface: Surface, seams: Seams) -> tuple[Surface, list[str]]:
     said = [f"{gone:,} vertices welded into others, up to {seams.widest:g} apart"]
     if repeated:
         said.append(f"{repeated:,} triangles that came to lie on others removed")
-    return welded, said + _unpaired(seams)
-
-
-def add_seam_bonds(
-    surface: Surface, seams: Seams
-) -> tuple[NDArray[np.float64], NDArray[np.int64], list[str]]:
-    """Return rest positions, shape (V, 3), seam bonds, shape (S, 2), and what was done.
-
-    Both ends of a seam rest at the same place, midway: the bond's rest length is 0. Edges beside
-    a seam change their rest length; by how much is said.
-    """
-    rest = seams.middle(surface.vertices)
-    change = np.abs(lengths(rest, surface.edges) / surface.edge_lengths - 1).max()
-    said = [
-        f"{len(seams.pairs):,} seam bonds, up to {seams.widest:g} long; rest lengths of edges "
-        f"beside them change by up to {change:.2%}"
-    ]
-    return rest, seams.pairs, said + _unpaired(seams)
+    return welded, said
 
 
 def _mutually_nearest(surface: Surface, close: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -121,12 +113,3 @@ def _check_pieces(surface: Surface, pairs: NDArray[np.int64], distance: float) -
             f"--sew {distance:g} would join two vertices of one piece near "
             "({:g}, {:g}, {:g}): lower it".format(*where)
         )
-
-
-def _unpaired(seams: Seams) -> list[str]:
-    if not seams.unpaired:
-        return []
-    return [
-        f"{seams.unpaired:,} border vertices within {seams.distance:g} of another piece have no "
-        "partner there: the borders are divided differently"
-    ]

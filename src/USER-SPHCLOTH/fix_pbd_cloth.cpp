@@ -163,7 +163,7 @@ FixPBDCloth *FixPBDCloth::find(LAMMPS *lmp, const std::string &asking, const std
 
 int FixPBDCloth::setmask()
 {
-  return INITIAL_INTEGRATE | POST_NEIGHBOR | (attachbit ? PRE_REVERSE : 0);
+  return POST_INTEGRATE | POST_NEIGHBOR | (attachbit ? PRE_REVERSE : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -172,8 +172,8 @@ int FixPBDCloth::setmask()
 
 void FixPBDCloth::init()
 {
+  guests.clear();
   check_overlap();
-  check_order();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
@@ -191,26 +191,6 @@ void FixPBDCloth::check_overlap()
       error->all(FLERR,
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
-  }
-}
-
-// The cloth follows where the held vertices have gone in the same step.
-
-void FixPBDCloth::check_order()
-{
-  bool behind = false;
-  for (const Fix *other : modify->get_fix_list()) {
-    if (behind && other->time_integrate) {
-      int mine = 0, any = 0;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (atom->mask[i] & groupbit && is_held(i) && atom->mask[i] & other->groupbit) mine = 1;
-      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-      if (any)
-        error->all(FLERR,
-                   "{}: fix {} {} moves held vertices and is defined behind: define it before",
-                   label, other->id, other->style);
-    }
-    behind = behind || other == this;
   }
 }
 
@@ -339,7 +319,7 @@ void FixPBDCloth::post_neighbor()
   attached.clear();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    w[s] = atom->mask[i] & pinbit ? 0.0 : 1.0 / atom_mass(atom, i);
+    w[s] = is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
     if (atom->mask[i] & attachbit) attached.push_back(s);
   }
   halo.forward(ALL, w);
@@ -422,6 +402,8 @@ void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
   }
 }
 
+bool FixPBDCloth::is_pinned(int i) const { return atom->mask[i] & pinbit; }
+
 bool FixPBDCloth::is_held(int i) const { return atom->mask[i] & (pinbit | attachbit); }
 
 double FixPBDCloth::inverse_mass(int i) const
@@ -433,15 +415,32 @@ double FixPBDCloth::inverse_mass(int i) const
    one step: lines 19 to 29 of Algorithm 1
 ------------------------------------------------------------------------- */
 
-void FixPBDCloth::initial_integrate(int)
+void FixPBDCloth::post_integrate()
 {
   load();
   if (hold) start_pulls();
+  begin_guests();
   for (int n = 0; n < substeps(); n++) substep(n);
   if (hold) let_bodies_feel();
   store();
+  for (ClothGuest *guest : present) guest->end_step();
   remembered = false;
   started = true;
+}
+
+void FixPBDCloth::begin_guests()
+{
+  present.clear();
+  if (guests.empty()) return;
+  const double dt = update->dt;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const double *f = atom->f[halo.atom_of(s)], by = dt * force->ftm2v * kick[s];
+    p[s].x = start[s].x + dt * (v[s].x + by * f[0]);
+    p[s].y = start[s].y + dt * (v[s].y + by * f[1]);
+    p[s].z = start[s].z + dt * (v[s].z + by * f[2]);
+  }
+  for (ClothGuest *guest : guests)
+    if (guest->begin_step(start.data(), p.data(), dt)) present.push_back(guest);
 }
 
 // A held vertex is on its way from where its velocity says that it was to where it is.
@@ -497,6 +496,7 @@ void FixPBDCloth::substep(int n)
     p[s] = {x[0], x[1], x[2], 0.0};
   }
   halo.forward(ALL, p.data(), true);
+  for (ClothGuest *guest : present) guest->begin_substep(start.data(), dt);
 
   project_all(dt);
   if (hold) {
@@ -510,6 +510,7 @@ void FixPBDCloth::substep(int n)
     v[s].y = inv_dt * (p[s].y - start[s].y);
     v[s].z = inv_dt * (p[s].z - start[s].z);
   }
+  for (ClothGuest *guest : present) guest->end_substep(dt);
   if (!last) start = p;
 }
 
@@ -535,6 +536,10 @@ void FixPBDCloth::project_all(double dt)
   const int n = iterations / substeps();
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
+    for (ClothGuest *guest : present) {
+      guest->project(p.data());
+      halo.forward(ALL, p.data(), true);
+    }
     sweeps++;
     if (tolerance > 0.0 && converged()) break;
   }
@@ -569,10 +574,16 @@ void FixPBDCloth::jacobi(const ClothState &state)
 
 void FixPBDCloth::store()
 {
-  Vec3 gained = Vec3::Zero(), external = Vec3::Zero();
+  Vec3 gained = Vec3::Zero(), external = Vec3::Zero(), met = Vec3::Zero();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    if (!(atom->mask[i] & attachbit)) external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
+    if (!(atom->mask[i] & attachbit)) {
+      external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
+      for (const ClothGuest *guest : present) {
+        met += guest->impulse_on(s);
+        if (p[s].w == 0.0) push_held(i, guest->impulse_on(s));
+      }
+    }
     if (kick[s] == 0.0) continue;
     const std::array<double, 3> velocity{v[s].x, v[s].y, v[s].z}, place{p[s].x, p[s].y, p[s].z};
     for (int d = 0; d < 3; d++) {
@@ -581,7 +592,7 @@ void FixPBDCloth::store()
       atom->x[i][d] = place[d];
     }
   }
-  const Vec3 from_holders = gained / (update->dt * force->ftm2v) - external;
+  const Vec3 from_holders = (gained - met) / (update->dt * force->ftm2v) - external;
   for (int d = 0; d < 3; d++) holding[d] = from_holders[d];
 }
 
@@ -630,6 +641,12 @@ void FixPBDCloth::let_bodies_feel()
                                     atom->x[i][1] - p[s].y, atom->x[i][2] - p[s].z};
     std::copy(now.begin(), now.end(), hold[i]);
   }
+}
+
+void FixPBDCloth::push_held(int i, const Vec3 &impulse)
+{
+  if (!hold) return;
+  for (int d = 0; d < 3; d++) hold[i][d] += impulse[d] / (update->dt * force->ftm2v);
 }
 
 void FixPBDCloth::pre_reverse(int, int)

@@ -11,6 +11,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "fix.h"
 
+#include "cloth_guest.h"
 #include "cloth_topology.h"
 #include "core/cloth_solver.h"
 #include "vertex_halo.h"
@@ -32,7 +33,7 @@ class FixPBDCloth : public Fix {
   void init() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;
-  void initial_integrate(int) override;
+  void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
   double compute_vector(int) override;
@@ -57,6 +58,12 @@ class FixPBDCloth : public Fix {
 
   const ClothTopology &topology() const { return mesh; }
   double inverse_mass(int owned_atom) const;    // 0 for a vertex that something else moves
+  bool is_pinned(int owned_atom) const;
+
+  // takes part in the projections until the next init()
+  void invite(ClothGuest *guest) { guests.push_back(guest); }
+  // what a held vertex gets behind the solver, mass times velocity
+  void push_held(int owned_atom, const Eigen::Vector3d &impulse);
 
   // of edge and hinge m of the topology; an edge without a length or a constraint has no strain
   double rest_length(int m) const { return edge_rest[m]; }
@@ -108,14 +115,15 @@ class FixPBDCloth : public Fix {
   int sweeps;    // of the last step
   bool remembered;    // the next two are of the last step, this rank's part
   double last_residual, last_energy;
+  std::vector<ClothGuest *> guests, present;    // those that are near in this step
   bool started;    // velocities are those of half a step ago, see direction start
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
   void check_overlap();
+  void begin_guests();
   int read_held(ArgReader &, const std::string &keyword);
   bool is_held(int atom) const;
-  void check_order();
   void check_styles();
   const PBDMaterial *material_of_edge(int type) const;
   const PBDMaterial *material_of_hinge(int type) const;

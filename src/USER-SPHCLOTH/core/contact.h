@@ -28,7 +28,7 @@ struct Touch {
   bool hit = false;
   bool through = false;          // it passes through, not only too near
   Vec3 weight = Vec3::Zero();    // barycentric coordinates of the contact point
-  Vec3 normal = Vec3::Zero();    // of the triangle at the end, towards the point's own side
+  Vec3 normal = Vec3::Zero();    // at the end, from the triangle towards the point's own side
   double depth = 0.0;            // how far the end position lacks of the gap to be kept, >= 0
   double kept = 0.0;             // that gap: the thickness, or the gap at the start if smaller
 };
@@ -87,10 +87,63 @@ inline Roots cubic_roots(double c0, double c1, double c2, double c3)
   return roots;
 }
 
-// Does point p pass through the triangle within the step, or end nearer to it than `thickness`
-// on its own side?  A point that starts nearer than that keeps the gap it has: contact takes
-// approaching motion away and never pushes, so it cannot add energy.  `slack` is the share of the
-// gap that an iterative solver may leave open; passing through always counts.
+// Barycentric coordinates of the point of a triangle that is nearest to p: inside, on an edge or a
+// vertex.  Ericson, Real-Time Collision Detection, Morgan Kaufmann 2005, section 5.1.5.
+
+inline Vec3 nearest_point(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec3 &c)
+{
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
+               d6 = ac.dot(cp);
+  if (d1 <= 0.0 && d2 <= 0.0) return {1.0, 0.0, 0.0};
+  if (d3 >= 0.0 && d4 <= d3) return {0.0, 1.0, 0.0};
+  if (d6 >= 0.0 && d5 <= d6) return {0.0, 0.0, 1.0};
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return {d3 / (d3 - d1), d1 / (d1 - d3), 0.0};
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {d6 / (d6 - d2), 0.0, d2 / (d2 - d6)};
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0.0, 1.0 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+// from the nearest point of the triangle to p
+
+inline Vec3 distance_vector(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec3 &c,
+                            Vec3 &weight)
+{
+  weight = nearest_point(p, a, b, c);
+  return p - weight[0] * a - weight[1] * b - weight[2] * c;
+}
+
+// The volume of the point over the triangle in the course of the step, times 6: c0 + c1 t + c2 t^2 +
+// c3 t^3.
+
+struct Volume {
+  double c0, c1, c2, c3;
+  bool never_flat() const    // it lies between its Bernstein coefficients
+  {
+    const double b1 = c0 + c1 / 3.0, b2 = c0 + (2.0 * c1 + c2) / 3.0, b3 = c0 + c1 + c2 + c3;
+    return std::min({c0, b1, b2, b3}) > 0.0 || std::max({c0, b1, b2, b3}) < 0.0;
+  }
+};
+
+inline Volume volume_over(const Sweep &p, const std::array<Sweep, 3> &tri)
+{
+  const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
+  const Vec3 q = p.start - tri[0].start;
+  const Vec3 d1 = (tri[1].end - tri[0].end) - e1, d2 = (tri[2].end - tri[0].end) - e2;
+  const Vec3 dq = (p.end - tri[0].end) - q;
+  const Vec3 n0 = e1.cross(e2), n1 = e1.cross(d2) + d1.cross(e2), n2 = d1.cross(d2);
+  return {n0.dot(q), n0.dot(dq) + n1.dot(q), n1.dot(dq) + n2.dot(q), n2.dot(dq)};
+}
+
+// Does point p pass through the triangle within the step, or end nearer to its inside, edges or
+// vertices than `thickness`?  A point that starts nearer than that keeps the gap it has: contact
+// takes approaching motion away and never pushes, so it cannot add energy.  `slack` is the share of
+// the gap that may be missing; passing through always counts.
 
 inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness,
                    double slack = SEAM)
@@ -106,40 +159,48 @@ inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thick
 
   const double gap_start = normal_start.dot(q) / double_area;
   const double side = gap_start >= 0.0 ? 1.0 : -1.0;
-  const Vec3 normal = side / double_area_end * normal_end;
-  const double gap_end = normal.dot(p.end - tri[0].end);
-  result.kept = std::min(thickness, std::fabs(gap_start));
 
-  const auto touch_at = [&](const Vec3 &weight) {
-    result.hit = true;
-    result.weight = weight.cwiseMax(0.0);
-    result.weight /= result.weight.sum();
-    result.normal = normal;
-    result.depth = std::max(0.0, result.kept - gap_end);
-  };
-
-  // passes through
-  const Vec3 d1 = (tri[1].end - tri[0].end) - e1, d2 = (tri[2].end - tri[0].end) - e2;
-  const Vec3 dq = (p.end - tri[0].end) - q;
-  const Vec3 n1 = e1.cross(d2) + d1.cross(e2), n2 = d1.cross(d2);
-  const Roots roots = cubic_roots(normal_start.dot(q), normal_start.dot(dq) + n1.dot(q),
-                                  n1.dot(dq) + n2.dot(q), n2.dot(dq));
+  // passes through: stays on the side where it was, along the normal
+  const Volume volume = volume_over(p, tri);
+  const Roots roots = volume.never_flat() ? Roots()
+                                          : cubic_roots(volume.c0, volume.c1, volume.c2, volume.c3);
   for (int k = 0; k < roots.n; k++) {
     const double t = roots.t[k];
     const auto at = [t](const Sweep &s) -> Vec3 { return s.start + t * (s.end - s.start); };
     const Vec3 weight = barycentric(at(p), at(tri[0]), at(tri[1]), at(tri[2]));
     if (!inside(weight)) continue;
-    touch_at(weight);
-    result.through = true;
+    result.hit = result.through = true;
+    result.weight = weight.cwiseMax(0.0);
+    result.weight /= result.weight.sum();
+    result.normal = side / double_area_end * normal_end;
+    result.kept = std::min(thickness, std::fabs(gap_start));
+    result.depth = std::max(0.0, result.kept - result.normal.dot(p.end - tri[0].end));
     return result;
   }
 
   // ends too near
-  if (gap_end >= 0.0 && gap_end < result.kept * (1.0 - slack)) {
-    const Vec3 weight = barycentric(p.end, tri[0].end, tri[1].end, tri[2].end);
-    if (inside(weight)) touch_at(weight);
-  }
+  if (std::fabs(normal_end.dot(p.end - tri[0].end)) >= thickness * double_area_end) return result;
+  Vec3 weight;
+  const Vec3 before = distance_vector(p.start, tri[0].start, tri[1].start, tri[2].start, weight);
+  const Vec3 gap = distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight);
+  const double distance = gap.norm();
+  result.kept = std::min(thickness, before.norm());
+  if (distance >= result.kept * (1.0 - slack)) return result;
+  result.hit = true;
+  result.weight = weight;
+  result.normal = distance > 0.0 ? Vec3(gap / distance) : Vec3(side / double_area_end * normal_end);
+  result.depth = result.kept - distance;
   return result;
+}
+
+// May they meet, if neither moves as expected but nearly so?
+
+inline bool may_meet(const Sweep &p, const std::array<Sweep, 3> &tri, double reach)
+{
+  if (!volume_over(p, tri).never_flat()) return true;
+  Vec3 weight;
+  return distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight).squaredNorm() <
+      reach * reach;
 }
 
 }    // namespace sphcloth

@@ -1,0 +1,604 @@
+#include "contact_surface.h"
+
+#include "atom.h"
+#include "atom_tools.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_pbd_cloth.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+static std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
+{
+  int n = static_cast<int>(mine.size());
+  std::vector<int> sizes(nprocs), begins(nprocs, 0);
+  MPI_Allgather(&n, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  std::partial_sum(sizes.begin(), sizes.end() - 1, begins.begin() + 1);
+  std::vector<tagint> all(begins.back() + sizes.back());
+  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), sizes.data(), begins.data(),
+                 MPI_LMP_TAGINT, world);
+  return all;
+}
+
+// a hair more than the gap, so that the next look finds it done
+static constexpr double HAIR = 1e-6;
+
+// of the thickness: what a particle that is too near may get back in one step
+static constexpr double RECOVERY = 0.1;
+
+static constexpr int STOP_PASSES = 200;
+
+ContactSurface::ContactSurface(LAMMPS *lmp, FixPBDCloth *cloth, Fix *contact,
+                               const ContactRules *rules, ContactCounts *counts) :
+    Pointers(lmp), label(fmt::format("fix {} cloth/contact", contact->id)), cloth(cloth),
+    contact(contact), rules(rules), counts(counts), last_places(nullptr), substep_dt(0.0), halo(lmp)
+{
+}
+
+bool ContactSurface::has_triangles() const { return cloth->topology().triangles.size() > 0; }
+
+/* ----------------------------------------------------------------------
+   triangles with vertices in reach of this rank, after each list build
+------------------------------------------------------------------------- */
+
+void ContactSurface::rebuild()
+{
+  std::vector<int> owned, reach;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+    if (!(atom->mask[i] & cloth->groupbit)) continue;
+    reach.push_back(i);
+    if (i < atom->nlocal) owned.push_back(i);
+  }
+  halo.reset(1, owned);
+  triangles.clear();
+  add_triangles(reach);
+  for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
+  halo.connect(contact);
+  check_reach();
+
+  w.assign(halo.n_slots(), 0.0);
+  w_solver = w;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    w[s] = cloth->inverse_mass(i);
+    w_solver[s] = cloth->is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
+  }
+  halo.forward(0, w);
+  halo.forward(0, w_solver);
+  start.resize(halo.n_slots());
+  end.resize(halo.n_slots());
+  received.assign(halo.n_owned(), Vec3::Zero());
+}
+
+// Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
+// out of reach is too far from this rank's particles to matter.
+
+void ContactSurface::add_triangles(const std::vector<int> &reach)
+{
+  const ClothTopology &mesh = cloth->topology();
+  const ClothElements<3> &t = mesh.triangles;
+  for (int i : reach) {
+    const int vertex = mesh.index_of(atom->tag[i]);
+    if (vertex < 0) continue;
+    for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
+      const std::array<int, 3> &members = t.vertices[t.incident[k]];
+      if (members[0] != vertex) continue;
+      const int j = mesh.image_near(members[1], i), l = mesh.image_near(members[2], i);
+      if ((j < 0 || l < 0) && i < atom->nlocal)
+        error->one(
+            FLERR,
+            "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
+            "it with 'comm_modify cutoff', or refine the mesh",
+            label, mesh.ids[vertex], mesh.ids[members[1]], mesh.ids[members[2]]);
+      if (j < 0 || l < 0) continue;
+      triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
+    }
+  }
+}
+
+// A particle next to a triangle must see all of its vertices, also those of other ranks.
+
+void ContactSurface::check_reach()
+{
+  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
+  double longest_sq = 0.0;
+  for (const std::array<int, 3> &t : triangles)
+    for (int q = 0; q < 3; q++) {
+      const double *a = atom->x[halo.atom_of(t[q])], *b = atom->x[halo.atom_of(t[(q + 1) % 3])];
+      longest_sq =
+          std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
+    }
+  const double needed = std::sqrt(longest_sq) + rules->thickness, reach = comm->get_comm_cutoff();
+  if (needed > reach)
+    error->one(
+        FLERR,
+        "{}: the longest edge of the cloth and the thickness are {}, more than the ghost cut-off "
+        "{}: raise it with 'comm_modify cutoff', or refine the mesh",
+        label, needed, reach);
+}
+
+/* ----------------------------------------------------------------------
+   who may meet whom
+------------------------------------------------------------------------- */
+
+// from where the last step has left it to where it is
+
+Sweep ContactSurface::sweep_of(int i) const
+{
+  const double *x = atom->x[i], *last = last_places[i];
+  double way[3] = {x[0] - last[0], x[1] - last[1], x[2] - last[2]};
+  domain->minimum_image(FLERR, way);
+  const Vec3 at(x[0], x[1], x[2]);
+  return {at - Vec3(way[0], way[1], way[2]), at};
+}
+
+std::array<Sweep, 3> ContactSurface::sweep_of_triangle(int t) const
+{
+  std::array<Sweep, 3> sweep;
+  for (int q = 0; q < 3; q++) sweep[q] = {start[triangles[t][q]], end[triangles[t][q]]};
+  return sweep;
+}
+
+void ContactSurface::find_near(double margin)
+{
+  near.clear();
+  boxes.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); t++) {
+    boxes[t].setEmpty();
+    double way_sq = 0.0;
+    for (int s : triangles[t]) {
+      boxes[t].extend(start[s]);
+      boxes[t].extend(end[s]);
+      way_sq = std::max(way_sq, (end[s] - start[s]).squaredNorm());
+    }
+    const Vec3 room = Vec3::Constant(margin + std::sqrt(way_sq));
+    boxes[t].min() -= room;
+    boxes[t].max() += room;
+  }
+  grid.build(boxes);
+
+  const Box &cloth_box = grid.bounds();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & contact->groupbit)) continue;
+    const Sweep particle = sweep_of(i);
+    Box box(particle.start);
+    box.extend(particle.end);
+    if (!cloth_box.intersects(box)) continue;
+    grid.query(box, [&](int t) {
+      if (boxes[t].intersects(box)) near.push_back({i, t});
+    });
+  }
+}
+
+// does what was near in find_near still hold?
+
+bool ContactSurface::all_in_boxes() const
+{
+  const Vec3 room = Vec3::Constant(rules->thickness);
+  for (std::size_t t = 0; t < triangles.size(); t++)
+    for (int s : triangles[t])
+      if (!boxes[t].contains(end[s] - room) || !boxes[t].contains(end[s] + room)) return false;
+  return true;
+}
+
+bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
+{
+  for (int s = 0; s < halo.n_owned(); s++) {
+    start[s] = Vec3(from_here[s].x, from_here[s].y, from_here[s].z);
+    end[s] = Vec3(to_here[s].x, to_here[s].y, to_here[s].z);
+  }
+  halo.forward(0, start.data(), true);
+  halo.forward(0, end.data(), true);
+  find_near(2.0 * rules->thickness);
+  meet();
+  int mine = !pairs.empty(), any = 0;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return false;
+
+  for (Particle &p : particles) p.velocity = p.velocity_before = (p.end - p.start) / dt;
+  for (Particle &p : particles) p.end = p.start;
+  std::fill(received.begin(), received.end(), Vec3::Zero());
+  count_shares();
+  return true;
+}
+
+void ContactSurface::meet()
+{
+  particles.clear();
+  pairs.clear();
+  for (const auto &[i, t] : near) {
+    const Sweep sweep = sweep_of(i);
+    if (!may_meet(sweep, sweep_of_triangle(t), 2.0 * rules->thickness)) continue;
+    remember(i, t, Touch());
+    particles.back().start = sweep.start;
+    particles.back().end = sweep.end;
+  }
+}
+
+// over how many pairs the mass of each vertex is split
+
+void ContactSurface::count_shares()
+{
+  shares.assign(halo.n_slots(), Vec3::Zero());
+  for (const Pair &pair : pairs)
+    for (int s : triangles[pair.triangle]) shares[s][0] += 1.0;
+  halo.reverse_add(0, shares.data());
+  halo.forward(0, shares.data(), false);
+}
+
+double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &inverse_mass) const
+{
+  const Particle &p = particles[pair.particle];
+  double inverse = p.w * p.contacts;
+  for (int q = 0; q < 3; q++) {
+    const int s = triangles[pair.triangle][q];
+    inverse += inverse_mass[s] * shares[s][0] * pair.weight[q] * pair.weight[q];
+  }
+  return 1.0 / inverse;
+}
+
+/* ----------------------------------------------------------------------
+   inside the solver
+------------------------------------------------------------------------- */
+
+void ContactSurface::begin_substep(const Vertex *vertices, double dt)
+{
+  substep_dt = dt;
+  for (Particle &p : particles) {
+    p.from = p.end;
+    p.end += dt * p.velocity;
+    p.touched = false;
+  }
+  for (Pair &pair : pairs) {
+    pair.met = false;
+    pair.push = 0.0;
+    pair.rub.setZero();
+  }
+  if (rules->friction == 0.0) return;
+  from.resize(halo.n_slots());
+  for (int s = 0; s < halo.n_owned(); s++)
+    from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
+  halo.forward(0, from.data(), true);
+}
+
+void ContactSurface::project(Vertex *p)
+{
+  for (int s = 0; s < halo.n_owned(); s++) end[s] = Vec3(p[s].x, p[s].y, p[s].z);
+  halo.forward(0, end.data(), true);
+  change.assign(halo.n_slots(), Vec3::Zero());
+  for (Particle &particle : particles) particle.change.setZero();
+
+  for (Pair &pair : pairs) {
+    press(pair);
+    if (rules->friction > 0.0 && pair.met) rub(pair);
+  }
+
+  for (Particle &particle : particles) particle.end += particle.w * particle.change;
+  halo.reverse_add(0, change.data());
+  for (int s = 0; s < halo.n_owned(); s++) {
+    p[s].x += w_solver[s] * change[s][0];
+    p[s].y += w_solver[s] * change[s][1];
+    p[s].z += w_solver[s] * change[s][2];
+    received[s] += change[s] / substep_dt;
+  }
+}
+
+// Closes what is missing of the gap.  What was pushed too far before is taken back, but a pair never
+// pulls.
+
+void ContactSurface::press(Pair &pair)
+{
+  const Particle &p = particles[pair.particle];
+  const std::array<int, 3> &slots = triangles[pair.triangle];
+  const Touch touched = touch({p.start, p.end}, sweep_of_triangle(pair.triangle), rules->thickness);
+  double missing = touched.depth;
+  if (touched.hit) {
+    pair.met = true;
+    pair.weight = touched.weight;
+    pair.normal = touched.normal;
+    pair.kept = touched.kept;
+    counts->contacts++;
+    counts->deepest = std::max(counts->deepest, touched.depth);
+  } else if (pair.push > 0.0) {
+    Vec3 gap = p.end;
+    for (int q = 0; q < 3; q++) gap -= pair.weight[q] * end[slots[q]];
+    missing = pair.kept - gap.dot(pair.normal);
+  } else
+    return;
+  const double step = std::max(missing * split_mass(pair, w_solver), -pair.push);
+  pair.push += step;
+  give(pair, step * pair.normal);
+}
+
+// Coulomb friction against the sliding of this substep
+
+void ContactSurface::rub(Pair &pair)
+{
+  const Particle &p = particles[pair.particle];
+  Vec3 slip = p.end - p.from;
+  for (int q = 0; q < 3; q++) {
+    const int s = triangles[pair.triangle][q];
+    slip -= pair.weight[q] * (end[s] - from[s]);
+  }
+  slip -= slip.dot(pair.normal) * pair.normal;
+  Vec3 wanted = pair.rub - split_mass(pair, w_solver) * slip;
+  const double most = rules->friction * pair.push, size = wanted.norm();
+  if (size > most) wanted *= most / size;
+  give(pair, wanted - pair.rub);
+  pair.rub = wanted;
+}
+
+// mass times length on the particle, and the opposite on the triangle
+
+void ContactSurface::give(Pair &pair, const Vec3 &by)
+{
+  Particle &p = particles[pair.particle];
+  p.change += by;
+  p.touched = true;
+  for (int q = 0; q < 3; q++) change[triangles[pair.triangle][q]] -= pair.weight[q] * by;
+}
+
+void ContactSurface::end_substep(double dt)
+{
+  for (Particle &p : particles)
+    if (p.touched) p.velocity = (p.end - p.from) / dt;
+  for (Pair &pair : pairs) pair.impulse += pair.push / dt;
+}
+
+void ContactSurface::end_step()
+{
+  for (const Particle &p : particles)
+    for (int d = 0; d < 3; d++) {
+      atom->v[p.atom][d] += p.velocity[d] - p.velocity_before[d];
+      atom->x[p.atom][d] = p.end[d];
+    }
+  for (int s = 0; s < halo.n_owned(); s++)
+    if (w[s] == 0.0)
+      for (int d = 0; d < 3; d++) counts->impulse[d] += received[s][d] / force->ftm2v;
+  if (rules->restitution > 0.0) bounce();
+}
+
+// Poisson's hypothesis: what took the approach away comes back in part
+
+void ContactSurface::bounce()
+{
+  change.assign(halo.n_slots(), Vec3::Zero());
+  for (Particle &p : particles) p.change.setZero();
+  for (Pair &pair : pairs)
+    if (pair.impulse > 0.0) give(pair, rules->restitution * pair.impulse * pair.normal);
+  take_velocities();
+}
+
+/* ----------------------------------------------------------------------
+   behind the solver: the guarantee
+------------------------------------------------------------------------- */
+
+void ContactSurface::settle()
+{
+  load_sweeps();
+  if (!all_in_boxes()) find_near(2.0 * rules->thickness);
+  particles.clear();
+  pairs.clear();
+  int pass = 0;
+  while (stop(pass == 0))
+    if (++pass == STOP_PASSES) break;
+  if (pass > 0) stop_approach();
+  if (pass == STOP_PASSES) freeze();
+}
+
+void ContactSurface::load_sweeps()
+{
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const Sweep sweep = sweep_of(halo.atom_of(s));
+    start[s] = sweep.start;
+    end[s] = sweep.end;
+  }
+  halo.forward(0, start.data(), true);
+  halo.forward(0, end.data(), true);
+}
+
+// The particle that is deepest below its gap in each pass is put back to it, alone and without a
+// change of velocity.  One that was too near before the step gets a part of the way back.
+
+bool ContactSurface::stop(bool recover)
+{
+  int mine = 0;
+  for (auto first = near.begin(); first != near.end();) {
+    const int i = (*first)[0];
+    const auto last = std::find_if(first, near.end(), [i](const auto &n) { return n[0] != i; });
+    const Sweep sweep = sweep_of(i);
+    Touch deepest;
+    int triangle = -1;
+    for (auto next = first; next != last; ++next) {
+      Touch touched = touch(sweep, sweep_of_triangle((*next)[1]), rules->thickness);
+      if (touched.hit)
+        touched.depth += HAIR * touched.kept;
+      else if (recover)
+        touched = recovery(sweep.end, (*next)[1]);
+      if (touched.depth <= deepest.depth) continue;
+      deepest = touched;
+      triangle = (*next)[1];
+    }
+    first = last;
+    if (triangle < 0) continue;
+    for (int d = 0; d < 3; d++) atom->x[i][d] += deepest.depth * deepest.normal[d];
+    if (!deepest.hit) continue;
+    mine = 1;
+    counts->stops++;
+    remember(i, triangle, deepest);
+  }
+  int any = 0;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
+// no contact, but something of the thickness that is missing
+
+Touch ContactSurface::recovery(const Vec3 &p, int t) const
+{
+  Touch touched;
+  const std::array<int, 3> &s = triangles[t];
+  const Vec3 gap = distance_vector(p, end[s[0]], end[s[1]], end[s[2]], touched.weight);
+  const double distance = gap.norm();
+  if (distance == 0.0 || distance >= rules->thickness) return touched;
+  touched.normal = gap / distance;
+  touched.depth = std::min(rules->thickness - distance, RECOVERY * rules->thickness);
+  return touched;
+}
+
+void ContactSurface::remember(int i, int triangle, const Touch &touched)
+{
+  if (particles.empty() || particles.back().atom != i) {
+    particles.push_back({});
+    particles.back().atom = i;
+    particles.back().w = 1.0 / atom_mass(atom, i);
+  }
+  particles.back().contacts++;
+  pairs.push_back({});
+  pairs.back().particle = static_cast<int>(particles.size()) - 1;
+  pairs.back().triangle = triangle;
+  pairs.back().weight = touched.weight;
+  pairs.back().normal = touched.normal;
+}
+
+// both sides of what was stopped lose the motion towards each other
+
+void ContactSurface::stop_approach()
+{
+  count_shares();
+  from.resize(halo.n_slots());
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const double *v = atom->v[halo.atom_of(s)];
+    from[s] = Vec3(v[0], v[1], v[2]);
+  }
+  halo.forward(0, from.data(), false);
+  change.assign(halo.n_slots(), Vec3::Zero());
+  for (Particle &p : particles) p.change.setZero();
+  for (Pair &pair : pairs) {
+    const double *v = atom->v[particles[pair.particle].atom];
+    Vec3 approach(v[0], v[1], v[2]);
+    for (int q = 0; q < 3; q++) approach -= pair.weight[q] * from[triangles[pair.triangle][q]];
+    const double speed = approach.dot(pair.normal);
+    if (speed < 0.0) give(pair, -speed * split_mass(pair, w) * pair.normal);
+  }
+  take_velocities();
+}
+
+// what give() has handed out were impulses
+
+void ContactSurface::take_velocities()
+{
+  for (const Particle &p : particles)
+    for (int d = 0; d < 3; d++) atom->v[p.atom][d] += p.w * p.change[d];
+  halo.reverse_add(0, change.data());
+  for (int s = 0; s < halo.n_owned(); s++) {
+    if (change[s].isZero(0.0)) continue;
+    const int i = halo.atom_of(s);
+    for (int d = 0; d < 3; d++) atom->v[i][d] += w[s] * change[s][d];
+    if (w[s] == 0.0) take_held(i, change[s]);
+  }
+}
+
+void ContactSurface::take_held(int i, const Vec3 &impulse)
+{
+  cloth->push_held(i, impulse);
+  for (int d = 0; d < 3; d++) counts->impulse[d] += impulse[d] / force->ftm2v;
+}
+
+/* ----------------------------------------------------------------------
+   the last resort: what is still caught between moving triangles moves with them as one
+------------------------------------------------------------------------- */
+
+// A particle that passes through a triangle, the triangle, and all that shares a vertex or a particle
+// with them, form a zone.  It keeps the shape of the start of the step, where nobody was on a wrong
+// side, and moves with its mean velocity: momentum is kept, energy lost.  Zones grow until all is well.
+// Provot, Graphics Interface 1997.
+
+void ContactSurface::freeze()
+{
+  ContactZones zones;
+  for (;;) {
+    std::vector<tagint> caught;
+    for (const auto &[i, t] : near) {
+      if (!touch(sweep_of(i), sweep_of_triangle(t), rules->thickness).through) continue;
+      counts->frozen++;
+      caught.push_back(atom->tag[i]);
+      for (int s : triangles[t]) caught.push_back(atom->tag[halo.atom_of(s)]);
+    }
+    if (!zones.join(allgather(caught, comm->nprocs, world))) return;
+    move_zones(zones);
+    load_sweeps();
+    find_near(2.0 * rules->thickness);
+  }
+}
+
+void ContactSurface::move_zones(const ContactZones &zones)
+{
+  struct Sum {
+    double mass, way[3], momentum[3];               // of the free members
+    double held, held_way[3], held_velocity[3];    // number of the held ones, and sums over them
+  };
+  constexpr int SIZE = sizeof(Sum) / sizeof(double);
+  std::vector<Sum> mine(zones.size(), Sum{}), all(zones.size());
+  std::vector<std::pair<int, int>> members;    // atom and zone
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const int z = zones.of(atom->tag[i]); z >= 0) members.emplace_back(i, z);
+  const auto is_held = [&](int i) {
+    return atom->mask[i] & cloth->groupbit && cloth->inverse_mass(i) == 0.0;
+  };
+
+  for (const auto &[i, z] : members) {
+    const Vec3 way = sweep_of(i).end - sweep_of(i).start;
+    const double m = atom_mass(atom, i);
+    (is_held(i) ? mine[z].held : mine[z].mass) += is_held(i) ? 1.0 : m;
+    for (int d = 0; d < 3; d++) {
+      (is_held(i) ? mine[z].held_way : mine[z].way)[d] += is_held(i) ? way[d] : m * way[d];
+      (is_held(i) ? mine[z].held_velocity : mine[z].momentum)[d] += is_held(i) ? atom->v[i][d]
+                                                                               : m * atom->v[i][d];
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), SIZE * zones.size(), MPI_DOUBLE, MPI_SUM, world);
+
+  for (const auto &[i, z] : members) {
+    const Sum &sum = all[z];
+    const Sweep sweep = sweep_of(i);
+    Vec3 way, velocity, lost;
+    for (int d = 0; d < 3; d++) {
+      way[d] = sum.held > 0.0 ? sum.held_way[d] / sum.held : sum.way[d] / sum.mass;
+      velocity[d] = sum.held > 0.0 ? sum.held_velocity[d] / sum.held : sum.momentum[d] / sum.mass;
+      lost[d] = sum.momentum[d] - sum.mass * velocity[d];
+    }
+    if (!is_held(i)) {
+      for (int d = 0; d < 3; d++) {
+        atom->x[i][d] = sweep.start[d] + way[d];
+        atom->v[i][d] = velocity[d];
+      }
+      continue;
+    }
+    const double apart = (sweep.end - sweep.start - way).norm();
+    if (apart > rules->thickness)
+      error->one(FLERR,
+                 "{}: held vertex {} moves {} away from others in one step and crushes what is "
+                 "between them: move pins slower or lower the time step",
+                 label, atom->tag[i], apart);
+    take_held(i, lost / sum.held);
+  }
+}
+
+double ContactSurface::memory_usage() const
+{
+  return halo.memory_usage() +
+      static_cast<double>(sizeof(Vec3) *
+                              (start.capacity() + end.capacity() + change.capacity() +
+                               shares.capacity() + from.capacity() + received.capacity()) +
+                          sizeof(double) * (w.capacity() + w_solver.capacity()) +
+                          sizeof(Box) * boxes.capacity() + sizeof(Particle) * particles.capacity() +
+                          sizeof(Pair) * pairs.capacity() + sizeof(near[0]) * near.capacity());
+}

@@ -1,0 +1,177 @@
+// The triangles of one cloth that are within reach of a rank, and the particles near them.
+//
+// While the cloth is solved, every particle near a triangle keeps a constraint with it, projected
+// after each sweep over the edges and hinges: mass-weighted, both ways, and only pushing.
+// Simultaneous contacts are solved together by splitting the mass of a vertex, or of a particle,
+// over its contacts, which keeps momentum and always converges: Tonge, Benevolenski & Voroshilov,
+// ACM Trans. Graph. 31 (2012) 105.
+
+#ifndef SPHCLOTH_CONTACT_SURFACE_H
+#define SPHCLOTH_CONTACT_SURFACE_H
+
+#include "cloth_guest.h"
+#include "core/box_grid.h"
+#include "core/contact.h"
+#include "vertex_halo.h"
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class Fix;
+class FixPBDCloth;
+
+// what the user asked for, and what is counted
+
+struct ContactRules {
+  double thickness = 0.0;
+  double friction = 0.0;       // Coulomb's coefficient
+  double restitution = 0.0;    // part of the approaching speed that comes back
+};
+
+struct ContactCounts {
+  double contacts = 0.0;    // impulses that were exchanged
+  double stops = 0.0;       // particles that were put back to their side behind the solver
+  double frozen = 0.0;      // particles that were caught between triangles and moved with them
+  double deepest = 0.0;     // largest missing gap before it was closed
+  double impulse[3] = {0.0, 0.0, 0.0};    // on held vertices
+};
+
+// Sets of atoms that move as one, the same on every rank
+
+class ContactZones {
+ public:
+  // groups of four IDs that belong together; false if there are none
+  bool join(const std::vector<tagint> &groups)
+  {
+    for (std::size_t k = 0; k < groups.size(); k += 4)
+      for (int q = 0; q < 4; q++) {
+        parent.try_emplace(groups[k + q], groups[k + q]);
+        parent[root(groups[k + q])] = root(groups[k]);
+      }
+    number.clear();
+    for (const auto &[id, ignored] : parent) number.try_emplace(root(id), number.size());
+    return !groups.empty();
+  }
+  int size() const { return static_cast<int>(number.size()); }
+  int of(tagint id) const    // -1: in none
+  {
+    return parent.count(id) ? number.at(root(id)) : -1;
+  }
+
+ private:
+  std::map<tagint, tagint> parent;
+  std::map<tagint, int> number;
+  tagint root(tagint id) const
+  {
+    while (parent.at(id) != id) id = parent.at(id);
+    return id;
+  }
+};
+
+class ContactSurface : public ClothGuest, protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  // contact: the fix whose group meets the cloth
+  ContactSurface(LAMMPS *, FixPBDCloth *, Fix *contact, const ContactRules *, ContactCounts *);
+
+  // after each list build
+  void rebuild();
+
+  // of every atom at the end of the last step
+  void set_last_places(double **places) { last_places = places; }
+
+  bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
+  void begin_substep(const sphcloth::Vertex *start, double dt) override;
+  void project(sphcloth::Vertex *p) override;
+  void end_substep(double dt) override;
+  void end_step() override;
+  Vec3 impulse_on(int slot) const override { return received[slot]; }
+
+  // Behind the solver: what still goes wrong on the way from the last step's places to the present
+  // ones, to round-off.  Collective.
+  void settle();
+
+  bool has_triangles() const;
+  int pack_link(int n, const int *atoms, double *buf) const
+  {
+    return halo.pack_link(n, atoms, buf);
+  }
+  void unpack_link(int n, int first, const double *buf) { halo.unpack_link(n, first, buf); }
+  double memory_usage() const;
+
+ private:
+  // a particle near the cloth
+  struct Particle {
+    int atom = -1;
+    double w = 0.0;
+    int contacts = 0;
+    bool touched = false;
+    Vec3 start = Vec3::Zero(), end = Vec3::Zero();    // of the step so far
+    Vec3 from = Vec3::Zero();                         // at the start of the substep
+    Vec3 velocity = Vec3::Zero(), velocity_before = Vec3::Zero(), change = Vec3::Zero();
+  };
+
+  // a particle and a triangle that may meet in this step
+  struct Pair {
+    int particle = 0, triangle = 0;
+    bool met = false;    // in this substep: the next three are known
+    Vec3 weight = Vec3::Zero(), normal = Vec3::Zero();
+    double kept = 0.0;
+    double push = 0.0;    // of this substep, mass times length
+    Vec3 rub = Vec3::Zero();    // the same along the triangle
+    double impulse = 0.0;    // of the step
+  };
+
+  std::string label;
+  FixPBDCloth *cloth;
+  Fix *contact;
+  const ContactRules *rules;
+  ContactCounts *counts;
+  double **last_places;
+  double substep_dt;
+  VertexHalo halo;
+  std::vector<std::array<int, 3>> triangles;    // slots
+  std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
+  std::vector<Vec3> from;                  // by slot: at the start of the substep
+  std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
+  std::vector<double> w_solver;    // the same, but for attached vertices, which take part
+  std::vector<Vec3> shares;    // contacts of each slot
+  std::vector<Vec3> received;    // by owned slot
+  std::vector<sphcloth::Box> boxes;
+  sphcloth::BoxGrid grid;
+  std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
+  std::vector<Particle> particles;
+  std::vector<Pair> pairs;
+
+  void add_triangles(const std::vector<int> &reach);
+  void check_reach();
+  sphcloth::Sweep sweep_of(int atom) const;
+  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
+  void find_near(double margin);
+  bool all_in_boxes() const;
+  void meet();
+  void count_shares();
+  double split_mass(const Pair &, const std::vector<double> &inverse_mass) const;
+  void remember(int atom, int triangle, const sphcloth::Touch &);
+  void give(Pair &, const Vec3 &by);
+  void press(Pair &);
+  void rub(Pair &);
+  void bounce();
+  bool stop(bool recover);
+  sphcloth::Touch recovery(const Vec3 &p, int t) const;
+  void stop_approach();
+  void take_velocities();
+  void take_held(int atom, const Vec3 &impulse);
+  void load_sweeps();
+  void freeze();
+  void move_zones(const ContactZones &);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

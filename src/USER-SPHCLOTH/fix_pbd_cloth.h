@@ -94,6 +94,7 @@ class FixPBDCloth : public Fix {
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
   void check_overlap();
+  void check_masses();
   void check_pins();
   void check_styles();
   const PBDMaterial *material_of_edge(int type) const;

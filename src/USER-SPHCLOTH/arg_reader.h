@@ -9,6 +9,7 @@
 #include "utils.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -39,9 +40,9 @@ class ArgReader : protected Pointers {
   double number(const std::string &what)
   {
     const std::string text = word(what);
-    if (!utils::is_double(text) || !std::isfinite(std::stod(text)))
-      fail(what, text, "give a finite number");
-    return std::stod(text);
+    const double value = std::strtod(text.c_str(), nullptr);    // stod throws at 1e400 and 1e-310
+    if (!utils::is_double(text) || !std::isfinite(value)) fail(what, text, "give a finite number");
+    return value;
   }
 
   double at_least(const std::string &what, double low)

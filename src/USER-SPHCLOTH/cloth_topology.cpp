@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 using namespace LAMMPS_NS;
 
@@ -92,7 +93,7 @@ void ClothTopology::gather(int groupbit)
   gather_elements(triangles, "angle", [&](int i, auto add) {
     for (int m = 0; m < atom->num_angle[i]; m++)
       add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
-          atom->angle_type[i][m]);
+          std::min(atom->angle_type[i][m], 1));    // its type says nothing: two would be one twice
   });
   gather_elements(hinges, "dihedral", [&](int i, auto add) {
     for (int m = 0; m < atom->num_dihedral[i]; m++)
@@ -137,12 +138,13 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
     canonical(sorted[m].vertices);
     sorted[m].type = static_cast<int>(record[N]);
   }
+  // copies of an element are one; those of another type are constraints of their own
+  const auto key = [](const Element &e) { return std::tie(e.vertices, e.type); };
   std::sort(sorted.begin(), sorted.end(),
-            [](const Element &a, const Element &b) { return a.vertices < b.vertices; });
-  sorted.erase(
-      std::unique(sorted.begin(), sorted.end(),
-                  [](const Element &a, const Element &b) { return a.vertices == b.vertices; }),
-      sorted.end());
+            [&](const Element &a, const Element &b) { return key(a) < key(b); });
+  sorted.erase(std::unique(sorted.begin(), sorted.end(),
+                           [&](const Element &a, const Element &b) { return key(a) == key(b); }),
+               sorted.end());
 
   elements.vertices.clear();
   elements.type.clear();

@@ -140,8 +140,18 @@ void FixPBDCloth::take_rest_positions(const char *property)
                "{}: rest property '{}' does not exist: define it with 'fix ID all property/atom "
                "d2_{} 3' and read it from the data file",
                label, property, name);
+  int mine = 0, any = 0;
   for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) rest_x[i][d] = atom->darray[index][i][d];
+    for (int d = 0; d < 3; d++) {
+      rest_x[i][d] = atom->darray[index][i][d];
+      if (atom->mask[i] & groupbit && rest_x[i][d] != 0.0) mine = 1;
+    }
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any)
+    error->all(FLERR,
+               "{}: rest property '{}' is 0 everywhere: fill it with 'set', from the data file, or "
+               "from the restart file by the fix ID that it was written with",
+               label, property);
 }
 
 FixPBDCloth::~FixPBDCloth()
@@ -174,6 +184,7 @@ void FixPBDCloth::init()
 {
   guests.clear();
   check_overlap();
+  check_masses();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
@@ -192,6 +203,20 @@ void FixPBDCloth::check_overlap()
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
+}
+
+// Types have masses; only per-atom masses may be missing.
+
+void FixPBDCloth::check_masses()
+{
+  int mine = 0, massless;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0))
+      mine = static_cast<int>(atom->tag[i]);
+  MPI_Allreduce(&mine, &massless, 1, MPI_INT, MPI_MAX, world);
+  if (massless)
+    error->all(FLERR, "{}: vertex {} has no mass: give it one with 'set group {} mass'", label,
+               massless, group->names[igroup]);
 }
 
 void FixPBDCloth::check_styles()
@@ -225,7 +250,7 @@ void FixPBDCloth::measure_rest()
   int missing = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (!std::isfinite(rest_x[i][0])) missing = static_cast<int>(atom->tag[i]);
+    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2])) missing = static_cast<int>(atom->tag[i]);
     mine[mesh.index_of(atom->tag[i])] = Vec3(rest_x[i][0], rest_x[i][1], rest_x[i][2]);
   }
   int any_missing = 0;
@@ -251,6 +276,7 @@ void FixPBDCloth::measure_rest()
     edge_rest[m] = from(a, b).norm();
     mean_length += edge_rest[m] / mesh.edges.size();
   }
+  if (mean_length == 0.0) mean_length = 1.0;    // nothing has a size: residuals are lengths
   hinge_rest.resize(mesh.hinges.size());
   for (std::size_t m = 0; m < mesh.hinges.size(); m++) {
     const auto &[a, e1, e2, b] = mesh.hinges.vertices[m];
@@ -593,6 +619,11 @@ void FixPBDCloth::store()
     }
   }
   const Vec3 from_holders = (gained - met) / (update->dt * force->ftm2v) - external;
+  if (!std::isfinite(from_holders.sum()))
+    error->one(FLERR,
+               "{}: the cloth flew apart in step {}: hinges may contradict each other or have no "
+               "stiff edges, or the time step is too large",
+               label, update->ntimestep);
   for (int d = 0; d < 3; d++) holding[d] = from_holders[d];
 }
 

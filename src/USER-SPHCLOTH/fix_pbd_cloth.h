@@ -121,6 +121,7 @@ class FixPBDCloth : public Fix {
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
   void check_overlap();
+  void check_masses();
   void begin_guests();
   int read_held(ArgReader &, const std::string &keyword);
   bool is_held(int atom) const;

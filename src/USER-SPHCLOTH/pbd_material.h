@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "core/constraints.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -50,11 +51,12 @@ struct PBDMaterial {    // plain, for the restart file
   std::vector<sphcloth::Spring> springs(double rest, int n) const
   {
     constexpr double PULLS_AND_PUSHES = std::numeric_limits<double>::infinity(), PULLS = 0.0;
+    constexpr double SOFTEST = 1e200;    // does nothing, and is still finite over a time step squared
     std::vector<sphcloth::Spring> all;
     if (no_rest) rest = 0.0;
     const auto add = [&](double share, double most) {
       if (compliant)
-        all.push_back({rest, 1.0, compliance / share, most});
+        all.push_back({rest, 1.0, std::min(compliance / share, SOFTEST), most});
       else
         all.push_back({rest, sphcloth::stiffness_per_iteration(k, n), 0.0, most});
     };

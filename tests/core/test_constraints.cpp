@@ -74,7 +74,8 @@ std::array<Vec3, 4> gradient(const std::array<Vec3, 4> &x)
   const Vec3 u = x[0] - x[1], e = x[2] - x[1], v = x[3] - x[1];
   const HingeShape h = hinge_shape(u[0], u[1], u[2], e[0], e[1], e[2], v[0], v[1], v[2]);
   const Vec3 a(h.ax, h.ay, h.az), b(h.bx, h.by, h.bz);
-  return {a, -(h.a1 * a + h.b1 * b), -(h.a2 * a + h.b2 * b), b};
+  const Vec3 e2 = -(h.a2 * a + h.b2 * b);
+  return {a, -(a + b + e2), e2, b};
 }
 
 double angle_of(const std::array<Vec3, 4> &x) { return hinge_angle(x[0], x[1], x[2], x[3]); }
@@ -173,6 +174,39 @@ CASE("hinge: degenerate triangles are left alone")
   const auto before = x;
   project_hinge(x, {1.0, 1.0, 1.0, 1.0}, 0.0, 1.0);
   CHECK(x == before);
+}
+
+CASE("hinge: an edge of the size of round-off keeps momentum")
+{
+  const std::array<double, 4> w{2.0, 0.5, 1.0, 1.5};
+  for (int trial = 0; trial < 1000; trial++) {
+    const Vec3 wing = random_vec();
+    std::array<Vec3, 4> x = {wing, 1e-16 * random_vec(), 1e-16 * random_vec(),
+                             wing + 1e-16 * random_vec()};
+    const auto before = x;
+    project_hinge(x, w, 0.0, 1.0);
+    Vec3 given = Vec3::Zero();
+    double moved = 1.0;
+    for (int q = 0; q < 4; q++) {
+      given += (x[q] - before[q]) / w[q];
+      moved = std::max(moved, (x[q] - before[q]).norm() / w[q]);
+    }
+    CHECK_NEAR(given.norm(), 0.0, 1e-14 * moved);
+  }
+}
+
+CASE("hinge: nothing is infinite down to the smallest numbers")
+{
+  for (double edge : {1.0, 1e-80, 1e-120, 1e-156, 1e-160, 1e-170, 1e-320})
+    for (double wing : {1.0, 1e-80, 1e-120, 1e-156, 1e-160, 1e-170, 1e-320}) {
+      std::array<Vec3, 4> x = {wing * random_vec(), Vec3::Zero(), edge * random_vec(),
+                               wing * random_vec()};
+      project_hinge(x, {1e3, 1.0, 1e-3, 0.0}, 0.5, 1.0);
+      for (const Vec3 &v : x) CHECK(v.allFinite());
+      x[0] = Vec3(1.0, 2.0, 3.0);
+      project_hinge(x, {1e3, 1.0, 1e-3, 1.0}, 0.5, 1.0);
+      for (const Vec3 &v : x) CHECK(v.allFinite());
+    }
 }
 
 CASE("hinge: a vertex without lever is not thrown away when the others are pinned")
@@ -304,4 +338,15 @@ CASE("edge damping: takes stretching motion, keeps momentum and rigid motion")
   v[1] = {0.0, 0.0, -3.0, 2.0};
   damp(edge.c, 0, edge.p.data(), v.data(), 0.7);
   for (int q = 0; q < 2; q++) CHECK(place(v[q]) == Vec3(0.0, 0.0, -3.0));
+}
+
+CASE("edge damping: nothing is infinite down to the smallest numbers")
+{
+  for (double length : {1e-80, 1e-156, 1e-161, 1e-162, 1e-170, 1e-320})
+    for (double w : {1e-3, 1.0, 1e3}) {
+      Alone<2> edge({length * Vec3(1.0, 1.0, 1.0), Vec3::Zero()}, {w, w}, {1.0, 1.0, 0.0, FREE});
+      std::array<Vertex, 3> v{Vertex{1.0, 2.0, 3.0, w}, Vertex{-1.0, 0.5, 2.0, w}};
+      damp(edge.c, 0, edge.p.data(), v.data(), 1.0);
+      for (int q = 0; q < 2; q++) CHECK(place(v[q]).allFinite() && place(v[q]).norm() < 10.0);
+    }
 }

@@ -104,6 +104,7 @@ CASES = [
     case("bond: none", SHEET + "bond_coeff 1", r"stiffness k is missing"),
     case("bond: many", SHEET + "bond_coeff 1 0.5 3", r"'3'"),
     case("bond: compliance", SHEET + "bond_coeff 1 compliance -1", r"compliance is '-1'.*>= 0"),
+    case("bond: overflow", SHEET + "bond_coeff 1 compliance 1e400", r"'1e400'.*finite number"),
     case("bond: no compliance", SHEET + "bond_coeff 1 compliance", r"compliance is missing"),
     case("bond: compress", SHEET + "bond_coeff 1 1 compress 2", r"compress is '2'.*0 to 1"),
     case(

@@ -104,10 +104,10 @@ namespace {
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const HingeShape h = shape_of(a, e1, e2, b, l);
-        const double x1 = -(h.a1 * h.ax + h.b1 * h.bx), y1 = -(h.a1 * h.ay + h.b1 * h.by),
-                     z1 = -(h.a1 * h.az + h.b1 * h.bz);
         const double x2 = -(h.a2 * h.ax + h.b2 * h.bx), y2 = -(h.a2 * h.ay + h.b2 * h.by),
                      z2 = -(h.a2 * h.az + h.b2 * h.bz);
+        // by difference: the sum of the gradients is zero however short the edge is
+        const double x1 = -(h.ax + h.bx + x2), y1 = -(h.ay + h.by + y2), z1 = -(h.az + h.bz + z2);
         const double ga = h.ax * h.ax + h.ay * h.ay + h.az * h.az,
                      gb = h.bx * h.bx + h.by * h.by + h.bz * h.bz, g1 = x1 * x1 + y1 * y1 + z1 * z1,
                      g2 = x2 * x2 + y2 * y2 + z2 * z2;

@@ -137,7 +137,7 @@ SPHCLOTH_INLINE double arc_tangent(double y, double x)
 struct HingeShape {
   double angle;
   double ax, ay, az, bx, by, bz;    // gradients of the wings a and b
-  double a1, a2, b1, b2;    // gradient of edge i: -(a_i grad_a + b_i grad_b)
+  double a2, b2;    // gradient of edge 2: -(a2 grad_a + b2 grad_b); of edge 1: what makes the sum 0
   double valid;    // 1, or 0 for a degenerate triangle, where no angle exists
 };
 
@@ -153,10 +153,11 @@ SPHCLOTH_INLINE HingeShape hinge_shape(double ux, double uy, double uz, double e
   const double length_sq = ex * ex + ey * ey + ez * ez;
   const double na_sq = nax * nax + nay * nay + naz * naz;
   const double nb_sq = nbx * nbx + nby * nby + nbz * nbz;
-  // a triangle thinner than 1e-7 of its edge carries no usable normal
-  const double tiny = 1e-14 * length_sq;
-  const double thin_a = na_sq - tiny * (ux * ux + uy * uy + uz * uz),
-               thin_b = nb_sq - tiny * (vx * vx + vy * vy + vz * vz);
+  // a triangle thinner than 1e-7 of its edge carries no usable normal, nor does one so small that
+  // one over its squares is infinite
+  const double tiny = 1e-14 * length_sq, none = 1e-200;
+  const double thin_a = na_sq - tiny * (ux * ux + uy * uy + uz * uz) - none,
+               thin_b = nb_sq - tiny * (vx * vx + vy * vy + vz * vz) - none;
   // of what is not valid nothing is used; it must only be finite
   const bool valid = std::min(thin_a, thin_b) > 0.0;
   h.valid = valid ? 1.0 : 0.0;
@@ -169,8 +170,6 @@ SPHCLOTH_INLINE HingeShape hinge_shape(double ux, double uy, double uz, double e
   const double inv = 1.0 / (valid ? length_sq : 1.0);
   h.a2 = inv * (ux * ex + uy * ey + uz * ez);
   h.b2 = inv * (vx * ex + vy * ey + vz * ez);
-  h.a1 = 1.0 - h.a2;
-  h.b1 = 1.0 - h.b2;
   return h;
 }
 
@@ -194,8 +193,9 @@ SPHCLOTH_INLINE DistanceStep damping_step(double dx, double dy, double dz, doubl
                                           double vz, double w, double share)
 {
   const double length_sq = dx * dx + dy * dy + dz * dz;
-  const bool can = length_sq > 0.0 && w > 0.0;
-  const double along = -share * (vx * dx + vy * dy + vz * dz) / (can ? length_sq * w : 1.0);
+  const double weight = length_sq * w;
+  const bool can = weight > 0.0;
+  const double along = -share * (vx * dx + vy * dy + vz * dz) / (can ? weight : 1.0);
   const double step = can ? along : 0.0;
   return {step * dx, step * dy, step * dz, step};
 }

@@ -250,7 +250,8 @@ void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, con
                b = place(p[s[3]]) - e1;
     const HingeShape h = hinge_shape(a[0], a[1], a[2], e[0], e[1], e[2], b[0], b[1], b[2]);
     const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
-    const std::array<Vec3, 4> gradient{ga, -h.a1 * ga - h.b1 * gb, -h.a2 * ga - h.b2 * gb, gb};
+    const Vec3 g2 = -h.a2 * ga - h.b2 * gb;
+    const std::array<Vec3, 4> gradient{ga, -ga - g2 - gb, g2, gb};
     for (int q = 0; q < 4; q++)
       if (p[s[q]].w == 0.0) on(s[q], c.lambda[m] * gradient[q]);
   }

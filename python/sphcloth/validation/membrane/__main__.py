@@ -1,0 +1,5 @@
+"""``python -m sphcloth.validation.membrane``."""
+
+from sphcloth.validation.membrane import main
+
+main()

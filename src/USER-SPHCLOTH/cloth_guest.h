@@ -16,9 +16,10 @@ class ClothGuest {
   // Collective; false on all ranks: nothing is near, and the rest is not called.
   virtual bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end,
                           double dt) = 0;
-  virtual void begin_substep(const sphcloth::Vertex *start, double dt) = 0;
+  virtual void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v,
+                             double dt) = 0;
   virtual void project(sphcloth::Vertex *p) = 0;    // moves owned vertices
-  virtual void end_substep(double dt) = 0;
+  virtual void end_substep(sphcloth::Vertex *v, double dt) = 0;    // changes velocities
   virtual void end_step() = 0;
 
   // what an owned vertex got in this step, in mass times velocity

@@ -35,6 +35,12 @@ static constexpr double RECOVERY = 0.1;
 
 static constexpr int STOP_PASSES = 200;
 
+static Eigen::Vector3d at_most(const Eigen::Vector3d &v, double most)
+{
+  const double size = v.norm();
+  return size > most ? Eigen::Vector3d(most / size * v) : v;
+}
+
 ContactSurface::ContactSurface(LAMMPS *lmp, FixPBDCloth *cloth, Fix *contact,
                                const ContactRules *rules, ContactCounts *counts) :
     Pointers(lmp), label(fmt::format("fix {} cloth/contact", contact->id)), cloth(cloth),
@@ -205,7 +211,6 @@ bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, 
   for (Particle &p : particles) p.velocity = p.velocity_before = (p.end - p.start) / dt;
   for (Particle &p : particles) p.end = p.start;
   std::fill(received.begin(), received.end(), Vec3::Zero());
-  count_shares();
   return true;
 }
 
@@ -224,11 +229,12 @@ void ContactSurface::meet()
 
 // over how many pairs the mass of each vertex is split
 
-void ContactSurface::count_shares()
+template <class Counts> void ContactSurface::count_shares(Counts counts_in)
 {
   shares.assign(halo.n_slots(), Vec3::Zero());
   for (const Pair &pair : pairs)
-    for (int s : triangles[pair.triangle]) shares[s][0] += 1.0;
+    if (counts_in(pair))
+      for (int s : triangles[pair.triangle]) shares[s][0] += 1.0;
   halo.reverse_add(0, shares.data());
   halo.forward(0, shares.data(), false);
 }
@@ -248,19 +254,23 @@ double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &i
    inside the solver
 ------------------------------------------------------------------------- */
 
-void ContactSurface::begin_substep(const Vertex *vertices, double dt)
+void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
 {
   substep_dt = dt;
   for (Particle &p : particles) {
     p.from = p.end;
     p.end += dt * p.velocity;
     p.touched = false;
+    p.contacts = 0;
   }
   for (Pair &pair : pairs) {
+    particles[pair.particle].contacts++;
     pair.met = false;
     pair.push = 0.0;
     pair.rub.setZero();
   }
+  count_shares([](const Pair &) { return true; });
+  if (rules->restitution > 0.0) load_velocities(v);
   if (rules->friction == 0.0) return;
   from.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++)
@@ -300,9 +310,11 @@ void ContactSurface::press(Pair &pair)
   const Touch touched = touch({p.start, p.end}, sweep_of_triangle(pair.triangle), rules->thickness);
   double missing = touched.depth;
   if (touched.hit) {
-    pair.met = true;
     pair.weight = touched.weight;
     pair.normal = touched.normal;
+    if (!pair.met && rules->restitution > 0.0)
+      pair.speed_before = velocity_from(pair).dot(pair.normal);
+    pair.met = true;
     pair.kept = touched.kept;
     counts->contacts++;
     counts->deepest = std::max(counts->deepest, touched.depth);
@@ -328,16 +340,15 @@ void ContactSurface::rub(Pair &pair)
     slip -= pair.weight[q] * (end[s] - from[s]);
   }
   slip -= slip.dot(pair.normal) * pair.normal;
-  Vec3 wanted = pair.rub - split_mass(pair, w_solver) * slip;
-  const double most = rules->friction * pair.push, size = wanted.norm();
-  if (size > most) wanted *= most / size;
+  const Vec3 wanted =
+      at_most(pair.rub - split_mass(pair, w_solver) * slip, rules->friction * pair.push);
   give(pair, wanted - pair.rub);
   pair.rub = wanted;
 }
 
 // mass times length on the particle, and the opposite on the triangle
 
-void ContactSurface::give(Pair &pair, const Vec3 &by)
+void ContactSurface::give(const Pair &pair, const Vec3 &by)
 {
   Particle &p = particles[pair.particle];
   p.change += by;
@@ -345,11 +356,64 @@ void ContactSurface::give(Pair &pair, const Vec3 &by)
   for (int q = 0; q < 3; q++) change[triangles[pair.triangle][q]] -= pair.weight[q] * by;
 }
 
-void ContactSurface::end_substep(double dt)
+// Positions that were put right may leave a motion apart behind, or not all of the approach gone.  What
+// touches goes on with the part of its approach that the restitution gives back, and no more; but
+// a pair never pulls.
+
+void ContactSurface::end_substep(Vertex *v, double dt)
 {
-  for (Particle &p : particles)
+  for (Particle &p : particles) {
     if (p.touched) p.velocity = (p.end - p.from) / dt;
-  for (Pair &pair : pairs) pair.impulse += pair.push / dt;
+    p.contacts = 0;
+    p.change.setZero();
+  }
+  for (const Pair &pair : pairs) particles[pair.particle].contacts += pair.push > 0.0;
+  count_shares([](const Pair &pair) { return pair.push > 0.0; });
+  load_velocities(v);
+  change.assign(halo.n_slots(), Vec3::Zero());
+  for (const Pair &pair : pairs)
+    if (pair.push > 0.0) part(pair, dt);
+  for (Particle &p : particles) p.velocity += p.w * p.change;
+  halo.reverse_add(0, change.data());
+  for (int s = 0; s < halo.n_owned(); s++) {
+    v[s].x += w_solver[s] * change[s][0];
+    v[s].y += w_solver[s] * change[s][1];
+    v[s].z += w_solver[s] * change[s][2];
+    received[s] += change[s];
+  }
+}
+
+void ContactSurface::part(const Pair &pair, double dt)
+{
+  const double mass = split_mass(pair, w_solver), pushed = pair.push / dt;
+  const Vec3 velocity = velocity_from(pair);
+  const double speed = velocity.dot(pair.normal);
+  const double wanted = rules->restitution * std::max(0.0, -pair.speed_before);
+  const double step = std::max((wanted - speed) * mass, -pushed);
+  Vec3 impulse = step * pair.normal;
+  if (rules->friction > 0.0) {
+    const Vec3 rubbed = pair.rub / dt;
+    impulse -= rubbed;
+    impulse += at_most(rubbed - mass * (velocity - speed * pair.normal),
+                       rules->friction * (pushed + step));
+  }
+  give(pair, impulse);
+}
+
+// of the particle from the triangle
+
+Eigen::Vector3d ContactSurface::velocity_from(const Pair &pair) const
+{
+  Vec3 velocity = particles[pair.particle].velocity;
+  for (int q = 0; q < 3; q++) velocity -= pair.weight[q] * now[triangles[pair.triangle][q]];
+  return velocity;
+}
+
+void ContactSurface::load_velocities(const Vertex *v)
+{
+  now.resize(halo.n_slots());
+  for (int s = 0; s < halo.n_owned(); s++) now[s] = Vec3(v[s].x, v[s].y, v[s].z);
+  halo.forward(0, now.data(), false);
 }
 
 void ContactSurface::end_step()
@@ -362,18 +426,6 @@ void ContactSurface::end_step()
   for (int s = 0; s < halo.n_owned(); s++)
     if (w[s] == 0.0)
       for (int d = 0; d < 3; d++) counts->impulse[d] += received[s][d] / force->ftm2v;
-  if (rules->restitution > 0.0) bounce();
-}
-
-// Poisson's hypothesis: what took the approach away comes back in part
-
-void ContactSurface::bounce()
-{
-  change.assign(halo.n_slots(), Vec3::Zero());
-  for (Particle &p : particles) p.change.setZero();
-  for (Pair &pair : pairs)
-    if (pair.impulse > 0.0) give(pair, rules->restitution * pair.impulse * pair.normal);
-  take_velocities();
 }
 
 /* ----------------------------------------------------------------------
@@ -472,22 +524,22 @@ void ContactSurface::remember(int i, int triangle, const Touch &touched)
 
 void ContactSurface::stop_approach()
 {
-  count_shares();
-  from.resize(halo.n_slots());
+  count_shares([](const Pair &) { return true; });
+  now.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++) {
     const double *v = atom->v[halo.atom_of(s)];
-    from[s] = Vec3(v[0], v[1], v[2]);
+    now[s] = Vec3(v[0], v[1], v[2]);
   }
-  halo.forward(0, from.data(), false);
+  halo.forward(0, now.data(), false);
   change.assign(halo.n_slots(), Vec3::Zero());
-  for (Particle &p : particles) p.change.setZero();
-  for (Pair &pair : pairs) {
-    const double *v = atom->v[particles[pair.particle].atom];
-    Vec3 approach(v[0], v[1], v[2]);
-    for (int q = 0; q < 3; q++) approach -= pair.weight[q] * from[triangles[pair.triangle][q]];
-    const double speed = approach.dot(pair.normal);
-    if (speed < 0.0) give(pair, -speed * split_mass(pair, w) * pair.normal);
+  for (Particle &p : particles) {
+    const double *v = atom->v[p.atom];
+    p.velocity = Vec3(v[0], v[1], v[2]);
+    p.change.setZero();
   }
+  for (Pair &pair : pairs)
+    give(pair,
+         std::max(0.0, -velocity_from(pair).dot(pair.normal)) * split_mass(pair, w) * pair.normal);
   take_velocities();
 }
 

@@ -86,9 +86,9 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void set_last_places(double **places) { last_places = places; }
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
-  void begin_substep(const sphcloth::Vertex *start, double dt) override;
+  void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
   void project(sphcloth::Vertex *p) override;
-  void end_substep(double dt) override;
+  void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }
 
@@ -124,7 +124,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
     double kept = 0.0;
     double push = 0.0;    // of this substep, mass times length
     Vec3 rub = Vec3::Zero();    // the same along the triangle
-    double impulse = 0.0;    // of the step
+    double speed_before = 0.0;    // of the particle from the triangle
   };
 
   std::string label;
@@ -138,6 +138,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<std::array<int, 3>> triangles;    // slots
   std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
   std::vector<Vec3> from;                  // by slot: at the start of the substep
+  std::vector<Vec3> now;                  // by slot: velocities
   std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
   std::vector<Vec3> shares;    // contacts of each slot
@@ -155,13 +156,15 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void find_near(double margin);
   bool all_in_boxes() const;
   void meet();
-  void count_shares();
+  template <class Counts> void count_shares(Counts counts_in);
+  Vec3 velocity_from(const Pair &) const;
+  void part(const Pair &, double dt);
+  void load_velocities(const sphcloth::Vertex *v);
   double split_mass(const Pair &, const std::vector<double> &inverse_mass) const;
   void remember(int atom, int triangle, const sphcloth::Touch &);
-  void give(Pair &, const Vec3 &by);
+  void give(const Pair &, const Vec3 &by);
   void press(Pair &);
   void rub(Pair &);
-  void bounce();
   bool stop(bool recover);
   sphcloth::Touch recovery(const Vec3 &p, int t) const;
   void stop_approach();

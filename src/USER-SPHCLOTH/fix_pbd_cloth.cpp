@@ -41,11 +41,11 @@ static constexpr double CLOSED = 0.25;
 ------------------------------------------------------------------------- */
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
-    iterations(10), from_start(false), tolerance(0.0), pinbit(0), attachbit(0), damping(0.0),
-    rest_x(nullptr), hold(nullptr), mesh(lmp, label), halo(lmp), edge_colours(0), hinge_colours(0),
-    edge_layers(1), mean_length(0.0), holding{}, sweeps(0), remembered(true), last_residual(0.0),
-    last_energy(0.0), started(false)
+    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
+    iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
+    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), mesh(lmp, label), halo(lmp),
+    edge_colours(0), hinge_colours(0), edge_layers(1), mean_length(0.0), holding{}, sweeps(0),
+    remembered(true), last_residual(0.0), last_energy(0.0), started(false)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -93,6 +93,8 @@ void FixPBDCloth::read_options(ArgReader &args)
       tolerance = args.positive(keyword);
     else if (keyword == "pin")
       pinbit = read_held(args, keyword);
+    else if (keyword == "velocity")
+      pin_motion.read(args);
     else if (keyword == "attach")
       attachbit = read_held(args, keyword);
     else if (keyword == "damping")
@@ -100,8 +102,12 @@ void FixPBDCloth::read_options(ArgReader &args)
     else if (keyword == "rest")
       take_rest_positions(args.word("rest property").c_str());
     else
-      args.unknown(keyword, "iterations, solver, direction, tolerance, pin, attach, damping, rest");
+      args.unknown(
+          keyword,
+          "iterations, solver, direction, tolerance, pin, velocity, attach, damping, rest");
   }
+  if (pin_motion && !pinbit)
+    error->all(FLERR, "{}: velocity is that of pins: name their group with 'pin'", label);
   if (pinbit && attachbit && share_atoms(atom, pinbit, attachbit, world))
     error->all(FLERR, "{}: a vertex is in the group of pin and in that of attach: it can be in one",
                label);
@@ -250,7 +256,8 @@ void FixPBDCloth::measure_rest()
   int missing = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2])) missing = static_cast<int>(atom->tag[i]);
+    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2]))
+      missing = static_cast<int>(atom->tag[i]);
     mine[mesh.index_of(atom->tag[i])] = Vec3(rest_x[i][0], rest_x[i][1], rest_x[i][2]);
   }
   int any_missing = 0;
@@ -443,6 +450,7 @@ double FixPBDCloth::inverse_mass(int i) const
 
 void FixPBDCloth::post_integrate()
 {
+  if (pin_motion) move_pins();
   load();
   if (hold) start_pulls();
   begin_guests();
@@ -452,6 +460,19 @@ void FixPBDCloth::post_integrate()
   for (ClothGuest *guest : present) guest->end_step();
   remembered = false;
   started = true;
+}
+
+void FixPBDCloth::move_pins()
+{
+  pin_motion.evaluate(igroup);
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    if (!is_pinned(i)) continue;
+    for (int d = 0; d < 3; d++) {
+      atom->v[i][d] = pin_motion.velocity(i, d);
+      atom->x[i][d] += update->dt * atom->v[i][d];
+    }
+  }
 }
 
 void FixPBDCloth::begin_guests()
@@ -522,7 +543,7 @@ void FixPBDCloth::substep(int n)
     p[s] = {x[0], x[1], x[2], 0.0};
   }
   halo.forward(ALL, p.data(), true);
-  for (ClothGuest *guest : present) guest->begin_substep(start.data(), dt);
+  for (ClothGuest *guest : present) guest->begin_substep(start.data(), v.data(), dt);
 
   project_all(dt);
   if (hold) {
@@ -536,7 +557,7 @@ void FixPBDCloth::substep(int n)
     v[s].y = inv_dt * (p[s].y - start[s].y);
     v[s].z = inv_dt * (p[s].z - start[s].z);
   }
-  for (ClothGuest *guest : present) guest->end_substep(dt);
+  for (ClothGuest *guest : present) guest->end_substep(v.data(), dt);
   if (!last) start = p;
 }
 

@@ -14,6 +14,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth_guest.h"
 #include "cloth_topology.h"
 #include "core/cloth_solver.h"
+#include "pin_motion.h"
 #include "vertex_halo.h"
 
 #include <array>
@@ -89,6 +90,7 @@ class FixPBDCloth : public Fix {
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
   int pinbit;    // 0: nothing is pinned
+  PinMotion pin_motion;
   int attachbit;    // vertices that another fix integrates, with the pull of the cloth on them
   double damping;    // rate at which stretching motion decays, 1/time
   double **rest_x;    // rest position of each vertex, unwrapped
@@ -138,6 +140,7 @@ class FixPBDCloth : public Fix {
   double share_of(const int *vertices, int n) const;
   void ask_for_ghosts(const std::vector<int> &);
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
+  void move_pins();
   void load();
   void load_attached(int slot);
   sphcloth::Vertex velocity_of_attached(int slot) const;

@@ -100,7 +100,7 @@ def test_contact_does_nothing_when_far():
 def test_momentum_of_a_free_sheet_and_its_water():
     """Two fluids of unequal mass, pressure, viscosity, projection and contact together."""
     lmp = instance()
-    lmp.commands_string(FREE_SHEET.format(boundary="p p p"))
+    lmp.commands_string(FREE_SHEET.replace("-6.0 units box", "-20.0 units box"))
 
     def momentum():
         kind, v = by_id(lmp, "type"), by_id(lmp, "v")
@@ -127,3 +127,126 @@ def test_collision_never_adds_energy():
         energy.append(lmp.get_thermo("ke"))
     assert energy[-1] < 0.95 * energy[0]
     assert np.diff(energy).max() < 1e-9 * energy[0]
+
+
+# ---------------------------------------------------------------------- one particle on a table
+
+TABLE = (
+    HEADER.format(boundary="p p p")
+    + """
+region box block -2 2 -2 2 -1 1
+create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 8
+region all block INF INF INF INF INF INF
+create_cloth 2 2.0 size 3.0 3.0 spacing 0.1 group cloth pin all table
+mass 1 0.125
+create_atoms 1 single {x} 0.033 {height} units box
+group fluid type 1
+special_bonds lj/coul 1 1 1
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000.0 c0 1e-6
+pair_coeff 2 2 boundary
+bond_style pbd
+bond_coeff 1 1.0
+angle_style zero
+angle_coeff *
+dihedral_style pbd
+dihedral_coeff 1 0.1
+neighbor 0.1 bin
+comm_modify cutoff 0.6
+neigh_modify every 1 delay 0 check yes
+timestep 1e-3
+fix step fluid sph/integrate constant
+fix sheet cloth pbd/cloth pin table
+fix contact fluid cloth/contact 0.01 {contact}
+"""
+)
+
+
+def table(contact, commands, x=0.0, height=0.0101):
+    """Return LAMMPS and a function for place and velocity of the particle."""
+    lmp = instance()
+    text = TABLE.format(contact=contact, x=x, height=height).replace("region all", "region every")
+    lmp.commands_string(text.replace("pin all table", "pin every table") + commands)
+
+    def particle():
+        one = by_id(lmp, "type") == 1
+        return by_id(lmp, "x")[one][0], by_id(lmp, "v")[one][0]
+
+    return lmp, particle
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("height", [0.1, 0.0998])
+def test_restitution_gives_back_its_part_of_the_speed(e, height):
+    lmp, particle = table(f"restitution {e}", "velocity fluid set 0.3 0 -2", height=height)
+    lmp.command("run 100")
+    v = particle()[1]
+    assert v == pytest.approx([0.3, 0, 2 * e], abs=1e-9)
+    impulse = [lmp.extract_fix("contact", 0, 1, n) for n in (4, 5, 6)]
+    assert impulse == pytest.approx([0, 0, -0.125 * 2 * (1 + e)], abs=1e-9)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.2, 1.0])
+def test_friction_slows_what_slides(mu):
+    """Weight on a table that is 30 degrees steep: it slides with g (sin - mu cos), or stays."""
+    g = 9.81 * np.array([0.5, 0.0, -np.sqrt(0.75)])
+    vector = " ".join(str(c) for c in g)
+    lmp, particle = table(f"friction {mu}", f"fix g fluid gravity 9.81 vector {vector}", x=-1.0)
+    lmp.command("run 50")
+    before = particle()[1]
+    lmp.command("run 400")
+    x, v = particle()
+    assert x[2] == pytest.approx(0.01, rel=1e-3)
+    assert v[2] == pytest.approx(0, abs=1e-6)
+    faster = max(0.0, g[0] + mu * g[2])
+    assert (v - before)[0] == pytest.approx(0.4 * faster, abs=1e-4)
+
+
+def test_what_is_too_near_at_first_gets_its_gap_without_speed():
+    lmp, particle = table("", "", height=0.002)
+    lmp.command("run 5")
+    assert particle()[0][2] == pytest.approx(0.007, rel=1e-9)
+    lmp.command("run 20")
+    assert particle()[0][2] == pytest.approx(0.01, rel=1e-9)
+    assert np.abs(particle()[1]).max() == 0
+
+
+@pytest.mark.parametrize("contact", ["friction 0.5", "restitution 0.7 friction 0.3"])
+def test_free_sheet_with_friction_and_restitution(contact):
+    """Grazing and hard: momentum to round-off, energy only lost."""
+    lmp = instance()
+    lmp.commands_string(
+        FREE_SHEET.replace("0.3 -0.2 -6.0", "3 -1 -6.0")
+        .replace("c0 8 alpha 0.1", "c0 1e-3")
+        .replace("c0 6 nu 0.01", "c0 1e-3")
+        .replace("sph/integrate global", "sph/integrate constant")
+        .replace("bond_coeff 1 0.9", "bond_coeff 1 0")
+        .replace("dihedral_coeff 1 0.1", "dihedral_coeff 1 0")
+        + f"unfix contact\nfix contact fluid cloth/contact 0.03 {contact}\n"
+        "comm_modify cutoff 0.5\ntimestep 2e-4\nthermo_style custom ke\nrun 0"
+    )
+
+    def momentum():
+        kind, v = by_id(lmp, "type"), by_id(lmp, "v")
+        return (lmp.numpy.extract_atom("mass")[kind][:, None] * v).sum(axis=0)
+
+    start, energy = momentum(), [lmp.get_thermo("ke")]
+    for _ in range(40):
+        lmp.command("run 5 post no")
+        energy.append(lmp.get_thermo("ke"))
+    assert lmp.extract_fix("contact", 0, 1, 0) > 0
+    assert np.abs(momentum() - start).max() < 1e-12 * np.abs(start).max()
+    assert np.diff(energy).max() < 1e-9 * energy[0]
+    assert energy[-1] < 0.99 * energy[0]
+
+
+@pytest.mark.parametrize("direction", ["current", "start"])
+def test_nothing_passes_a_light_sheet_that_is_thrown_about(direction, tmp_path):
+    """Few sweeps for a hard blow: particles get caught in folds and move with them."""
+    lmp = shower("0 0 -3", areal=0.2, dt=1e-2)
+    lmp.commands_string(
+        f"unfix contact\nunfix sheet\nfix sheet cloth pbd/cloth pin pins solver gs "
+        f"direction {direction}\nfix contact fluid cloth/contact 0.01"
+    )
+    assert crossed(lmp, tmp_path, 20) == 0

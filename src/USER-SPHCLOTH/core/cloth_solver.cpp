@@ -232,7 +232,8 @@ void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start
     Vec3 edge = place(p[one]) - place(p[two]);
     if (start) {
       const Vec3 before = place(start[one]) - place(start[two]);
-      if (!has_turned(edge.normalized().dot(before), before.norm())) edge = before;
+      const double pull = std::fabs(c.lambda[m]) * (p[one].w + p[two].w) / edge.norm();
+      if (!start_is_void(edge.normalized().dot(before), before.norm(), pull)) edge = before;
     }
     const Vec3 pull = c.lambda[m] * edge.normalized();
     if (p[one].w == 0.0) on(one, pull);

@@ -70,17 +70,21 @@ SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, doub
   return {along * dx, along * dy, along * dz, step};
 }
 
-// Has an edge turned by more than 60 degrees since the start of the step, where its length was
-// `before`?  cosine: of the angle, times that length.
+// The direction that an edge had at the start of the step is of no use if it has turned by more than 60
+// degrees since (cosine: of that angle, times the length `before` that it had), or if the step is
+// long for its tension: a string of links of length l and masses m under a tension T swings ever
+// higher if dt^2 T > m l, which is a pull of 2.  pull: what its ends are moved, over its length.
 
-SPHCLOTH_INLINE bool has_turned(double cosine, double before)
+inline constexpr double MOST_PULL = 0.5;
+
+SPHCLOTH_INLINE bool start_is_void(double cosine, double before, double pull)
 {
-  return !(cosine >= 0.5 * before && before > 0.0);
+  return !(cosine >= 0.5 * before && before > 0.0 && pull < MOST_PULL);
 }
 
 // The same along the direction (sx, sy, sz) that the edge had at the start of the step, as SHAKE
-// does: second order in time.  The length changes with the cosine between the two; where the edge has
-// turned the present direction is taken.
+// does: second order in time.  The length changes with the cosine between the two; where the start is
+// void the present direction is taken.
 
 SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz, double sx,
                                                  double sy, double sz, double w, double rest,
@@ -90,12 +94,14 @@ SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz
   const double before = std::sqrt(sx * sx + sy * sy + sz * sz);
   const bool apart = length > 0.0;
   const double cosine = (dx * sx + dy * sy + dz * sz) / (apart ? length : 1.0);
-  const bool turned = has_turned(cosine, before);
-  const double inv = 1.0 / (turned ? (apart ? length : 1.0) : before);
-  const double nx = inv * (turned ? dx : sx), ny = inv * (turned ? dy : sy),
-               nz = inv * (turned ? dz : sz);
-  const double slope = turned ? 1.0 : inv * cosine;
-  const double step = multiplier_step(length - rest, w * slope, apart ? k : 0.0, a, lambda, most);
+  const double error = length - rest;
+  const double pull = (std::fabs(error) + w * std::fabs(lambda)) / (apart ? length : 1.0);
+  const bool present = start_is_void(cosine, before, pull);
+  const double inv = 1.0 / (present ? (apart ? length : 1.0) : before);
+  const double nx = inv * (present ? dx : sx), ny = inv * (present ? dy : sy),
+               nz = inv * (present ? dz : sz);
+  const double slope = present ? 1.0 : inv * cosine;
+  const double step = multiplier_step(error, w * slope, apart ? k : 0.0, a, lambda, most);
   return {step * nx, step * ny, step * nz, step};
 }
 

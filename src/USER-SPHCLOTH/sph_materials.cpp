@@ -45,12 +45,14 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
 
   ArgReader args(lmp, COEFF, narg, arg, 2);
   const std::string role = arg[2];
-  const bool of_type = role == "fluid" || role == "boundary";
+  const bool of_type = role == "fluid" || role == "boundary" || role == "none";
   TypeData data;
   PairData pair;
   if (of_type) {
     args.word("role");
-    data = role == "fluid" ? read_fluid(args, pair) : read_boundary(args);
+    if (role == "fluid") data = read_fluid(args, pair);
+    if (role == "boundary") data = read_boundary(args);
+    args.end();
   } else
     pair = read_pair(args);
 
@@ -67,7 +69,7 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
   if (of_type)
     error->all(FLERR, "{}: a role belongs to one type: give the same type twice (I = J)", COEFF);
   error->all(FLERR,
-             "{}: pair {} {} has no role: start with 'fluid' or 'boundary' for I = J, and give "
+             "{}: pair {} {} has no role: start with 'fluid', 'boundary' or 'none' for I = J, and give "
              "I < J for two types",
              COEFF, arg[0], arg[1]);
 }
@@ -252,6 +254,7 @@ std::string SPHMaterials::words(int i, int j) const
   if (i != j)
     return fmt::format("support {} nu {} alpha {}", support(i, j), nu(i, j), alpha(i, j)) +
         only_if(own.stiffness, "k");
+  if (t.role == Role::NONE) return "none";
   if (is_boundary(i))
     return "boundary pressure " + PRESSURES[static_cast<int>(t.pressure)] +
         only_if(t.volume, "volume");

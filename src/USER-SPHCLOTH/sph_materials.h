@@ -32,7 +32,7 @@ class SPHMaterials : protected Pointers {
   // forgets everything
   void allocate();
 
-  // pair_coeff I I fluid|boundary ... or pair_coeff I J ...; marks what is set
+  // pair_coeff I I fluid|boundary|none ... or pair_coeff I J ...; marks what is set
   void read(int narg, char **arg, int **setflag);
 
   const TypeData &type(int i) const { return types[i]; }

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
+from scenes import HEADER
 
 H = 0.1
 RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
@@ -671,3 +672,27 @@ def test_volumes_follow_a_boundary_only_while_there_is_fluid(fluid):
     lmp.command("run 3")
     grown = lmp.extract_compute("mean", 0, 0) / before
     assert (grown > 1.01) if fluid else (grown == 1.0)
+
+
+def test_particles_of_no_role_take_no_part(tmp_path):
+    """Neither densities nor forces know of them, also after a data file."""
+    seen = []
+    for other in ("", "create_atoms 2 single 0.42 0.53 0.51 units box\n"):
+        lmp = instance()
+        lmp.commands_string(
+            HEADER.format(boundary="p p p")
+            + "region box block 0 1 0 1 0 1\ncreate_box 2 box\nmass * 1e-3\nlattice sc 0.1\n"
+            + "create_atoms 1 box\ndisplace_atoms all random 0.02 0.02 0.02 5 units box\n"
+            + other
+            + "pair_style sph/tait 0.2\npair_coeff 1 1 fluid 1 c0 10 alpha 0.1\n"
+            + "pair_coeff 2 2 none\nrun 0\n"
+        )
+        if other:
+            path = tmp_path / "none.data"
+            lmp.command(f"write_data {path} pair ij")
+            assert "2 2 none" in path.read_text()
+        fluid = by_id(lmp, "type") == 1
+        seen.append((by_id(lmp, "rho")[fluid], by_id(lmp, "f")[fluid]))
+        if other:
+            assert np.abs(by_id(lmp, "f")[~fluid]).max() == 0
+    assert all(np.array_equal(a, b) for a, b in zip(*seen, strict=True))

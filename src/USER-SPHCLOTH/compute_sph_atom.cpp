@@ -3,6 +3,7 @@
 #include "arg_reader.h"
 #include "atom.h"
 #include "error.h"
+#include "fix_cloth_contact.h"
 #include "fix_sph_integrate.h"
 #include "force.h"
 #include "memory.h"
@@ -21,7 +22,7 @@ using namespace sphcloth;
 
 ComputeSPHAtom::ComputeSPHAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0), pair(nullptr),
-    stepper(nullptr)
+    stepper(nullptr), sheets(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   do columns.push_back(read_column(args));
@@ -39,8 +40,8 @@ ComputeSPHAtom::~ComputeSPHAtom()
 
 ComputeSPHAtom::Column ComputeSPHAtom::read_column(ArgReader &args) const
 {
-  static const std::vector<std::string> NAMES = {"density", "pressure",  "energy", "sound",
-                                                 "volume",  "neighbors", "dt",     "active"};
+  static const std::vector<std::string> NAMES = {
+      "density", "pressure", "energy", "sound", "volume", "neighbors", "dt", "active", "side"};
   const std::string name = args.word("keyword");
   const auto found = std::find(NAMES.begin(), NAMES.end(), name);
   if (found == NAMES.end()) args.unknown(name, utils::join_words(NAMES, ", "));
@@ -62,6 +63,15 @@ void ComputeSPHAtom::find_styles()
   if (!pair)
     error->all(FLERR, "{}: pair_style {} knows nothing of fluid: use 'pair_style sph/tait'", label,
                force->pair_style ? force->pair_style : "none");
+  if (asks_for(Column::SIDE)) {
+    const auto contacts = modify->get_fix_by_style("^cloth/contact$");
+    if (contacts.empty())
+      error->all(FLERR,
+                 "{}: sides are known to fix cloth/contact alone: add that fix, or leave the "
+                 "keyword out",
+                 label);
+    sheets = dynamic_cast<FixClothContact *>(contacts[0]);
+  }
   if (!asks_for(Column::DT) && !asks_for(Column::ACTIVE)) return;
   const auto fixes = modify->get_fix_by_style("^sph/integrate$");
   if (fixes.empty())
@@ -114,6 +124,7 @@ double ComputeSPHAtom::value(Column column, int i) const
   switch (column) {
     case Column::NEIGHBORS: return pair->count_neighbours(i);
     case Column::DT: return integrated ? stepper->own_step(i) : 0.0;
+    case Column::SIDE: return sheets->side_of(i);
     case Column::ACTIVE: return integrated && stepper->is_active(i);
     default: break;
   }

@@ -16,6 +16,7 @@ ComputeStyle(sph/atom,ComputeSPHAtom);
 
 namespace LAMMPS_NS {
 
+class FixClothContact;
 class FixSPHIntegrate;
 class PairSPHTait;
 
@@ -28,13 +29,14 @@ class ComputeSPHAtom : public Compute {
   double memory_usage() override;
 
  private:
-  enum class Column { DENSITY, PRESSURE, ENERGY, SOUND, VOLUME, NEIGHBORS, DT, ACTIVE };
+  enum class Column { DENSITY, PRESSURE, ENERGY, SOUND, VOLUME, NEIGHBORS, DT, ACTIVE, SIDE };
 
   std::string label;
   std::vector<Column> columns;    // in the user's order
   int nmax;
   PairSPHTait *pair;
   FixSPHIntegrate *stepper;    // only where a column needs it
+  FixClothContact *sheets;     // the same
 
   Column read_column(class ArgReader &) const;
   bool asks_for(Column) const;

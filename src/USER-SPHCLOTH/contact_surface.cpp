@@ -64,6 +64,7 @@ void ContactSurface::rebuild()
   }
   halo.reset(1, owned);
   triangles.clear();
+  element.clear();
   add_triangles(reach);
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
   halo.connect(contact);
@@ -105,6 +106,7 @@ void ContactSurface::add_triangles(const std::vector<int> &reach)
             label, mesh.ids[vertex], mesh.ids[members[1]], mesh.ids[members[2]]);
       if (j < 0 || l < 0) continue;
       triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
+      element.push_back(t.incident[k]);
     }
   }
 }
@@ -152,9 +154,8 @@ std::array<Sweep, 3> ContactSurface::sweep_of_triangle(int t) const
   return sweep;
 }
 
-void ContactSurface::find_near(double margin)
+void ContactSurface::set_boxes(double margin)
 {
-  near.clear();
   boxes.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); t++) {
     boxes[t].setEmpty();
@@ -169,7 +170,12 @@ void ContactSurface::find_near(double margin)
     boxes[t].max() += room;
   }
   grid.build(boxes);
+}
 
+void ContactSurface::find_near(double margin)
+{
+  near.clear();
+  set_boxes(margin);
   const Box &cloth_box = grid.bounds();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & contact->groupbit)) continue;
@@ -248,6 +254,76 @@ double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &i
     inverse += inverse_mass[s] * shares[s][0] * pair.weight[q] * pair.weight[q];
   }
   return 1.0 / inverse;
+}
+
+/* ----------------------------------------------------------------------
+   sides
+------------------------------------------------------------------------- */
+
+void ContactSurface::check_winding()
+{
+  const ClothTopology &mesh = cloth->topology();
+  const auto &elements = mesh.triangles.vertices;
+  std::map<std::array<int, 2>, std::vector<int>> at_edge;    // edge as a triangle runs along it
+  for (std::size_t m = 0; m < elements.size(); m++)
+    for (int q = 0; q < 3; q++)
+      at_edge[{elements[m][q], elements[m][(q + 1) % 3]}].push_back(static_cast<int>(m));
+
+  at_border.assign(elements.size(), {false, false, false});
+  for (const auto &[edge, of] : at_edge) {
+    if (of.size() > 1)
+      error->all(
+          FLERR,
+          "{}: two triangles run from vertex {} to vertex {}: a cloth with two sides must be "
+          "wound alike everywhere ('sphcloth mesh' does that); or give 'sides no'",
+          label, mesh.ids[edge[0]], mesh.ids[edge[1]]);
+    if (at_edge.count({edge[1], edge[0]})) continue;
+    const std::array<int, 3> &v = elements[of[0]];
+    for (int q = 0; q < 3; q++)
+      if (v[q] == edge[0]) at_border[of[0]][(q + 2) % 3] = true;
+  }
+}
+
+void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sides)
+{
+  for (int s = 0; s < halo.n_slots(); s++) {
+    const double *x = atom->x[halo.atom_of(s)];
+    start[s] = end[s] = Vec3(x[0], x[1], x[2]);
+  }
+  set_boxes(reach);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & contact->groupbit)) continue;
+    const double *x = atom->x[i];
+    const int side = side_at(Vec3(x[0], x[1], x[2]));
+    if (side != 0) sides[i] |= side_of_sheet(sheet, side > 0);
+  }
+}
+
+// 1 above, -1 below, 0 far away or beyond the border.  At an edge or a vertex several triangles are
+// equally near; the one that is seen most from the front knows the side.
+
+int ContactSurface::side_at(const Vec3 &p)
+{
+  double nearest = std::numeric_limits<double>::max(), height = 0.0;
+  bool beyond = false;
+  grid.query(Box(p), [&](int t) {
+    if (!boxes[t].contains(p)) return;
+    const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
+    Vec3 weight;
+    const Vec3 from = distance_vector(p, a, b, c, weight);
+    const double distance = from.norm();
+    if (distance > nearest * (1.0 + SEAM)) return;
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    const double over = normal.dot(from);
+    if (distance < nearest * (1.0 - SEAM)) {
+      height = 0.0;
+      beyond = false;
+    }
+    nearest = std::min(nearest, distance);
+    if (std::fabs(over) > std::fabs(height)) height = over;
+    for (int q = 0; q < 3; q++) beyond = beyond || (weight[q] <= 0.0 && at_border[element[t]][q]);
+  });
+  return beyond || height == 0.0 ? 0 : (height > 0.0 ? 1 : -1);
 }
 
 /* ----------------------------------------------------------------------
@@ -594,7 +670,7 @@ void ContactSurface::freeze()
 void ContactSurface::move_zones(const ContactZones &zones)
 {
   struct Sum {
-    double mass, way[3], momentum[3];               // of the free members
+    double mass, way[3], momentum[3];    // of the free members
     double held, held_way[3], held_velocity[3];    // number of the held ones, and sums over them
   };
   constexpr int SIZE = sizeof(Sum) / sizeof(double);

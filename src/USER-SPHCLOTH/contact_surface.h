@@ -12,6 +12,7 @@
 #include "cloth_guest.h"
 #include "core/box_grid.h"
 #include "core/contact.h"
+#include "core/sides.h"
 #include "vertex_halo.h"
 
 #include <array>
@@ -30,6 +31,7 @@ struct ContactRules {
   double thickness = 0.0;
   double friction = 0.0;       // Coulomb's coefficient
   double restitution = 0.0;    // part of the approaching speed that comes back
+  bool sides = true;           // fluids above and below do not feel each other
 };
 
 struct ContactCounts {
@@ -92,6 +94,12 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }
 
+  // above or below this sheet, for particles nearer than `reach`: adds to what is there.  Own atoms.
+  void find_sides(double reach, int sheet, std::vector<sphcloth::Sides> &);
+
+  // sides need triangles that are wound alike; collects the edges at the border
+  void check_winding();
+
   // Behind the solver: what still goes wrong on the way from the last step's places to the present
   // ones, to round-off.  Collective.
   void settle();
@@ -136,9 +144,11 @@ class ContactSurface : public ClothGuest, protected Pointers {
   double substep_dt;
   VertexHalo halo;
   std::vector<std::array<int, 3>> triangles;    // slots
+  std::vector<int> element;                     // of the cloth, of each triangle
+  std::vector<std::array<bool, 3>> at_border;    // of each element: the edge opposite to a vertex
   std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
-  std::vector<Vec3> from;                  // by slot: at the start of the substep
-  std::vector<Vec3> now;                  // by slot: velocities
+  std::vector<Vec3> from;    // by slot: at the start of the substep
+  std::vector<Vec3> now;    // by slot: velocities
   std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
   std::vector<Vec3> shares;    // contacts of each slot
@@ -154,6 +164,8 @@ class ContactSurface : public ClothGuest, protected Pointers {
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
   void find_near(double margin);
+  void set_boxes(double margin);
+  int side_at(const Vec3 &p);
   bool all_in_boxes() const;
   void meet();
   template <class Counts> void count_shares(Counts counts_in);

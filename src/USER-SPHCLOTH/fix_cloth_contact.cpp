@@ -6,6 +6,7 @@
 #include "arg_reader.h"
 #include "atom.h"
 #include "atom_tools.h"
+#include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
 #include "group.h"
@@ -23,7 +24,7 @@ using namespace FixConst;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    linking(nullptr)
+    linking(nullptr), sight(0.0)
 {
   vector_flag = 1;
   size_vector = 7;
@@ -41,8 +42,10 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
       rules.friction = args.at_least("friction coefficient", 0.0);
     else if (keyword == "restitution")
       rules.restitution = args.fraction("restitution");
+    else if (keyword == "sides")
+      rules.sides = args.choice(keyword, {"no", "yes"});
     else
-      args.unknown(keyword, "friction, restitution");
+      args.unknown(keyword, "friction, restitution, sides");
   }
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
@@ -89,6 +92,11 @@ void FixClothContact::setup_post_neighbor()
                "data file needs an Angles section",
                label);
   keep_places();
+  if (rules.sides && surfaces.size() > sphcloth::MOST_SHEETS)
+    error->all(FLERR, "{}: {} cloths have sides, the most are {}: give 'sides no'", label,
+               surfaces.size(), sphcloth::MOST_SHEETS);
+  if (rules.sides)
+    for (auto &surface : surfaces) surface->check_winding();
   post_neighbor();
 }
 
@@ -99,6 +107,19 @@ void FixClothContact::post_neighbor()
     surface->rebuild();
     surface->set_last_places(places);
   }
+  if (rules.sides) find_sides();
+}
+
+// They hold until the next list build, since nobody passes.
+
+void FixClothContact::find_sides()
+{
+  side.assign(atom->nmax, 0);
+  if (sight == 0.0) return;
+  for (std::size_t sheet = 0; sheet < surfaces.size(); sheet++)
+    surfaces[sheet]->find_sides(sight, static_cast<int>(sheet), side);
+  linking = nullptr;
+  comm->forward_comm(this, 1);
 }
 
 // The cloths have been solved, with what they met: see ContactSurface.
@@ -107,6 +128,15 @@ void FixClothContact::post_integrate()
 {
   for (auto &surface : surfaces) surface->settle();
   keep_places();
+}
+
+int FixClothContact::side_of(int i) const
+{
+  if (!rules.sides || static_cast<std::size_t>(i) >= side.size() || side[i] == 0) return 0;
+  for (int sheet = 0; sheet < sphcloth::MOST_SHEETS; sheet++)
+    for (int sign : {1, -1})
+      if (side[i] & sphcloth::side_of_sheet(sheet, sign > 0)) return sign;
+  return 0;
 }
 
 void FixClothContact::keep_places()
@@ -133,12 +163,15 @@ double FixClothContact::compute_vector(int n)
 
 int FixClothContact::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
 {
-  return linking->pack_link(n, sendlist, buf);
+  if (linking) return linking->pack_link(n, sendlist, buf);
+  for (int k = 0; k < n; k++) buf[k] = side[sendlist[k]];
+  return n;
 }
 
 void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 {
-  linking->unpack_link(n, first, buf);
+  if (linking) return linking->unpack_link(n, first, buf);
+  for (int k = 0; k < n; k++) side[first + k] = static_cast<sphcloth::Sides>(buf[k]);
 }
 
 void FixClothContact::grow_arrays(int nmax)

@@ -38,15 +38,25 @@ class FixClothContact : public Fix {
   int unpack_exchange(int, double *) override;
   double memory_usage() override;
 
+  bool has_sides() const { return rules.sides; }
+  int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
+  // of all atoms, ghosts too, since the last list build
+  const sphcloth::Sides *sides() const { return side.data(); }
+  // how far pair_style sph/tait looks
+  void set_sight(double distance) { sight = distance; }
+
  private:
   std::string label;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
   double **places;         // of all atoms at the end of the last step
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
-  ContactSurface *linking;    // whose halo uses the communication of this fix
+  ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
+  std::vector<sphcloth::Sides> side;
+  double sight;
 
   void keep_places();
+  void find_sides();
 };
 
 }    // namespace LAMMPS_NS

@@ -9,6 +9,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_cloth_contact.h"
 #include "fix_wall_sph.h"
 #include "force.h"
 #include "memory.h"
@@ -29,9 +30,9 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), walls(nullptr), is_evaluated(false), measure_volume(false),
-    extrapolate(false), any_fluid(true), active(nullptr), active_column(0), elapsed(0.0),
-    stage(Stage::DENSITY)
+    Pair(lmp), materials(lmp), walls(nullptr), sheets(nullptr), is_evaluated(false),
+    measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
+    elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -120,6 +121,7 @@ void PairSPHTait::init_style()
 
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
+  find_sheets();
 
   // lists outlive init(): 'run pre no' goes on with them
   if (!fluid) fluid = Fluid::create(options.kernel, options.precision);
@@ -129,6 +131,25 @@ void PairSPHTait::init_style()
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
     if (materials.extrapolates(i)) extrapolate = true;
   }
+}
+
+void PairSPHTait::find_sheets()
+{
+  sheets = nullptr;
+  for (Fix *fix : modify->get_fix_by_style("^cloth/contact$")) {
+    auto *contact = dynamic_cast<FixClothContact *>(fix);
+    if (!contact->has_sides()) continue;
+    if (sheets)
+      error->all(FLERR,
+                 "{}: fix {} and fix {} cloth/contact both part the fluid: give one of them "
+                 "'sides no'",
+                 STYLE, sheets->id, contact->id);
+    sheets = contact;
+  }
+  double longest = 0.0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    if (materials.is_fluid(i)) longest = std::max(longest, support(i));
+  if (sheets) sheets->set_sight(longest + neighbor->skin);
 }
 
 void PairSPHTait::forget_evaluation()
@@ -291,7 +312,9 @@ void PairSPHTait::new_lists()
                  atom->tag[i], v[0], v[1], v[2]);
   }
   evaluated_ids.assign(atom->tag, atom->tag + atom->nlocal);
-  fluid->list(particles(), reach.data());
+  Particles p = particles();
+  if (sheets) p.sides = sheets->sides();
+  fluid->list(p, reach.data());
 }
 
 // Volumes of boundary particles that share space among themselves follow their motion, as long as

@@ -20,6 +20,7 @@ PairStyle(sph/tait,PairSPHTait);
 
 namespace LAMMPS_NS {
 
+class FixClothContact;
 class FixWallSPH;
 
 class PairSPHTait : public Pair {
@@ -124,6 +125,7 @@ class PairSPHTait : public Pair {
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
   FixWallSPH *walls;    // null without plane walls
+  FixClothContact *sheets;    // that part the fluid; null without
   bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
   bool any_fluid;    // on any rank, at the last list build
@@ -143,6 +145,7 @@ class PairSPHTait : public Pair {
   void read_density(class ArgReader &);
   void forget_evaluation();
   void set_model();
+  void find_sheets();
   bool excluded(int, int) const;
   bool diffuses() const { return options.continuity && options.delta > 0.0; }
   sphcloth::Particles particles();

@@ -22,7 +22,7 @@ void Fluid::list(const Particles &p, const double *reach)
       if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID)
         support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
   lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
-              model.dimension);
+              model.dimension, p.sides);
 }
 
 int Fluid::count_inside(const Particles &p, int owned, int type, int most) const

@@ -60,6 +60,7 @@ struct Particles {
   double *rho = nullptr;
   double *f = nullptr, *drho = nullptr;    // what forces() adds to
   double force_unit = 1.0;                 // of mass times acceleration
+  const Sides *sides = nullptr;    // for new lists; null: there are no sheets
   double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
   int active_column = 0;
 

@@ -22,10 +22,11 @@ class NearLists {
  public:
   // As NeighbourLists; support: [(n_types+1)^2], up to where two types interact, 0: never.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const double *support, int dimension)
+             const double *reach, const double *support, int dimension,
+             const Sides *sides = nullptr)
   {
     give_back(held);    // its memory for what the lists are made of
-    outer.build(x, type, n_owned, n_all, n_types, reach);
+    outer.build(x, type, n_owned, n_all, n_types, reach, sides);
     types = n_types;
     dim = dimension;
     set_limits(reach, support);

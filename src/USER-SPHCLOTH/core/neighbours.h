@@ -16,6 +16,7 @@
 #include <limits>
 #include <vector>
 
+#include "sides.h"
 #include "simd.h"
 
 namespace sphcloth {
@@ -105,10 +106,12 @@ class Stretches {
 class NeighbourLists {
  public:
   // x: [n_all][3], owned particles first; reach: [(n_types+1)^2], distance up to which the second
-  // type is listed as a neighbour of the first, 0: never
+  // type is listed as a neighbour of the first, 0: never; sides: of all particles, or null.  Who is
+  // parted by a sheet is not listed.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach)
+             const double *reach, const Sides *of_all = nullptr)
   {
+    sides = of_all;
     sort_into_cells(x, type, n_owned, n_all, n_types, reach);
     lists.start(order.size(), n_types);
     for (int t = 1; t <= n_types; t++)
@@ -155,6 +158,7 @@ class NeighbourLists {
   std::vector<int> candidate;    // of one particle
   std::vector<float> key;
   Stretches lists;
+  const Sides *sides = nullptr;    // during a build
 
   void set_grid(const double *x, int n_all, double reach)
   {
@@ -239,8 +243,16 @@ class NeighbourLists {
     }
     const double far = reach + grid.slack;
     const int n = candidates(slot, other, far, same_type);
+    if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
     lists.close(compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
                         lists.room(n)));
+  }
+
+  void leave_out_parted(Sides mine, int n)
+  {
+    for (int k = 0; k < n; k++)
+      if (key[k] < std::numeric_limits<float>::max() && parted(mine, sides[candidate[k]]))
+        key[k] = std::numeric_limits<float>::max();
   }
 
   // everyone in the cells that the sphere around a particle touches, with the squared distance;

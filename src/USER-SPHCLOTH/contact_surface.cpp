@@ -82,6 +82,7 @@ void ContactSurface::rebuild()
   start.resize(halo.n_slots());
   end.resize(halo.n_slots());
   received.assign(halo.n_owned(), Vec3::Zero());
+  found_at.clear();    // nobody was looked for yet
 }
 
 // Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
@@ -172,16 +173,23 @@ void ContactSurface::set_boxes(double margin)
   grid.build(boxes);
 }
 
-void ContactSurface::find_near(double margin)
+// With room to move, so that they serve for several steps.
+
+void ContactSurface::find_near()
 {
+  const double skin = rules->thickness;
   near.clear();
-  set_boxes(margin);
+  set_boxes(2.0 * rules->thickness + skin);
   const Box &cloth_box = grid.bounds();
+  found_at.resize(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & contact->groupbit)) continue;
     const Sweep particle = sweep_of(i);
+    found_at[i] = particle.end;
     Box box(particle.start);
     box.extend(particle.end);
+    box.min().array() -= skin;
+    box.max().array() += skin;
     if (!cloth_box.intersects(box)) continue;
     grid.query(box, [&](int t) {
       if (boxes[t].intersects(box)) near.push_back({i, t});
@@ -189,15 +197,57 @@ void ContactSurface::find_near(double margin)
   }
 }
 
-// does what was near in find_near still hold?
-
-bool ContactSurface::all_in_boxes() const
+void ContactSurface::bound()
 {
-  const Vec3 room = Vec3::Constant(rules->thickness);
-  for (std::size_t t = 0; t < triangles.size(); t++)
-    for (int s : triangles[t])
-      if (!boxes[t].contains(end[s] - room) || !boxes[t].contains(end[s] + room)) return false;
-  return true;
+  if (near_holds()) return;
+  find_near();
+  near_holds();
+}
+
+// Where the triangles are in this step, and whether all who may meet are still among those that were
+// near.
+
+bool ContactSurface::near_holds()
+{
+  const Vec3 reach = Vec3::Constant(2.0 * rules->thickness);
+  bool holds = found_at.size() == static_cast<std::size_t>(atom->nlocal);
+  swept.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); t++) {
+    Box &box = swept[t];
+    box.setEmpty();
+    for (int s : triangles[t]) {
+      box.extend(start[s]);
+      box.extend(end[s]);
+    }
+    box.min() -= reach;
+    box.max() += reach;
+    holds = holds && boxes[t].contains(box);
+  }
+  const double skin_sq = rules->thickness * rules->thickness;
+  for (int i = 0; i < atom->nlocal && holds; i++) {
+    if (!(atom->mask[i] & contact->groupbit)) continue;
+    const double *x = atom->x[i];
+    holds = (Vec3(x[0], x[1], x[2]) - found_at[i]).squaredNorm() <= skin_sq;
+  }
+  return holds;
+}
+
+// those of the near ones whose ways overlap in this step
+
+template <class Visit> void ContactSurface::for_overlapping(Visit visit)
+{
+  int last = -1;
+  Sweep sweep;
+  Box box;
+  for (const auto &[i, t] : near) {
+    if (i != last) {
+      sweep = sweep_of(i);
+      box = Box(sweep.start);
+      box.extend(sweep.end);
+      last = i;
+    }
+    if (swept[t].intersects(box)) visit(i, t, sweep);
+  }
 }
 
 bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
@@ -208,7 +258,7 @@ bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, 
   }
   halo.forward(0, start.data(), true);
   halo.forward(0, end.data(), true);
-  find_near(2.0 * rules->thickness);
+  bound();
   meet();
   int mine = !pairs.empty(), any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
@@ -224,13 +274,12 @@ void ContactSurface::meet()
 {
   particles.clear();
   pairs.clear();
-  for (const auto &[i, t] : near) {
-    const Sweep sweep = sweep_of(i);
-    if (!may_meet(sweep, sweep_of_triangle(t), 2.0 * rules->thickness)) continue;
+  for_overlapping([this](int i, int t, const Sweep &sweep) {
+    if (!may_meet(sweep, sweep_of_triangle(t), 2.0 * rules->thickness)) return;
     remember(i, t, Touch());
     particles.back().start = sweep.start;
     particles.back().end = sweep.end;
-  }
+  });
 }
 
 // over how many pairs the mass of each vertex is split
@@ -291,10 +340,17 @@ void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sid
     start[s] = end[s] = Vec3(x[0], x[1], x[2]);
   }
   set_boxes(reach);
+  spheres.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); t++) {
+    const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
+    const Vec3 centre = (a + b + c) / 3.0;
+    spheres[t] = {centre,
+                  std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})};
+  }
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & contact->groupbit)) continue;
     const double *x = atom->x[i];
-    const int side = side_at(Vec3(x[0], x[1], x[2]));
+    const int side = side_at(Vec3(x[0], x[1], x[2]), reach);
     if (side != 0) sides[i] |= side_of_sheet(sheet, side > 0);
   }
 }
@@ -302,17 +358,18 @@ void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sid
 // 1 above, -1 below, 0 far away or beyond the border.  At an edge or a vertex several triangles are
 // equally near; the one that is seen most from the front knows the side.
 
-int ContactSurface::side_at(const Vec3 &p)
+int ContactSurface::side_at(const Vec3 &p, double reach)
 {
   double nearest = std::numeric_limits<double>::max(), height = 0.0;
   bool beyond = false;
   grid.query(Box(p), [&](int t) {
-    if (!boxes[t].contains(p)) return;
+    const double far = std::min(reach, nearest) * (1.0 + SEAM) + spheres[t].radius;
+    if ((p - spheres[t].centre).squaredNorm() > far * far) return;
     const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
     Vec3 weight;
     const Vec3 from = distance_vector(p, a, b, c, weight);
     const double distance = from.norm();
-    if (distance > nearest * (1.0 + SEAM)) return;
+    if (distance > nearest * (1.0 + SEAM) || distance > reach) return;
     const Vec3 normal = (b - a).cross(c - a).normalized();
     const double over = normal.dot(from);
     if (distance < nearest * (1.0 - SEAM)) {
@@ -511,7 +568,7 @@ void ContactSurface::end_step()
 void ContactSurface::settle()
 {
   load_sweeps();
-  if (!all_in_boxes()) find_near(2.0 * rules->thickness);
+  bound();
   particles.clear();
   pairs.clear();
   int pass = 0;
@@ -537,31 +594,33 @@ void ContactSurface::load_sweeps()
 
 bool ContactSurface::stop(bool recover)
 {
-  int mine = 0;
-  for (auto first = near.begin(); first != near.end();) {
-    const int i = (*first)[0];
-    const auto last = std::find_if(first, near.end(), [i](const auto &n) { return n[0] != i; });
-    const Sweep sweep = sweep_of(i);
-    Touch deepest;
-    int triangle = -1;
-    for (auto next = first; next != last; ++next) {
-      Touch touched = touch(sweep, sweep_of_triangle((*next)[1]), rules->thickness);
-      if (touched.hit)
-        touched.depth += HAIR * touched.kept;
-      else if (recover)
-        touched = recovery(sweep.end, (*next)[1]);
-      if (touched.depth <= deepest.depth) continue;
-      deepest = touched;
-      triangle = (*next)[1];
-    }
-    first = last;
-    if (triangle < 0) continue;
-    for (int d = 0; d < 3; d++) atom->x[i][d] += deepest.depth * deepest.normal[d];
-    if (!deepest.hit) continue;
+  int mine = 0, particle = -1, triangle = -1;
+  Touch deepest;
+  const auto put_back = [&] {
+    if (triangle < 0) return;
+    for (int d = 0; d < 3; d++) atom->x[particle][d] += deepest.depth * deepest.normal[d];
+    if (!deepest.hit) return;
     mine = 1;
     counts->stops++;
-    remember(i, triangle, deepest);
-  }
+    remember(particle, triangle, deepest);
+  };
+  for_overlapping([&](int i, int t, const Sweep &sweep) {
+    if (i != particle) {
+      put_back();
+      particle = i;
+      triangle = -1;
+      deepest = Touch();
+    }
+    Touch touched = touch(sweep, sweep_of_triangle(t), rules->thickness);
+    if (touched.hit)
+      touched.depth += HAIR * touched.kept;
+    else if (recover)
+      touched = recovery(sweep.end, t);
+    if (touched.depth <= deepest.depth) return;
+    deepest = touched;
+    triangle = t;
+  });
+  put_back();
   int any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
@@ -654,16 +713,16 @@ void ContactSurface::freeze()
   ContactZones zones;
   for (;;) {
     std::vector<tagint> caught;
-    for (const auto &[i, t] : near) {
-      if (!touch(sweep_of(i), sweep_of_triangle(t), rules->thickness).through) continue;
+    for_overlapping([&](int i, int t, const Sweep &sweep) {
+      if (!touch(sweep, sweep_of_triangle(t), rules->thickness).through) return;
       counts->frozen++;
       caught.push_back(atom->tag[i]);
       for (int s : triangles[t]) caught.push_back(atom->tag[halo.atom_of(s)]);
-    }
+    });
     if (!zones.join(allgather(caught, comm->nprocs, world))) return;
     move_zones(zones);
     load_sweeps();
-    find_near(2.0 * rules->thickness);
+    bound();
   }
 }
 
@@ -728,5 +787,6 @@ double ContactSurface::memory_usage() const
                                shares.capacity() + from.capacity() + received.capacity()) +
                           sizeof(double) * (w.capacity() + w_solver.capacity()) +
                           sizeof(Box) * boxes.capacity() + sizeof(Particle) * particles.capacity() +
-                          sizeof(Pair) * pairs.capacity() + sizeof(near[0]) * near.capacity());
+                          sizeof(Pair) * pairs.capacity() + sizeof(near[0]) * near.capacity() +
+                          sizeof(Vec3) * found_at.capacity());
 }

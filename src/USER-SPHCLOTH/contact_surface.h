@@ -153,9 +153,15 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
   std::vector<Vec3> shares;    // contacts of each slot
   std::vector<Vec3> received;    // by owned slot
-  std::vector<sphcloth::Box> boxes;
+  std::vector<sphcloth::Box> boxes, swept;    // of triangles: with room to move, in this step
+  struct Sphere {
+    Vec3 centre;
+    double radius;
+  };
+  std::vector<Sphere> spheres;    // around the triangles, at a list build
   sphcloth::BoxGrid grid;
   std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
+  std::vector<Vec3> found_at;    // of each atom, when the last line was made
   std::vector<Particle> particles;
   std::vector<Pair> pairs;
 
@@ -163,10 +169,12 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void check_reach();
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
-  void find_near(double margin);
+  void find_near();
+  bool near_holds();
+  void bound();
+  template <class Visit> void for_overlapping(Visit visit);
   void set_boxes(double margin);
-  int side_at(const Vec3 &p);
-  bool all_in_boxes() const;
+  int side_at(const Vec3 &p, double reach);
   void meet();
   template <class Counts> void count_shares(Counts counts_in);
   Vec3 velocity_from(const Pair &) const;

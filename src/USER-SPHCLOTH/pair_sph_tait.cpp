@@ -127,6 +127,8 @@ void PairSPHTait::init_style()
   if (!fluid) fluid = Fluid::create(options.kernel, options.precision);
   set_model();
   measure_volume = extrapolate = false;
+  moved.assign(atom->ntypes + 1, 0);
+  moved_here = moved;
   for (int i = 1; i <= atom->ntypes; i++) {
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
     if (materials.extrapolates(i)) extrapolate = true;
@@ -322,20 +324,24 @@ void PairSPHTait::new_lists()
 
 void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
 {
-  int measure = measure_volume && new_neighbours;
+  const int n = atom->ntypes + 1;
+  std::fill(moved.begin(), moved.end(), new_neighbours);
   if (measure_volume && !new_neighbours && any_fluid) {
-    int moved = 0;
-    for (int i = 0; i < p.n_owned && !moved; i++) {
+    std::vector<int> &here = moved_here;
+    std::fill(here.begin(), here.end(), 0);
+    for (int i = 0; i < p.n_owned; i++) {
       const double *v = p.v + 3 * i;
-      moved = materials.is_boundary(p.type[i]) && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
+      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) here[p.type[i]] = 1;
     }
-    MPI_Allreduce(&moved, &measure, 1, MPI_INT, MPI_MAX, world);
+    MPI_Allreduce(here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
   }
-  if (measure)
-    for (int t = 1; t <= atom->ntypes; t++)
-      if (materials.is_boundary(t) && materials.type(t).volume == 0.0)
-        fluid->volumes(p, t, amount.data());
-  if (!measure && !new_neighbours) return;
+  bool measured = false;
+  for (int t = 1; t < n; t++) {
+    if (!materials.is_boundary(t) || materials.type(t).volume > 0.0 || !moved[t]) continue;
+    fluid->volumes(p, t, amount.data());
+    measured = true;
+  }
+  if (!measured && !new_neighbours) return;
   stage = Stage::AMOUNT;
   comm->forward_comm(this, 1);
   if (!new_neighbours) return;

@@ -129,6 +129,7 @@ class PairSPHTait : public Pair {
   bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
   bool any_fluid;    // on any rank, at the last list build
+  std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
   // scratch, kept from step to step

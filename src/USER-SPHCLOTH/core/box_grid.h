@@ -48,11 +48,15 @@ class BoxGrid {
     const Box clipped = probe.intersection(bounds_);
     if (bounds_.isEmpty() || clipped.isEmpty()) return;
     found_.clear();
+    int cells = 0;
     for_cells(clipped, [&](std::size_t c) {
       found_.insert(found_.end(), items_.begin() + first_[c], items_.begin() + first_[c + 1]);
+      cells++;
     });
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    if (cells > 1) {
+      std::sort(found_.begin(), found_.end());
+      found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    }
     for (int b : found_) visit(b);
   }
 

@@ -5,7 +5,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_pbd_cloth.h"
+#include "fix.h"
 #include "force.h"
 
 #include <algorithm>
@@ -35,20 +35,21 @@ static constexpr double RECOVERY = 0.1;
 
 static constexpr int STOP_PASSES = 200;
 
-static Eigen::Vector3d at_most(const Eigen::Vector3d &v, double most)
+Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
 {
   const double size = v.norm();
   return size > most ? Eigen::Vector3d(most / size * v) : v;
 }
 
-ContactSurface::ContactSurface(LAMMPS *lmp, FixPBDCloth *cloth, Fix *contact,
+ContactSurface::ContactSurface(LAMMPS *lmp, ContactMesh *mesh, Fix *contact, int meets,
                                const ContactRules *rules, ContactCounts *counts) :
-    Pointers(lmp), label(fmt::format("fix {} cloth/contact", contact->id)), cloth(cloth),
-    contact(contact), rules(rules), counts(counts), last_places(nullptr), substep_dt(0.0), halo(lmp)
+    Pointers(lmp), label(fmt::format("fix {} cloth/contact", contact->id)), mesh(mesh),
+    contact(contact), meets(meets), rules(rules), counts(counts), last_places(nullptr),
+    substep_dt(0.0), halo(lmp)
 {
 }
 
-bool ContactSurface::has_triangles() const { return cloth->topology().triangles.size() > 0; }
+bool ContactSurface::has_triangles() const { return mesh->topology().triangles.size() > 0; }
 
 /* ----------------------------------------------------------------------
    triangles with vertices in reach of this rank, after each list build
@@ -58,7 +59,7 @@ void ContactSurface::rebuild()
 {
   std::vector<int> owned, reach;
   for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
-    if (!(atom->mask[i] & cloth->groupbit)) continue;
+    if (!mesh->has_vertex(i)) continue;
     reach.push_back(i);
     if (i < atom->nlocal) owned.push_back(i);
   }
@@ -74,8 +75,8 @@ void ContactSurface::rebuild()
   w_solver = w;
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    w[s] = cloth->inverse_mass(i);
-    w_solver[s] = cloth->is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
+    w[s] = mesh->inverse_mass(i);
+    w_solver[s] = mesh->inverse_mass_in_solver(i);
   }
   halo.forward(0, w);
   halo.forward(0, w_solver);
@@ -90,21 +91,21 @@ void ContactSurface::rebuild()
 
 void ContactSurface::add_triangles(const std::vector<int> &reach)
 {
-  const ClothTopology &mesh = cloth->topology();
-  const ClothElements<3> &t = mesh.triangles;
+  const ClothTopology &cloth = mesh->topology();
+  const ClothElements<3> &t = cloth.triangles;
   for (int i : reach) {
-    const int vertex = mesh.index_of(atom->tag[i]);
+    const int vertex = cloth.index_of(atom->tag[i]);
     if (vertex < 0) continue;
     for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
       const std::array<int, 3> &members = t.vertices[t.incident[k]];
       if (members[0] != vertex) continue;
-      const int j = mesh.image_near(members[1], i), l = mesh.image_near(members[2], i);
+      const int j = cloth.image_near(members[1], i), l = cloth.image_near(members[2], i);
       if ((j < 0 || l < 0) && i < atom->nlocal)
         error->one(
             FLERR,
             "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
             "it with 'comm_modify cutoff', or refine the mesh",
-            label, mesh.ids[vertex], mesh.ids[members[1]], mesh.ids[members[2]]);
+            label, cloth.ids[vertex], cloth.ids[members[1]], cloth.ids[members[2]]);
       if (j < 0 || l < 0) continue;
       triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
       element.push_back(t.incident[k]);
@@ -136,6 +137,16 @@ void ContactSurface::check_reach()
 /* ----------------------------------------------------------------------
    who may meet whom
 ------------------------------------------------------------------------- */
+
+// does an atom meet this mesh, and can it give way?
+
+bool ContactSurface::may_move(int i) const
+{
+  if (!(atom->mask[i] & meets)) return false;
+  return std::none_of(others.begin(), others.end(), [i](const ContactMesh *other) {
+    return other->has_vertex(i) && other->inverse_mass(i) == 0.0;
+  });
+}
 
 // from where the last step has left it to where it is
 
@@ -183,7 +194,7 @@ void ContactSurface::find_near()
   const Box &cloth_box = grid.bounds();
   found_at.resize(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & contact->groupbit)) continue;
+    if (!may_move(i)) continue;
     const Sweep particle = sweep_of(i);
     found_at[i] = particle.end;
     Box box(particle.start);
@@ -225,7 +236,7 @@ bool ContactSurface::near_holds()
   }
   const double skin_sq = rules->thickness * rules->thickness;
   for (int i = 0; i < atom->nlocal && holds; i++) {
-    if (!(atom->mask[i] & contact->groupbit)) continue;
+    if (!may_move(i)) continue;
     const double *x = atom->x[i];
     holds = (Vec3(x[0], x[1], x[2]) - found_at[i]).squaredNorm() <= skin_sq;
   }
@@ -272,13 +283,12 @@ bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, 
 
 void ContactSurface::meet()
 {
-  particles.clear();
-  pairs.clear();
+  forget_pairs();
   for_overlapping([this](int i, int t, const Sweep &sweep) {
     if (!may_meet(sweep, sweep_of_triangle(t), 2.0 * rules->thickness)) return;
     remember(i, t, Touch());
-    particles.back().start = sweep.start;
-    particles.back().end = sweep.end;
+    particles[entry[i]].start = sweep.start;
+    particles[entry[i]].end = sweep.end;
   });
 }
 
@@ -311,8 +321,8 @@ double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &i
 
 void ContactSurface::check_winding()
 {
-  const ClothTopology &mesh = cloth->topology();
-  const auto &elements = mesh.triangles.vertices;
+  const ClothTopology &cloth = mesh->topology();
+  const auto &elements = cloth.triangles.vertices;
   std::map<std::array<int, 2>, std::vector<int>> at_edge;    // edge as a triangle runs along it
   for (std::size_t m = 0; m < elements.size(); m++)
     for (int q = 0; q < 3; q++)
@@ -325,7 +335,7 @@ void ContactSurface::check_winding()
           FLERR,
           "{}: two triangles run from vertex {} to vertex {}: a cloth with two sides must be "
           "wound alike everywhere ('sphcloth mesh' does that); or give 'sides no'",
-          label, mesh.ids[edge[0]], mesh.ids[edge[1]]);
+          label, cloth.ids[edge[0]], cloth.ids[edge[1]]);
     if (at_edge.count({edge[1], edge[0]})) continue;
     const std::array<int, 3> &v = elements[of[0]];
     for (int q = 0; q < 3; q++)
@@ -348,7 +358,7 @@ void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sid
                   std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})};
   }
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & contact->groupbit)) continue;
+    if (!may_move(i)) continue;
     const double *x = atom->x[i];
     const int side = side_at(Vec3(x[0], x[1], x[2]), reach);
     if (side != 0) sides[i] |= side_of_sheet(sheet, side > 0);
@@ -500,7 +510,11 @@ void ContactSurface::end_substep(Vertex *v, double dt)
     p.contacts = 0;
     p.change.setZero();
   }
-  for (const Pair &pair : pairs) particles[pair.particle].contacts += pair.push > 0.0;
+  // what is left of a push that was taken back is round-off, and must not decide who counts
+  for (Pair &pair : pairs) {
+    if (pair.push * particles[pair.particle].w < SEAM * rules->thickness) pair.push = 0.0;
+    particles[pair.particle].contacts += pair.push > 0.0;
+  }
   count_shares([](const Pair &pair) { return pair.push > 0.0; });
   load_velocities(v);
   change.assign(halo.n_slots(), Vec3::Zero());
@@ -565,17 +579,17 @@ void ContactSurface::end_step()
    behind the solver: the guarantee
 ------------------------------------------------------------------------- */
 
-void ContactSurface::settle()
+bool ContactSurface::settle()
 {
   load_sweeps();
   bound();
-  particles.clear();
-  pairs.clear();
+  forget_pairs();
   int pass = 0;
   while (stop(pass == 0))
     if (++pass == STOP_PASSES) break;
   if (pass > 0) stop_approach();
   if (pass == STOP_PASSES) freeze();
+  return pass > 0;
 }
 
 void ContactSurface::load_sweeps()
@@ -616,7 +630,7 @@ bool ContactSurface::stop(bool recover)
       touched.depth += HAIR * touched.kept;
     else if (recover)
       touched = recovery(sweep.end, t);
-    if (touched.depth <= deepest.depth) return;
+    if (!is_deeper(touched, t, deepest, triangle)) return;
     deepest = touched;
     triangle = t;
   });
@@ -624,6 +638,15 @@ bool ContactSurface::stop(bool recover)
   int any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
+}
+
+// Two triangles may be met alike, on an edge: then the same one on all ranks is taken.
+
+bool ContactSurface::is_deeper(const Touch &a, int triangle_a, const Touch &b, int triangle_b) const
+{
+  if (!(a.depth > 0.0)) return false;
+  if (triangle_b < 0 || a.depth > b.depth * (1.0 + SEAM)) return true;
+  return a.depth >= b.depth * (1.0 - SEAM) && element[triangle_a] < element[triangle_b];
 }
 
 // no contact, but something of the thickness that is missing
@@ -642,17 +665,25 @@ Touch ContactSurface::recovery(const Vec3 &p, int t) const
 
 void ContactSurface::remember(int i, int triangle, const Touch &touched)
 {
-  if (particles.empty() || particles.back().atom != i) {
+  if (entry[i] < 0) {
+    entry[i] = static_cast<int>(particles.size());
     particles.push_back({});
     particles.back().atom = i;
     particles.back().w = 1.0 / atom_mass(atom, i);
   }
-  particles.back().contacts++;
+  particles[entry[i]].contacts++;
   pairs.push_back({});
-  pairs.back().particle = static_cast<int>(particles.size()) - 1;
+  pairs.back().particle = entry[i];
   pairs.back().triangle = triangle;
   pairs.back().weight = touched.weight;
   pairs.back().normal = touched.normal;
+}
+
+void ContactSurface::forget_pairs()
+{
+  particles.clear();
+  pairs.clear();
+  entry.assign(atom->nlocal, -1);
 }
 
 // both sides of what was stopped lose the motion towards each other
@@ -672,9 +703,14 @@ void ContactSurface::stop_approach()
     p.velocity = Vec3(v[0], v[1], v[2]);
     p.change.setZero();
   }
-  for (Pair &pair : pairs)
-    give(pair,
-         std::max(0.0, -velocity_from(pair).dot(pair.normal)) * split_mass(pair, w) * pair.normal);
+  for (const Pair &pair : pairs) {
+    const Vec3 velocity = velocity_from(pair);
+    const double speed = velocity.dot(pair.normal);
+    if (speed >= 0.0) continue;
+    const double mass = split_mass(pair, w), step = -(1.0 + rules->restitution) * speed * mass;
+    const Vec3 sliding = mass * (velocity - speed * pair.normal);
+    give(pair, step * pair.normal - at_most(sliding, rules->friction * step));
+  }
   take_velocities();
 }
 
@@ -695,8 +731,46 @@ void ContactSurface::take_velocities()
 
 void ContactSurface::take_held(int i, const Vec3 &impulse)
 {
-  cloth->push_held(i, impulse);
+  mesh->push_held(i, impulse);
   for (int d = 0; d < 3; d++) counts->impulse[d] += impulse[d] / force->ftm2v;
+}
+
+/* ----------------------------------------------------------------------
+   for the vertices of another mesh
+------------------------------------------------------------------------- */
+
+void ContactSurface::look_around()
+{
+  load_sweeps();
+  set_boxes(2.0 * rules->thickness);
+  found_at.clear();    // the boxes are others now
+  change.assign(halo.n_slots(), Vec3::Zero());
+}
+
+std::array<Sweep, 3> ContactSurface::triangle_until(int t, double part) const
+{
+  std::array<Sweep, 3> sweep = sweep_of_triangle(t);
+  for (Sweep &s : sweep) s.end = s.start + part * (s.end - s.start);
+  return sweep;
+}
+
+Eigen::Vector3d ContactSurface::way_of(int t, const Vec3 &weight) const
+{
+  Vec3 way = Vec3::Zero();
+  for (int q = 0; q < 3; q++) way += weight[q] * (end[triangles[t][q]] - start[triangles[t][q]]);
+  return way;
+}
+
+void ContactSurface::push_triangle(int t, const Vec3 &weight, const Vec3 &impulse)
+{
+  for (int q = 0; q < 3; q++) change[triangles[t][q]] += weight[q] * impulse;
+}
+
+void ContactSurface::hand_over_pushes()
+{
+  halo.reverse_add(0, change.data());
+  for (int s = 0; s < halo.n_owned(); s++)
+    if (!change[s].isZero(0.0)) take_held(halo.atom_of(s), change[s]);
 }
 
 /* ----------------------------------------------------------------------
@@ -737,9 +811,7 @@ void ContactSurface::move_zones(const ContactZones &zones)
   std::vector<std::pair<int, int>> members;    // atom and zone
   for (int i = 0; i < atom->nlocal; i++)
     if (const int z = zones.of(atom->tag[i]); z >= 0) members.emplace_back(i, z);
-  const auto is_held = [&](int i) {
-    return atom->mask[i] & cloth->groupbit && cloth->inverse_mass(i) == 0.0;
-  };
+  const auto is_held = [&](int i) { return mesh->has_vertex(i) && mesh->inverse_mass(i) == 0.0; };
 
   for (const auto &[i, z] : members) {
     const Vec3 way = sweep_of(i).end - sweep_of(i).start;

@@ -10,6 +10,7 @@
 #define SPHCLOTH_CONTACT_SURFACE_H
 
 #include "cloth_guest.h"
+#include "contact_mesh.h"
 #include "core/box_grid.h"
 #include "core/contact.h"
 #include "core/sides.h"
@@ -23,7 +24,6 @@
 namespace LAMMPS_NS {
 
 class Fix;
-class FixPBDCloth;
 
 // what the user asked for, and what is counted
 
@@ -74,12 +74,15 @@ class ContactZones {
   }
 };
 
+Eigen::Vector3d at_most(const Eigen::Vector3d &, double most);
+
 class ContactSurface : public ClothGuest, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // contact: the fix whose group meets the cloth
-  ContactSurface(LAMMPS *, FixPBDCloth *, Fix *contact, const ContactRules *, ContactCounts *);
+  // contact: the fix that asks; meets: groups of the atoms that meet the mesh
+  ContactSurface(LAMMPS *, ContactMesh *, Fix *contact, int meets, const ContactRules *,
+                 ContactCounts *);
 
   // after each list build
   void rebuild();
@@ -101,8 +104,28 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void check_winding();
 
   // Behind the solver: what still goes wrong on the way from the last step's places to the present
-  // ones, to round-off.  Collective.
-  void settle();
+  // ones, to round-off.  Collective; was there anything?
+  bool settle();
+
+  // for the vertices of another mesh: the triangles near them in this step, on their way up to a part of
+  // the step, and what a triangle gets, mass times velocity
+  void look_around();
+  template <class Visit> void for_triangles_near(const sphcloth::Sweep &sweep, Visit visit)
+  {
+    sphcloth::Box box(sweep.start);
+    box.extend(sweep.end);
+    grid.query(box, [&](int t) {
+      if (boxes[t].intersects(box)) visit(t);
+    });
+  }
+  bool is_deeper(const sphcloth::Touch &, int t, const sphcloth::Touch &than, int than_t) const;
+  std::array<sphcloth::Sweep, 3> triangle_until(int t, double part) const;
+  Vec3 way_of(int t, const Vec3 &weight) const;
+  void push_triangle(int t, const Vec3 &weight, const Vec3 &impulse);
+  void hand_over_pushes();
+
+  // a mesh whose vertices meet this one: those that are held do not give way
+  void meet_vertices_of(const ContactMesh *other) { others.push_back(other); }
 
   bool has_triangles() const;
   int pack_link(int n, const int *atoms, double *buf) const
@@ -136,8 +159,10 @@ class ContactSurface : public ClothGuest, protected Pointers {
   };
 
   std::string label;
-  FixPBDCloth *cloth;
+  ContactMesh *mesh;
+  std::vector<const ContactMesh *> others;
   Fix *contact;
+  int meets;
   const ContactRules *rules;
   ContactCounts *counts;
   double **last_places;
@@ -163,6 +188,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
   std::vector<Vec3> found_at;    // of each atom, when the last line was made
   std::vector<Particle> particles;
+  std::vector<int> entry;    // of an atom among them, or -1
   std::vector<Pair> pairs;
 
   void add_triangles(const std::vector<int> &reach);
@@ -181,6 +207,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void part(const Pair &, double dt);
   void load_velocities(const sphcloth::Vertex *v);
   double split_mass(const Pair &, const std::vector<double> &inverse_mass) const;
+  void forget_pairs();
   void remember(int atom, int triangle, const sphcloth::Touch &);
   void give(const Pair &, const Vec3 &by);
   void press(Pair &);
@@ -191,6 +218,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void take_velocities();
   void take_held(int atom, const Vec3 &impulse);
   void load_sweeps();
+  bool may_move(int atom) const;
   void freeze();
   void move_zones(const ContactZones &);
 };

@@ -9,14 +9,19 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
+#include "force.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+
+// of the looks at all surfaces behind the solver: what one of them puts back another may mind
+static constexpr int MOST_ROUNDS = 10;
 
 /* ----------------------------------------------------------------------
    fix ID group cloth/contact thickness keyword value ...
@@ -24,10 +29,10 @@ using namespace FixConst;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    linking(nullptr), sight(0.0)
+    pushes(nullptr), linking(nullptr), sight(0.0)
 {
   vector_flag = 1;
-  size_vector = 7;
+  size_vector = 10;
   global_freq = 1;
   extvector = 0;
   comm_forward = VertexHalo::LINK;
@@ -42,26 +47,50 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
       rules.friction = args.at_least("friction coefficient", 0.0);
     else if (keyword == "restitution")
       rules.restitution = args.fraction("restitution");
+    else if (keyword == "obstacle")
+      read_obstacle(args);
     else if (keyword == "sides")
       rules.sides = args.choice(keyword, {"no", "yes"});
     else
-      args.unknown(keyword, "friction, restitution, sides");
+      args.unknown(keyword, "friction, restitution, sides, obstacle");
   }
+  restart_peratom = !obstacle_groups.empty();
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
+  if (restart_peratom) atom->add_callback(Atom::RESTART);
+  if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);
+}
+
+void FixClothContact::read_obstacle(ArgReader &args)
+{
+  const std::string name = args.word("obstacle group");
+  const int found = group->find(name);
+  if (found < 0) args.fail("obstacle group", name, "define it with the group command first");
+  if (group->count(found) == 0)
+    args.fail("obstacle group", name, "it has no atoms: read or create the obstacle before");
+  obstacle_groups.push_back(found);
 }
 
 FixClothContact::~FixClothContact()
 {
   atom->delete_callback(id, Atom::GROW);
+  if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
   memory->destroy(places);
+  memory->destroy(pushes);
 }
 
-int FixClothContact::setmask() { return POST_NEIGHBOR | POST_INTEGRATE; }
+int FixClothContact::setmask()
+{
+  return POST_NEIGHBOR | POST_INTEGRATE | (pushes ? INITIAL_INTEGRATE | PRE_REVERSE : 0);
+}
 
 void FixClothContact::init()
 {
   surfaces.clear();
+  obstacles.clear();
+  hard.clear();
+  guests.clear();
+  std::vector<FixPBDCloth *> cloths;
   bool behind = false;
   for (Fix *fix : modify->get_fix_list()) {
     behind = behind || fix == this;
@@ -74,19 +103,67 @@ void FixClothContact::init()
                  "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
                  "the cloth",
                  label, group->names[igroup], fix->id);
-    surfaces.push_back(std::make_unique<ContactSurface>(lmp, cloth, this, &rules, &counts));
+    surfaces.push_back(
+        std::make_unique<ContactSurface>(lmp, cloth, this, groupbit, &rules, &counts));
     cloth->invite(surfaces.back().get());
+    cloths.push_back(cloth);
   }
-  if (surfaces.empty())
-    error->all(FLERR, "{}: there is no cloth: define 'fix ID group pbd/cloth' before", label);
+  if (surfaces.empty() && obstacle_groups.empty())
+    error->all(FLERR,
+               "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
+               label);
+  for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
+}
+
+// Meets the group of this fix and the vertices of all cloths.
+
+void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDCloth *> &cloths)
+{
+  const int bit = group->bitmask[obstacle_group];
+  const char *name = group->names[obstacle_group];
+  int meets = groupbit;
+  for (FixPBDCloth *cloth : cloths) {
+    if (share_atoms(atom, bit, cloth->groupbit, world))
+      error->all(FLERR, "{}: obstacle group {} holds vertices of fix {}: an obstacle is no cloth",
+                 label, name, cloth->id);
+    meets |= cloth->groupbit;
+  }
+  if (share_atoms(atom, bit, groupbit, world))
+    error->all(
+        FLERR,
+        "{}: obstacle group {} holds atoms of group {}: give the group of the particles that "
+        "meet the obstacle",
+        label, name, group->names[igroup]);
+  obstacles.push_back(std::make_unique<Obstacle>(lmp, label, bit));
+  Obstacle &obstacle = *obstacles.back();
+  obstacle.gather();
+  if (obstacle.topology().triangles.size() == 0)
+    error->all(FLERR,
+               "{}: obstacle group {} has no triangles: they are LAMMPS angles; 'sphcloth mesh' "
+               "writes them",
+               label, name);
+  obstacle.set_pushes(pushes);
+  hard.push_back(std::make_unique<ContactSurface>(lmp, &obstacle, this, meets, &rules, &counts));
+  for (FixPBDCloth *cloth : cloths) {
+    guests.push_back(std::make_unique<ObstacleGuest>(lmp, cloth, hard.back().get(), &rules));
+    cloth->invite(guests.back().get());
+    hard.back()->meet_vertices_of(cloth);
+  }
+}
+
+template <class Do> void FixClothContact::for_all_surfaces(Do something)
+{
+  for (auto &surface : surfaces) something(*surface);
+  for (auto &surface : hard) something(*surface);
 }
 
 // every cloth has gathered its mesh by now
 
 void FixClothContact::setup_post_neighbor()
 {
-  if (std::none_of(surfaces.begin(), surfaces.end(),
-                   [](const auto &surface) { return surface->has_triangles(); }))
+  if (!surfaces.empty() && std::none_of(surfaces.begin(), surfaces.end(), [](const auto &surface) {
+        return surface->has_triangles();
+      }))
     error->all(FLERR,
                "{}: the cloth has no triangles: they are LAMMPS angles, create_cloth makes them, a "
                "data file needs an Angles section",
@@ -102,11 +179,11 @@ void FixClothContact::setup_post_neighbor()
 
 void FixClothContact::post_neighbor()
 {
-  for (auto &surface : surfaces) {
-    linking = surface.get();
-    surface->rebuild();
-    surface->set_last_places(places);
-  }
+  for_all_surfaces([this](ContactSurface &surface) {
+    linking = &surface;
+    surface.rebuild();
+    surface.set_last_places(places);
+  });
   if (rules.sides) find_sides();
 }
 
@@ -122,12 +199,27 @@ void FixClothContact::find_sides()
   comm->forward_comm(this, 1);
 }
 
+void FixClothContact::initial_integrate(int) { std::fill_n(pushes[0], 3 * atom->nmax, 0.0); }
+
 // The cloths have been solved, with what they met: see ContactSurface.
 
 void FixClothContact::post_integrate()
 {
-  for (auto &surface : surfaces) surface->settle();
+  for (int round = 0; round < MOST_ROUNDS; round++) {
+    bool any = false;
+    for_all_surfaces([&any](ContactSurface &surface) { any = surface.settle() || any; });
+    if (!any || surfaces.size() + hard.size() == 1) break;
+  }
   keep_places();
+}
+
+void FixClothContact::pre_reverse(int, int)
+{
+  const double by = 1.0 / (update->dt * force->ftm2v);
+  for (const auto &obstacle : obstacles)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (obstacle->has_vertex(i))
+        for (int d = 0; d < 3; d++) atom->f[i][d] += by * pushes[i][d];
 }
 
 int FixClothContact::side_of(int i) const
@@ -145,14 +237,17 @@ void FixClothContact::keep_places()
 }
 
 /* ----------------------------------------------------------------------
-   output: contacts, stops, frozen, deepest, impulse on held vertices (x, y, z)
+   output: contacts, stops, frozen, deepest, impulse on held vertices (x, y, z), force on obstacles
 ------------------------------------------------------------------------- */
 
 double FixClothContact::compute_vector(int n)
 {
-  const double mine[] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
-                         counts.impulse[0], counts.impulse[1], counts.impulse[2]};
+  double mine[10] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
+                     counts.impulse[0], counts.impulse[1], counts.impulse[2]};
   double all;
+  if (n >= 7 && pushes)
+    for (int i = 0; i < atom->nlocal; i++)
+      mine[n] += pushes[i][n - 7] / (update->dt * force->ftm2v);
   MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, n == 3 ? MPI_MAX : MPI_SUM, world);
   return all;
 }
@@ -177,31 +272,59 @@ void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 void FixClothContact::grow_arrays(int nmax)
 {
   memory->grow(places, nmax, 3, "cloth/contact:places");
-  for (auto &surface : surfaces) surface->set_last_places(places);
+  if (!obstacle_groups.empty()) memory->grow(pushes, nmax, 3, "cloth/contact:pushes");
+  for (auto &obstacle : obstacles) obstacle->set_pushes(pushes);
+  for_all_surfaces([this](ContactSurface &surface) { surface.set_last_places(places); });
 }
 
 void FixClothContact::copy_arrays(int i, int j, int)
 {
   std::copy(places[i], places[i] + 3, places[j]);
+  if (pushes) std::copy(pushes[i], pushes[i] + 3, pushes[j]);
 }
 
-void FixClothContact::set_arrays(int i) { std::copy(atom->x[i], atom->x[i] + 3, places[i]); }
+void FixClothContact::set_arrays(int i)
+{
+  std::copy(atom->x[i], atom->x[i] + 3, places[i]);
+  if (pushes) std::fill(pushes[i], pushes[i] + 3, 0.0);
+}
 
 int FixClothContact::pack_exchange(int i, double *buf)
 {
   std::copy(places[i], places[i] + 3, buf);
-  return 3;
+  if (pushes) std::copy(pushes[i], pushes[i] + 3, buf + 3);
+  return pushes ? 6 : 3;
 }
 
 int FixClothContact::unpack_exchange(int i, double *buf)
 {
   std::copy(buf, buf + 3, places[i]);
-  return 3;
+  if (pushes) std::copy(buf + 3, buf + 6, pushes[i]);
+  return pushes ? 6 : 3;
 }
+
+// only what obstacles feel; the first value of a restart record is its length
+
+int FixClothContact::pack_restart(int i, double *buf)
+{
+  buf[0] = 4;
+  std::copy(pushes[i], pushes[i] + 3, buf + 1);
+  return 4;
+}
+
+void FixClothContact::unpack_restart(int i, int nth)
+{
+  const double *record = atom->extra[i];
+  for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
+  std::copy(record + 1, record + 4, pushes[i]);
+}
+
+int FixClothContact::size_restart(int) { return 4; }
+int FixClothContact::maxsize_restart() { return 4; }
 
 double FixClothContact::memory_usage()
 {
-  double bytes = 3.0 * sizeof(double) * atom->nmax;
-  for (const auto &surface : surfaces) bytes += surface->memory_usage();
+  double bytes = (pushes ? 6.0 : 3.0) * sizeof(double) * atom->nmax;
+  for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   return bytes;
 }

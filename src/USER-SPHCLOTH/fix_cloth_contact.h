@@ -12,6 +12,7 @@ FixStyle(cloth/contact,FixClothContact);
 #include "fix.h"
 
 #include "contact_surface.h"
+#include "obstacle.h"
 
 #include <memory>
 #include <string>
@@ -19,16 +20,22 @@ FixStyle(cloth/contact,FixClothContact);
 
 namespace LAMMPS_NS {
 
+class ArgReader;
+class FixPBDCloth;
+
 class FixClothContact : public Fix {
  public:
   FixClothContact(class LAMMPS *, int, char **);
   ~FixClothContact() override;
   int setmask() override;
   void init() override;
+  void initial_integrate(int) override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
   double compute_vector(int) override;
+  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
+  void pre_reverse(int, int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   void grow_arrays(int) override;
@@ -36,6 +43,10 @@ class FixClothContact : public Fix {
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
   double memory_usage() override;
 
   bool has_sides() const { return rules.sides; }
@@ -50,13 +61,21 @@ class FixClothContact : public Fix {
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
   double **places;         // of all atoms at the end of the last step
+  double **pushes;    // on obstacles in this step, mass times velocity; null: there are none
+  std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
+  std::vector<std::unique_ptr<ObstacleGuest>> guests;    // of every cloth and obstacle
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;
 
   void keep_places();
   void find_sides();
+  void read_obstacle(ArgReader &);
+  void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
+  template <class Do> void for_all_surfaces(Do);
 };
 
 }    // namespace LAMMPS_NS

@@ -352,7 +352,7 @@ void FixPBDCloth::post_neighbor()
   attached.clear();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    w[s] = is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
+    w[s] = inverse_mass_in_solver(i);
     if (atom->mask[i] & attachbit) attached.push_back(s);
   }
   halo.forward(ALL, w);
@@ -435,9 +435,16 @@ void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
   }
 }
 
+bool FixPBDCloth::has_vertex(int i) const { return atom->mask[i] & groupbit; }
+
 bool FixPBDCloth::is_pinned(int i) const { return atom->mask[i] & pinbit; }
 
 bool FixPBDCloth::is_held(int i) const { return atom->mask[i] & (pinbit | attachbit); }
+
+double FixPBDCloth::inverse_mass_in_solver(int i) const
+{
+  return is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
+}
 
 double FixPBDCloth::inverse_mass(int i) const
 {

@@ -13,6 +13,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "cloth_guest.h"
 #include "cloth_topology.h"
+#include "contact_mesh.h"
 #include "core/cloth_solver.h"
 #include "pin_motion.h"
 #include "vertex_halo.h"
@@ -26,7 +27,7 @@ namespace LAMMPS_NS {
 class ArgReader;
 struct PBDMaterial;
 
-class FixPBDCloth : public Fix {
+class FixPBDCloth : public Fix, public ContactMesh {
  public:
   FixPBDCloth(class LAMMPS *, int, char **);
   ~FixPBDCloth() override;
@@ -57,14 +58,15 @@ class FixPBDCloth : public Fix {
   // the fix of that ID, or an error in the name of the style that asks
   static FixPBDCloth *find(LAMMPS *, const std::string &asking, const std::string &id);
 
-  const ClothTopology &topology() const { return mesh; }
-  double inverse_mass(int owned_atom) const;    // 0 for a vertex that something else moves
-  bool is_pinned(int owned_atom) const;
+  const ClothTopology &topology() const override { return mesh; }
+  bool has_vertex(int atom) const override;
+  double inverse_mass(int owned_atom) const override;
+  double inverse_mass_in_solver(int owned_atom) const override;
+  void push_held(int owned_atom, const Eigen::Vector3d &impulse) override;
+  int n_owned() const { return halo.n_owned(); }
 
   // takes part in the projections until the next init()
   void invite(ClothGuest *guest) { guests.push_back(guest); }
-  // what a held vertex gets behind the solver, mass times velocity
-  void push_held(int owned_atom, const Eigen::Vector3d &impulse);
 
   // of edge and hinge m of the topology; an edge without a length or a constraint has no strain
   double rest_length(int m) const { return edge_rest[m]; }
@@ -127,6 +129,7 @@ class FixPBDCloth : public Fix {
   void begin_guests();
   int read_held(ArgReader &, const std::string &keyword);
   bool is_held(int atom) const;
+  bool is_pinned(int atom) const;
   void check_styles();
   const PBDMaterial *material_of_edge(int type) const;
   const PBDMaterial *material_of_hinge(int type) const;

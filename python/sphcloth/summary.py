@@ -35,6 +35,7 @@ class Summary:
         mass_defect: largest abs(poured - drained - present) at any time.
         deviation: largest abs(rho - rho0) / rho0 under pressure.
         momentum_defect: largest sum of the internal forces over the total weight.
+        contact_share: part of the wall time that contact with the cloth took.
         particle_updates: number of times a fluid particle was stepped.
         updates_per_second: the same per second of wall time in the loop.
         pictures: all PNG files, the contact sheet and the plot first.
@@ -52,6 +53,7 @@ class Summary:
     mass_defect: int | None
     deviation: float | None
     momentum_defect: float | None
+    contact_share: float | None
     particle_updates: float | None
     updates_per_second: float | None
     pictures: list[str]
@@ -85,6 +87,7 @@ class Summary:
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
             ("largest density deviation", _text(self.deviation, "{:.2%}")),
             ("momentum defect / weight", _text(self.momentum_defect, "{:.1e}")),
+            ("share of contact in the run", _text(self.contact_share, "{:.1%}")),
             ("steps", _text(self.steps)),
             ("particle updates", _text(self.particle_updates, "{:.3e}")),
             ("particle updates per second", _text(self.updates_per_second, "{:.3e}")),
@@ -129,6 +132,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
         mass_defect=metrics.mass_balance(table) if can_balance else None,
         deviation=_largest(table, "v_deviation"),
         momentum_defect=_largest(table, "v_momentum"),
+        contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
         particle_updates=updates,
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
         pictures=[] if frames is None else draw(trajectory, mesh, table, folder, frames),

@@ -263,6 +263,7 @@ template <class Visit> void ContactSurface::for_overlapping(Visit visit)
 
 bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
 {
+  const Clock clock(counts->seconds);
   for (int s = 0; s < halo.n_owned(); s++) {
     start[s] = Vec3(from_here[s].x, from_here[s].y, from_here[s].z);
     end[s] = Vec3(to_here[s].x, to_here[s].y, to_here[s].z);
@@ -345,6 +346,7 @@ void ContactSurface::check_winding()
 
 void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sides)
 {
+  const Clock clock(counts->seconds);
   for (int s = 0; s < halo.n_slots(); s++) {
     const double *x = atom->x[halo.atom_of(s)];
     start[s] = end[s] = Vec3(x[0], x[1], x[2]);
@@ -399,6 +401,7 @@ int ContactSurface::side_at(const Vec3 &p, double reach)
 
 void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
 {
+  const Clock clock(counts->seconds);
   substep_dt = dt;
   for (Particle &p : particles) {
     p.from = p.end;
@@ -423,6 +426,7 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
 
 void ContactSurface::project(Vertex *p)
 {
+  const Clock clock(counts->seconds);
   for (int s = 0; s < halo.n_owned(); s++) end[s] = Vec3(p[s].x, p[s].y, p[s].z);
   halo.forward(0, end.data(), true);
   change.assign(halo.n_slots(), Vec3::Zero());
@@ -505,6 +509,7 @@ void ContactSurface::give(const Pair &pair, const Vec3 &by)
 
 void ContactSurface::end_substep(Vertex *v, double dt)
 {
+  const Clock clock(counts->seconds);
   for (Particle &p : particles) {
     if (p.touched) p.velocity = (p.end - p.from) / dt;
     p.contacts = 0;
@@ -565,6 +570,7 @@ void ContactSurface::load_velocities(const Vertex *v)
 
 void ContactSurface::end_step()
 {
+  const Clock clock(counts->seconds);
   for (const Particle &p : particles)
     for (int d = 0; d < 3; d++) {
       atom->v[p.atom][d] += p.velocity[d] - p.velocity_before[d];
@@ -581,6 +587,7 @@ void ContactSurface::end_step()
 
 bool ContactSurface::settle()
 {
+  const Clock clock(counts->seconds);
   load_sweeps();
   bound();
   forget_pairs();

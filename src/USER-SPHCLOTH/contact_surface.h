@@ -14,6 +14,7 @@
 #include "core/box_grid.h"
 #include "core/contact.h"
 #include "core/sides.h"
+#include "platform.h"
 #include "vertex_halo.h"
 
 #include <array>
@@ -34,11 +35,24 @@ struct ContactRules {
   bool sides = true;           // fluids above and below do not feel each other
 };
 
+// wall time, added up where a block ends
+
+class Clock {
+ public:
+  explicit Clock(double &sum) : sum(sum), begin(platform::walltime()) {}
+  ~Clock() { sum += platform::walltime() - begin; }
+
+ private:
+  double &sum;
+  const double begin;
+};
+
 struct ContactCounts {
   double contacts = 0.0;    // impulses that were exchanged
   double stops = 0.0;       // particles that were put back to their side behind the solver
   double frozen = 0.0;      // particles that were caught between triangles and moved with them
   double deepest = 0.0;     // largest missing gap before it was closed
+  double seconds = 0.0;     // of wall time
   double impulse[3] = {0.0, 0.0, 0.0};    // on held vertices
 };
 

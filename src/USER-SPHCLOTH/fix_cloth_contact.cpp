@@ -32,7 +32,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     pushes(nullptr), linking(nullptr), sight(0.0)
 {
   vector_flag = 1;
-  size_vector = 10;
+  size_vector = 11;
   global_freq = 1;
   extvector = 0;
   comm_forward = VertexHalo::LINK;
@@ -238,17 +238,19 @@ void FixClothContact::keep_places()
 
 /* ----------------------------------------------------------------------
    output: contacts, stops, frozen, deepest, impulse on held vertices (x, y, z), force on obstacles
+   (x, y, z), wall time
 ------------------------------------------------------------------------- */
 
 double FixClothContact::compute_vector(int n)
 {
-  double mine[10] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
+  double mine[11] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
                      counts.impulse[0], counts.impulse[1], counts.impulse[2]};
   double all;
-  if (n >= 7 && pushes)
+  mine[10] = counts.seconds;
+  if (n >= 7 && n < 10 && pushes)
     for (int i = 0; i < atom->nlocal; i++)
       mine[n] += pushes[i][n - 7] / (update->dt * force->ftm2v);
-  MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, n == 3 ? MPI_MAX : MPI_SUM, world);
+  MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, n == 3 || n == 10 ? MPI_MAX : MPI_SUM, world);
   return all;
 }
 

@@ -693,6 +693,24 @@ void ContactSurface::forget_pairs()
   entry.assign(atom->nlocal, -1);
 }
 
+bigint ContactSurface::count_too_near(tagint &one)
+{
+  load_sweeps();
+  bound();
+  bigint mine = 0, all;
+  tagint example = 0;
+  int last = -1;
+  for_overlapping([&](int i, int t, const Sweep &sweep) {
+    if (i == last || recovery(sweep.end, t).depth == 0.0) return;
+    last = i;
+    mine++;
+    example = std::max(example, atom->tag[i]);
+  });
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&example, &one, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
+}
+
 // both sides of what was stopped lose the motion towards each other
 
 void ContactSurface::stop_approach()

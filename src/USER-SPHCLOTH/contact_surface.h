@@ -121,6 +121,9 @@ class ContactSurface : public ClothGuest, protected Pointers {
   // ones, to round-off.  Collective; was there anything?
   bool settle();
 
+  // now: how many are nearer than the thickness, and one of them, or 0.  Collective.
+  bigint count_too_near(tagint &one);
+
   // for the vertices of another mesh: the triangles near them in this step, on their way up to a part of
   // the step, and what a triangle gets, mass times velocity
   void look_around();

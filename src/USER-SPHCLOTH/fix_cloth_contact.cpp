@@ -175,6 +175,22 @@ void FixClothContact::setup_post_neighbor()
   if (rules.sides)
     for (auto &surface : surfaces) surface->check_winding();
   post_neighbor();
+  warn_of_too_near();
+}
+
+void FixClothContact::warn_of_too_near()
+{
+  for_all_surfaces([this](ContactSurface &surface) {
+    tagint one;
+    const bigint n = surface.count_too_near(one);
+    if (n > 0 && comm->me == 0)
+      error->warning(
+          FLERR,
+          "{}: {} particles start nearer to the triangles than the thickness {}, atom {} "
+          "for example: they get their gap by a tenth of it per step; place them farther "
+          "away, or lower the thickness",
+          label, n, rules.thickness, one);
+  });
 }
 
 void FixClothContact::post_neighbor()

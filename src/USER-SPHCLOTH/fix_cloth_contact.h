@@ -72,6 +72,7 @@ class FixClothContact : public Fix {
   double sight;
 
   void keep_places();
+  void warn_of_too_near();
   void find_sides();
   void read_obstacle(ArgReader &);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);

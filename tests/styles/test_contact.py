@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance
+from harness import by_id, instance, run
 from scenes import FREE_SHEET, HEADER
 
 from sphcloth.mesh import ClothMesh
@@ -250,3 +250,55 @@ def test_nothing_passes_a_light_sheet_that_is_thrown_about(direction, tmp_path):
         f"direction {direction}\nfix contact fluid cloth/contact 0.01"
     )
     assert crossed(lmp, tmp_path, 20) == 0
+
+
+def test_who_starts_too_near_is_named(tmp_path):
+    script = TABLE.format(contact="", x=0.0, height=0.002).replace("region all", "region every")
+    script = script.replace("pin all table", "pin every table") + "run 1\n"
+    (tmp_path / "in.near").write_text(script)
+    out = run(tmp_path / "in.near", ranks=2)
+    assert "1 particles start nearer to the triangles than the thickness 0.01, atom 962" in out
+
+
+PRESS = (
+    HEADER.format(boundary="p p p")
+    + """
+region box block -1 1 -1 1 -1 1
+create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 8
+mass 1 0.125
+create_cloth 2 1.0 size 0.5 0.5 spacing 0.1 center 0 0 0.1 group cloth
+create_cloth 2 1.0 size 0.5 0.5 spacing 0.1 center 0 0 -0.1 group cloth
+create_atoms 1 single 0.03 0.04 0.0 units box
+group water type 1
+special_bonds lj/coul 1 1 1
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 1e-3
+pair_coeff 2 2 none
+bond_style pbd
+bond_coeff 1 1
+angle_style zero
+angle_coeff *
+dihedral_style pbd
+dihedral_coeff 1 0
+comm_modify cutoff 0.5
+neigh_modify every 1 delay 0 check yes
+timestep 1e-3
+fix step water sph/integrate constant
+fix made cloth store/state 0 z
+variable press atom -10*f_made
+fix sheet cloth pbd/cloth pin cloth velocity 0 0 v_press
+fix contact water cloth/contact 0.01
+"""
+)
+
+
+def test_pins_that_crush_what_is_between_them_are_named():
+    """Two plates of one cloth close at 2 m/s: all is well until there is no room left."""
+    lmp = instance()
+    lmp.commands_string(PRESS + "run 85")
+    water = by_id(lmp, "type") == 1
+    z = by_id(lmp, "x")[:, 2]
+    assert np.abs(z[water]).max() < np.abs(z[~water]).min()
+    with pytest.raises(Exception, match=r"held vertex .* crushes what is between them"):
+        lmp.command("run 30")

@@ -1,6 +1,7 @@
 #include "check.h"
 #include "core/box_grid.h"
 #include "core/contact.h"
+#include "core/sides.h"
 
 #include <random>
 #include <set>
@@ -88,6 +89,66 @@ CASE("touch: no seam between two triangles")
     const Sweep p{on_edge + Vec3(0, 0, u(generator)), on_edge - Vec3(0, 0, u(generator))};
     CHECK(touch(p, t1, 1e-6).hit || touch(p, t2, 1e-6).hit);
   }
+}
+
+CASE("touch: edges and vertices keep their distance too")
+{
+  // beside the edge from (0, 0) to (1, 0), and off the corner at the origin
+  const Touch edge = touch({{0.5, -0.02, 0.0}, {0.5, -0.005, 0.0}}, resting_triangle(), 0.01);
+  CHECK(edge.hit && !edge.through);
+  CHECK_NEAR(edge.depth, 0.005, 1e-12);
+  CHECK_NEAR((edge.normal - Vec3(0, -1, 0)).norm(), 0.0, 1e-12);
+  CHECK_NEAR((edge.weight - Vec3(0.5, 0.5, 0.0)).norm(), 0.0, 1e-12);
+  const Touch corner = touch({{-0.3, -0.4, 0.0}, {-0.003, -0.004, 0.0}}, resting_triangle(), 0.01);
+  CHECK(corner.hit);
+  CHECK_NEAR(corner.depth, 0.005, 1e-12);
+  CHECK_NEAR((corner.weight - Vec3(1, 0, 0)).norm(), 0.0, 1e-12);
+}
+
+CASE("nearest point: no point of a triangle is nearer")
+{
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const auto vec = [&] { return Vec3(u(generator), u(generator), u(generator)); };
+  for (int k = 0; k < 200; k++) {
+    const Vec3 a = vec(), b = vec(), c = vec(), p = 2.0 * vec();
+    Vec3 weight;
+    const double distance = distance_vector(p, a, b, c, weight).norm();
+    CHECK(weight.minCoeff() >= 0.0);
+    CHECK_NEAR(weight.sum(), 1.0, 1e-14);
+    for (int m = 0; m < 200; m++) {
+      double r = 0.5 * (u(generator) + 1.0), s = 0.5 * (u(generator) + 1.0);
+      if (r + s > 1.0) {
+        r = 1.0 - r;
+        s = 1.0 - s;
+      }
+      CHECK((p - a - r * (b - a) - s * (c - a)).norm() >= distance - 1e-12);
+    }
+  }
+}
+
+CASE("volume: never flat is never wrong")
+{
+  std::mt19937 generator(9);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int never = 0;
+  for (int k = 0; k < 20000; k++) {
+    const Volume v{u(generator), u(generator), u(generator), u(generator)};
+    if (!v.never_flat()) continue;
+    never++;
+    CHECK(cubic_roots(v.c0, v.c1, v.c2, v.c3).n == 0);
+  }
+  CHECK(never > 2000);
+}
+
+CASE("sides: parted by the same sheet only")
+{
+  const Sides above = side_of_sheet(0, true), below = side_of_sheet(0, false);
+  const Sides other = side_of_sheet(7, false);
+  CHECK(parted(above, below) && parted(below, above));
+  CHECK(!parted(above, above) && !parted(above, 0) && !parted(above, other));
+  CHECK(parted(static_cast<Sides>(above | other),
+               static_cast<Sides>(above | side_of_sheet(7, true))));
 }
 
 CASE("grid: finds exactly the boxes that a brute force search finds")

@@ -83,3 +83,30 @@ CASE("no particle of one's own, or none at all")
   check_lists(cloud(50, 1, 1, 1, 1, 9), 0, 1, reach);
   check_lists(Cloud(), 0, 1, reach);
 }
+
+CASE("lists: who is parted by a sheet is not there, all others are")
+{
+  const Cloud p = cloud(600, 1, 1.0, 1.0, 1.0, 11);
+  std::vector<Sides> sides(600, 0);
+  for (int i = 0; i < 600; i++) {
+    const double z = p.x[3 * i + 2];
+    if (std::fabs(z) < 0.3) sides[i] = side_of_sheet(2, z > 0.0);
+  }
+  const std::vector<double> reach{0, 0, 0, 0.2};
+  NeighbourLists all, parts;
+  all.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data());
+  parts.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data(), sides.data());
+  int left_out = 0;
+  for (int slot = 0; slot < all.slots(); slot++) {
+    const Stretch one = all(slot, 1), other = parts(slot, 1);
+    std::multiset<int> expected, listed(other.of, other.of + other.n);
+    for (int k = 0; k < one.n; k++)
+      if (parted(sides[all.at(slot)], sides[one.of[k]]))
+        left_out++;
+      else
+        expected.insert(one.of[k]);
+    CHECK(all.at(slot) == parts.at(slot));
+    CHECK(listed == expected);
+  }
+  CHECK(left_out > 500);
+}

@@ -38,9 +38,9 @@ PARAMETERS = (
     Parameter(
         "wall", "own", "1", "pressure of the sheet", choices=("extrapolate", "mirror", "own")
     ),
-    Parameter("settle", 6.0, "sqrt(side/g)", "time with drag", 1.0, 1e3),
+    Parameter("settle", 8.0, "sqrt(side/g)", "time with drag", 1.0, 1e3),
     Parameter("time", 3.0, "sqrt(side/g)", "time of rest without drag", 0.5, 1e3),
-    Parameter("drag", 3.2, "sqrt(g/side)", "rate of the drag", 0.1, 100.0),
+    Parameter("drag", 6.4, "sqrt(g/side)", "rate of the drag", 0.1, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
     *cloth.solver(1e-3, 10, method="substeps"),
     *(

@@ -25,6 +25,7 @@ SMALL = {
     },
     "light-cloth": {"rows": "8", "runs": "2", "time": "0.1"},
     "rest-angle": {"hinges": "5", "time": "0.3", "model": "compliance"},
+    "pinned-weight": {"across": "12", "time": "2"},
     "stiffness": {"cells": "6", "dt": "2e-3"},
 }
 # what such a small case must do worse

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 from scipy.integrate import quad
+from scipy.optimize import brentq
 from scipy.special import erfc
 
 from sphcloth.cli import main
@@ -27,13 +28,15 @@ from sphcloth.validation.cases.dam_break import Front
 from sphcloth.validation.cases.dam_break import reference as dam_break
 from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
 from sphcloth.validation.cases.jet.reference import Jet
+from sphcloth.validation.cases.lintearia.reference import HeavyLintearia, Lintearia
 from sphcloth.validation.cases.oscillating_drop import Motion
 from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
+from sphcloth.validation.cases.pinned_weight.reference import Load
 from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
 from sphcloth.validation.cases.standing_wave.reference import StandingWave
 from sphcloth.validation.cases.taylor_green import Decay
 from sphcloth.validation.cases.taylor_green.reference import TaylorGreen
-from sphcloth.validation.lattice import KERNELS, density_sum
+from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
 
 
 def call(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -222,6 +225,12 @@ def test_density_sum_is_that_of_the_plane() -> None:
         assert stretched == pytest.approx(1, abs=2e-3)
 
 
+def test_density_sum_is_that_of_space() -> None:
+    assert cubic_density_sum("wendland/c2", 2.0) == pytest.approx(1.0338, abs=1e-4)
+    for kernel in KERNELS:
+        assert cubic_density_sum(kernel, 10.0) == pytest.approx(1, abs=2e-3)
+
+
 def test_an_exact_motion_has_no_error() -> None:
     drop = EllipticDrop(0.5, 1.0)
     times = np.linspace(0, 2.1 * drop.period, 106)
@@ -235,6 +244,62 @@ def test_an_exact_motion_has_no_error() -> None:
 def test_order_of_convergence() -> None:
     assert compare.order([-0.08, 0.02], [10, 20]) == pytest.approx(2)
     assert math.isnan(compare.order([0.1, 0.0], [10, 20]))
+
+
+@pytest.mark.parametrize(
+    ("span", "area", "tension", "depth", "sag", "angle"),
+    [
+        (0.9, 0.03, 290.761, 0.090287, 0.204022, 30.4034),
+        (0.6, 0.08, 426.611, 0.229888, 0.360615, 66.8978),
+    ],
+)
+def test_lintearia(
+    span: float, area: float, tension: float, depth: float, sag: float, angle: float
+) -> None:
+    sheet = Lintearia(1.0, span, area, 1000.0, 9.81)
+    assert sheet.tension == pytest.approx(tension, abs=5e-4)
+    assert sheet.depth == pytest.approx(depth, abs=5e-7)
+    assert sheet.sag == pytest.approx(sag, abs=5e-7)
+    assert math.degrees(sheet.angle) == pytest.approx(angle, abs=5e-5)
+    assert sheet.lift == pytest.approx(9810 * area / 2)
+    ends = sheet.shape([-0.5, 0.0, 0.5])
+    np.testing.assert_allclose(ends, [[-span / 2, sag], [0, 0], [span / 2, sag]], atol=5e-7)
+
+
+def test_the_shape_of_the_lintearia_keeps_its_length_and_holds_the_area() -> None:
+    sheet = Lintearia(2.0, 1.3, 0.25, 800.0, 3.0)
+    points = sheet.shape(np.linspace(-1, 1, 20001))
+    assert np.sum(np.linalg.norm(np.diff(points, axis=0), axis=1)) == pytest.approx(2, rel=1e-7)
+    below = np.maximum(sheet.depth - points[:, 1], 0)
+    assert np.trapezoid(below, points[:, 0]) == pytest.approx(0.25, rel=1e-6)
+
+
+def test_a_sheet_that_weighs_nothing_is_the_limit_of_the_heavy_one() -> None:
+    light = Lintearia(1.0, 0.6, 0.08, 1000.0, 9.81)
+    heavy, arc = HeavyLintearia(light, 0.0), np.linspace(-0.5, 0.5, 11)
+    np.testing.assert_allclose(heavy.shape(arc), light.shape(arc), atol=1e-8)
+    np.testing.assert_allclose(heavy.pull(arc), light.tension, rtol=1e-7)
+
+
+def test_a_heavy_sheet_with_little_water_is_a_catenary() -> None:
+    heavy = HeavyLintearia(Lintearia(1.0, 0.6, 1e-3, 1000.0, 9.81), 100.0)
+    # 2 a sinh(D / 2a) = L and sag = a (cosh(D / 2a) - 1)
+    a = brentq(lambda a: 2 * a * math.sinh(0.3 / a) - 1.0, 0.1, 1.0)
+    assert heavy.sag == pytest.approx(a * (math.cosh(0.3 / a) - 1), rel=5e-3)
+    assert heavy.tension == pytest.approx(100.0 * 9.81 * a, rel=0.05)
+    horizontal = heavy.tension - 9810 * heavy.depth**2 / 2
+    assert heavy.pull(0.5) == pytest.approx(math.hypot(horizontal, heavy.lift), rel=1e-6)
+
+
+def test_a_sheet_that_is_too_short_is_refused() -> None:
+    with pytest.raises(UserError, match="cannot hold 1 m\\^2"):
+        _ = Lintearia(1.0, 0.6, 1.0, 1000.0, 9.81).angle
+    with pytest.raises(UserError, match="take L larger"):
+        _ = Lintearia(1.0, 1.1, 0.01, 1000.0, 9.81).angle
+
+
+def test_weight_on_the_pins() -> None:
+    assert Load(2.0, 0.5, 0.01, 900.0, 10.0).weight == pytest.approx(110.0)
 
 
 # the framework

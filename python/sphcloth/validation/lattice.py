@@ -41,6 +41,10 @@ KERNELS: dict[str, Shape] = {
 }
 
 
+# where a kernel has another formula
+_KINKS = (1 / 3, 1 / 2, 2 / 3)
+
+
 def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> float:
     """Return the sum of W over a plane lattice times the area of a cell.
 
@@ -60,7 +64,20 @@ def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> 
     return total / (_plane_integral(shape) * support**2) / height_over_width
 
 
+def cubic_density_sum(kernel: str, support: float) -> float:
+    """Return the sum of W over a cubic lattice times the volume of a cell.
+
+    Args:
+        kernel: one of ``KERNELS``.
+        support: support radius over the edge of a cell.
+    """
+    shape, reach = KERNELS[kernel], math.ceil(support)
+    along = np.arange(-reach, reach + 1)
+    q = np.sqrt(sum(part**2 for part in np.meshgrid(along, along, along))) / support
+    integral = quad(lambda q: float(shape(np.float64(q))) * q**2, 0, 1, points=_KINKS)[0]
+    return float(np.sum(shape(q[q < 1]))) / (4 * math.pi * integral * support**3)
+
+
 def _plane_integral(shape: Shape) -> float:
     """Return the integral of the kernel's shape over the unit disc."""
-    kinks = [1 / 3, 1 / 2, 2 / 3]
-    return 2 * math.pi * quad(lambda q: float(shape(np.float64(q))) * q, 0, 1, points=kinks)[0]
+    return 2 * math.pi * quad(lambda q: float(shape(np.float64(q))) * q, 0, 1, points=_KINKS)[0]

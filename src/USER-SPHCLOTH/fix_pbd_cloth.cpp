@@ -41,7 +41,7 @@ static constexpr double CLOSED = 0.25;
 ------------------------------------------------------------------------- */
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
+    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
     iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
     attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), mesh(lmp, label), halo(lmp),
     edge_colours(0), hinge_colours(0), edge_layers(1), mean_length(0.0), holding{}, sweeps(0),

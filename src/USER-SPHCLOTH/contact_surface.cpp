@@ -252,6 +252,7 @@ template <class Visit> void ContactSurface::for_overlapping(Visit visit)
 
 bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
 {
+  moved.clear();
   for (int s = 0; s < halo.n_owned(); s++) {
     start[s] = Vec3(from_here[s].x, from_here[s].y, from_here[s].z);
     end[s] = Vec3(to_here[s].x, to_here[s].y, to_here[s].z);
@@ -551,11 +552,13 @@ void ContactSurface::load_velocities(const Vertex *v)
 
 void ContactSurface::end_step()
 {
-  for (const Particle &p : particles)
+  for (const Particle &p : particles) {
+    if (p.velocity != p.velocity_before) moved.push_back(p.atom);
     for (int d = 0; d < 3; d++) {
       atom->v[p.atom][d] += p.velocity[d] - p.velocity_before[d];
       atom->x[p.atom][d] = p.end[d];
     }
+  }
   for (int s = 0; s < halo.n_owned(); s++)
     if (w[s] == 0.0)
       for (int d = 0; d < 3; d++) counts->impulse[d] += received[s][d] / force->ftm2v;
@@ -576,6 +579,7 @@ void ContactSurface::settle()
     if (++pass == STOP_PASSES) break;
   if (pass > 0) stop_approach();
   if (pass == STOP_PASSES) freeze();
+  for (const Particle &p : particles) moved.push_back(p.atom);
 }
 
 void ContactSurface::load_sweeps()

@@ -104,6 +104,9 @@ class ContactSurface : public ClothGuest, protected Pointers {
   // ones, to round-off.  Collective.
   void settle();
 
+  // own particles that contact has moved in this step, some of them more than once
+  const std::vector<int> &met() const { return moved; }
+
   bool has_triangles() const;
   int pack_link(int n, const int *atoms, double *buf) const
   {
@@ -163,6 +166,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
   std::vector<Vec3> found_at;    // of each atom, when the last line was made
   std::vector<Particle> particles;
+  std::vector<int> moved;
   std::vector<Pair> pairs;
 
   void add_triangles(const std::vector<int> &reach);

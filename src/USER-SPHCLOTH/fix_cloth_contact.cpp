@@ -7,16 +7,24 @@
 #include "atom.h"
 #include "atom_tools.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
+#include "force.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "pair_sph_tait.h"
+#include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+
+// columns of `places`: where an atom was at the end of the last step, and what contact has left it of
+// velocity beyond the way that it went
+static constexpr int BEYOND = 3, PLACES = 6;
 
 /* ----------------------------------------------------------------------
    fix ID group cloth/contact thickness keyword value ...
@@ -24,7 +32,7 @@ using namespace FixConst;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    linking(nullptr), sight(0.0)
+    linking(nullptr), sight(0.0), density_follows_velocity(false)
 {
   vector_flag = 1;
   size_vector = 7;
@@ -48,6 +56,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
       args.unknown(keyword, "friction, restitution, sides");
   }
   grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
   atom->add_callback(Atom::GROW);
 }
 
@@ -57,7 +66,7 @@ FixClothContact::~FixClothContact()
   memory->destroy(places);
 }
 
-int FixClothContact::setmask() { return POST_NEIGHBOR | POST_INTEGRATE; }
+int FixClothContact::setmask() { return POST_NEIGHBOR | POST_INTEGRATE | POST_FORCE; }
 
 void FixClothContact::init()
 {
@@ -79,6 +88,8 @@ void FixClothContact::init()
   }
   if (surfaces.empty())
     error->all(FLERR, "{}: there is no cloth: define 'fix ID group pbd/cloth' before", label);
+  const auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  density_follows_velocity = fluid && fluid->integrates_density();
 }
 
 // every cloth has gathered its mesh by now
@@ -127,6 +138,7 @@ void FixClothContact::find_sides()
 void FixClothContact::post_integrate()
 {
   for (auto &surface : surfaces) surface->settle();
+  if (density_follows_velocity) show_way();
   keep_places();
 }
 
@@ -139,9 +151,39 @@ int FixClothContact::side_of(int i) const
   return 0;
 }
 
+// A particle leaves its contacts with the velocity of the last substep, which is not that of its way in
+// the step.  A density that is integrated must follow the way: forces are evaluated with the velocity
+// of the way, and what is beyond comes back behind them.
+
+void FixClothContact::show_way()
+{
+  const double inv_dt = 1.0 / update->dt;
+  for (const auto &surface : surfaces)
+    for (int i : surface->met()) {
+      double *v = atom->v[i], *place = places[i], way[3];
+      for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - place[d];
+      domain->minimum_image(FLERR, way);
+      for (int d = 0; d < 3; d++) {
+        const double beyond = v[d] - inv_dt * way[d];
+        place[BEYOND + d] += beyond;
+        v[d] -= beyond;
+      }
+    }
+}
+
+void FixClothContact::post_force(int)
+{
+  if (!density_follows_velocity) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      atom->v[i][d] += places[i][BEYOND + d];
+      places[i][BEYOND + d] = 0.0;
+    }
+}
+
 void FixClothContact::keep_places()
 {
-  if (atom->nlocal) std::copy_n(atom->x[0], 3 * atom->nlocal, places[0]);
+  for (int i = 0; i < atom->nlocal; i++) std::copy_n(atom->x[i], 3, places[i]);
 }
 
 /* ----------------------------------------------------------------------
@@ -176,32 +218,36 @@ void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 
 void FixClothContact::grow_arrays(int nmax)
 {
-  memory->grow(places, nmax, 3, "cloth/contact:places");
+  memory->grow(places, nmax, PLACES, "cloth/contact:places");
   for (auto &surface : surfaces) surface->set_last_places(places);
 }
 
 void FixClothContact::copy_arrays(int i, int j, int)
 {
-  std::copy(places[i], places[i] + 3, places[j]);
+  std::copy_n(places[i], PLACES, places[j]);
 }
 
-void FixClothContact::set_arrays(int i) { std::copy(atom->x[i], atom->x[i] + 3, places[i]); }
+void FixClothContact::set_arrays(int i)
+{
+  std::copy_n(atom->x[i], 3, places[i]);
+  std::fill_n(places[i] + BEYOND, 3, 0.0);
+}
 
 int FixClothContact::pack_exchange(int i, double *buf)
 {
-  std::copy(places[i], places[i] + 3, buf);
-  return 3;
+  std::copy_n(places[i], PLACES, buf);
+  return PLACES;
 }
 
 int FixClothContact::unpack_exchange(int i, double *buf)
 {
-  std::copy(buf, buf + 3, places[i]);
-  return 3;
+  std::copy_n(buf, PLACES, places[i]);
+  return PLACES;
 }
 
 double FixClothContact::memory_usage()
 {
-  double bytes = 3.0 * sizeof(double) * atom->nmax;
+  double bytes = PLACES * sizeof(double) * atom->nmax;
   for (const auto &surface : surfaces) bytes += surface->memory_usage();
   return bytes;
 }

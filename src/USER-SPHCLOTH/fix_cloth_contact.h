@@ -28,6 +28,7 @@ class FixClothContact : public Fix {
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
+  void post_force(int) override;
   double compute_vector(int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
@@ -49,14 +50,17 @@ class FixClothContact : public Fix {
   std::string label;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
-  double **places;         // of all atoms at the end of the last step
+  double **places;         // of all atoms at the end of the last step, and BEYOND
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;
 
+  bool density_follows_velocity;
+
   void keep_places();
   void find_sides();
+  void show_way();
 };
 
 }    // namespace LAMMPS_NS

@@ -60,6 +60,25 @@ def density_sum(kernel: str, support: float, height_over_width: float = 1.0) -> 
     return total / (_plane_integral(shape) * support**2) / height_over_width
 
 
+def density_sum_in_space(kernel: str, support: float) -> float:
+    """Return the sum of W over a cubic lattice times the volume of a cell.
+
+    Args:
+        kernel: one of ``KERNELS``.
+        support: support radius over the spacing.
+
+    Returns:
+        Summed density over mass per volume: 1 for a perfect kernel.
+    """
+    shape = KERNELS[kernel]
+    steps = np.arange(-math.ceil(support), math.ceil(support) + 1)
+    x, y, z = np.meshgrid(steps, steps, steps)
+    q = np.sqrt(x**2 + y**2 + z**2) / support
+    kinks = [1 / 3, 1 / 2, 2 / 3]
+    ball = 4 * math.pi * quad(lambda q: float(shape(np.float64(q))) * q**2, 0, 1, points=kinks)[0]
+    return float(np.sum(shape(q[q < 1]))) / (ball * support**3)
+
+
 def _plane_integral(shape: Shape) -> float:
     """Return the integral of the kernel's shape over the unit disc."""
     kinks = [1 / 3, 1 / 2, 2 / 3]

@@ -36,7 +36,7 @@ PARAMETERS = (
     Parameter("compliance", 1e-4, "m/N", "of its edges", 0.0, 1.0),
     Parameter("length", 12.0, "radius", "of the sheet along the way of the drop", 6.0, 50.0),
     Parameter("width", 8.0, "radius", "of the sheet", 4.0, 50.0),
-    Parameter("across", 8, "1", "particles over the radius", 3, 40, quick=5),
+    Parameter("across", 6, "1", "particles over the radius", 3, 40, quick=4),
     Parameter("mesh", 1.5, "spacing", "spacing of the sheet", 0.5, 3.0),
     Parameter("most_ranks", 4, "1", "of the runs that are compared", 1, 64, quick=2),
     Parameter(

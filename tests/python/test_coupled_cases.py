@@ -106,6 +106,6 @@ def test_a_drop_on_a_free_sheet_keeps_momentum(tmp_path: Path) -> None:
 
 
 def test_a_jet_pulls_at_the_pins(tmp_path: Path) -> None:
-    result = run_case("jet-on-sheet", tmp_path, across="4", thickness="0.2", speed="1")
+    result = run_case("jet-on-sheet", tmp_path, across="5", thickness="0.2", speed="1")
     assert abs(result.metrics["balance"].value) < 0.1
     assert result.metrics["passed_through"].passed

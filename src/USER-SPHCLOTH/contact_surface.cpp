@@ -571,11 +571,13 @@ void ContactSurface::load_velocities(const Vertex *v)
 void ContactSurface::end_step()
 {
   const Clock clock(counts->seconds);
-  for (const Particle &p : particles)
+  for (const Particle &p : particles) {
+    if (p.velocity != p.velocity_before) moved.push_back(p.atom);
     for (int d = 0; d < 3; d++) {
       atom->v[p.atom][d] += p.velocity[d] - p.velocity_before[d];
       atom->x[p.atom][d] = p.end[d];
     }
+  }
   for (int s = 0; s < halo.n_owned(); s++)
     if (w[s] == 0.0)
       for (int d = 0; d < 3; d++) counts->impulse[d] += received[s][d] / force->ftm2v;
@@ -596,6 +598,7 @@ bool ContactSurface::settle()
     if (++pass == STOP_PASSES) break;
   if (pass > 0) stop_approach();
   if (pass == STOP_PASSES) freeze();
+  for (const Particle &p : particles) moved.push_back(p.atom);
   return pass > 0;
 }
 

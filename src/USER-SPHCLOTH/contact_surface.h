@@ -141,6 +141,10 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void push_triangle(int t, const Vec3 &weight, const Vec3 &impulse);
   void hand_over_pushes();
 
+  // own particles that contact has moved in this step, some of them more than once
+  const std::vector<int> &met() const { return moved; }
+  void begin() { moved.clear(); }
+
   // a mesh whose vertices meet this one: those that are held do not give way
   void meet_vertices_of(const ContactMesh *other) { others.push_back(other); }
 
@@ -205,6 +209,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
   std::vector<Vec3> found_at;    // of each atom, when the last line was made
   std::vector<Particle> particles;
+  std::vector<int> moved;
   std::vector<int> entry;    // of an atom among them, or -1
   std::vector<Pair> pairs;
 

@@ -7,18 +7,24 @@
 #include "atom.h"
 #include "atom_tools.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+
+// columns of `places`: where an atom was at the end of the last step, and what contact has left it of
+// velocity beyond the way that it went
+static constexpr int BEYOND = 3, PLACES = 6;
 
 // of the looks at all surfaces behind the solver: what one of them puts back another may mind
 static constexpr int MOST_ROUNDS = 10;
@@ -29,7 +35,7 @@ static constexpr int MOST_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    pushes(nullptr), linking(nullptr), sight(0.0)
+    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -56,6 +62,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
   }
   restart_peratom = !obstacle_groups.empty();
   grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
   atom->add_callback(Atom::GROW);
   if (restart_peratom) atom->add_callback(Atom::RESTART);
   if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);
@@ -81,7 +88,8 @@ FixClothContact::~FixClothContact()
 
 int FixClothContact::setmask()
 {
-  return POST_NEIGHBOR | POST_INTEGRATE | (pushes ? INITIAL_INTEGRATE | PRE_REVERSE : 0);
+  return POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
+      (pushes ? PRE_REVERSE : 0);
 }
 
 void FixClothContact::init()
@@ -113,6 +121,8 @@ void FixClothContact::init()
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
+  const auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  density_follows_velocity = fluid && fluid->integrates_density();
 }
 
 // Meets the group of this fix and the vertices of all cloths.
@@ -215,7 +225,11 @@ void FixClothContact::find_sides()
   comm->forward_comm(this, 1);
 }
 
-void FixClothContact::initial_integrate(int) { std::fill_n(pushes[0], 3 * atom->nmax, 0.0); }
+void FixClothContact::initial_integrate(int)
+{
+  for_all_surfaces([](ContactSurface &surface) { surface.begin(); });
+  if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);
+}
 
 // The cloths have been solved, with what they met: see ContactSurface.
 
@@ -226,7 +240,39 @@ void FixClothContact::post_integrate()
     for_all_surfaces([&any](ContactSurface &surface) { any = surface.settle() || any; });
     if (!any || surfaces.size() + hard.size() == 1) break;
   }
+  if (density_follows_velocity) show_way();
   keep_places();
+}
+
+// A particle leaves its contacts with the velocity of the last substep, which is not that of its way in
+// the step.  A density that is integrated must follow the way: forces are evaluated with the velocity
+// of the way, and what is beyond comes back behind them.
+
+void FixClothContact::show_way()
+{
+  const double inv_dt = 1.0 / update->dt;
+  for_all_surfaces([&](const ContactSurface &surface) {
+    for (int i : surface.met()) {
+      double *v = atom->v[i], *place = places[i], way[3];
+      for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - place[d];
+      domain->minimum_image(FLERR, way);
+      for (int d = 0; d < 3; d++) {
+        const double beyond = v[d] - inv_dt * way[d];
+        place[BEYOND + d] += beyond;
+        v[d] -= beyond;
+      }
+    }
+  });
+}
+
+void FixClothContact::post_force(int)
+{
+  if (!density_follows_velocity) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) {
+      atom->v[i][d] += places[i][BEYOND + d];
+      places[i][BEYOND + d] = 0.0;
+    }
 }
 
 void FixClothContact::pre_reverse(int, int)
@@ -249,7 +295,7 @@ int FixClothContact::side_of(int i) const
 
 void FixClothContact::keep_places()
 {
-  if (atom->nlocal) std::copy_n(atom->x[0], 3 * atom->nlocal, places[0]);
+  for (int i = 0; i < atom->nlocal; i++) std::copy_n(atom->x[i], 3, places[i]);
 }
 
 /* ----------------------------------------------------------------------
@@ -289,7 +335,7 @@ void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 
 void FixClothContact::grow_arrays(int nmax)
 {
-  memory->grow(places, nmax, 3, "cloth/contact:places");
+  memory->grow(places, nmax, PLACES, "cloth/contact:places");
   if (!obstacle_groups.empty()) memory->grow(pushes, nmax, 3, "cloth/contact:pushes");
   for (auto &obstacle : obstacles) obstacle->set_pushes(pushes);
   for_all_surfaces([this](ContactSurface &surface) { surface.set_last_places(places); });
@@ -297,28 +343,29 @@ void FixClothContact::grow_arrays(int nmax)
 
 void FixClothContact::copy_arrays(int i, int j, int)
 {
-  std::copy(places[i], places[i] + 3, places[j]);
+  std::copy_n(places[i], PLACES, places[j]);
   if (pushes) std::copy(pushes[i], pushes[i] + 3, pushes[j]);
 }
 
 void FixClothContact::set_arrays(int i)
 {
-  std::copy(atom->x[i], atom->x[i] + 3, places[i]);
+  std::copy_n(atom->x[i], 3, places[i]);
+  std::fill_n(places[i] + BEYOND, 3, 0.0);
   if (pushes) std::fill(pushes[i], pushes[i] + 3, 0.0);
 }
 
 int FixClothContact::pack_exchange(int i, double *buf)
 {
-  std::copy(places[i], places[i] + 3, buf);
-  if (pushes) std::copy(pushes[i], pushes[i] + 3, buf + 3);
-  return pushes ? 6 : 3;
+  std::copy_n(places[i], PLACES, buf);
+  if (pushes) std::copy_n(pushes[i], 3, buf + PLACES);
+  return PLACES + (pushes ? 3 : 0);
 }
 
 int FixClothContact::unpack_exchange(int i, double *buf)
 {
-  std::copy(buf, buf + 3, places[i]);
-  if (pushes) std::copy(buf + 3, buf + 6, pushes[i]);
-  return pushes ? 6 : 3;
+  std::copy_n(buf, PLACES, places[i]);
+  if (pushes) std::copy_n(buf + PLACES, 3, pushes[i]);
+  return PLACES + (pushes ? 3 : 0);
 }
 
 // only what obstacles feel; the first value of a restart record is its length
@@ -342,7 +389,7 @@ int FixClothContact::maxsize_restart() { return 4; }
 
 double FixClothContact::memory_usage()
 {
-  double bytes = (pushes ? 6.0 : 3.0) * sizeof(double) * atom->nmax;
+  double bytes = (PLACES + (pushes ? 3.0 : 0.0)) * sizeof(double) * atom->nmax;
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   return bytes;
 }

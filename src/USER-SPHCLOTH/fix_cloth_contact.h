@@ -33,6 +33,7 @@ class FixClothContact : public Fix {
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
+  void post_force(int) override;
   double compute_vector(int) override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
@@ -60,7 +61,7 @@ class FixClothContact : public Fix {
   std::string label;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
-  double **places;         // of all atoms at the end of the last step
+  double **places;         // of all atoms at the end of the last step, and BEYOND
   double **pushes;    // on obstacles in this step, mass times velocity; null: there are none
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
@@ -70,8 +71,10 @@ class FixClothContact : public Fix {
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;
+  bool density_follows_velocity;
 
   void keep_places();
+  void show_way();
   void warn_of_too_near();
   void find_sides();
   void read_obstacle(ArgReader &);

@@ -55,6 +55,7 @@ class PairSPHTait : public Pair {
   bool interact(int itype, int jtype) const { return materials.reach(itype, jtype) > 0.0; }
   double viscosity(int itype) const { return materials.viscosity(itype); }
   double laminar_viscosity(int itype) const { return materials.type(itype).nu; }
+  bool integrates_density() const { return options.continuity; }
   sphcloth::KernelName kernel() const { return options.kernel; }
 
   // what a plane wall adds to the density, for the kernel in use

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sphcloth.validation.case import Parameter, Value
-from sphcloth.validation.lattice import KERNELS, density_sum
+from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
 
 
 def numerics(
@@ -57,6 +57,13 @@ def lattice_density(values: Mapping[str, Value], height_over_width: float = 1.0)
     if values["density"] == "continuity":
         return 1.0
     return density_sum(values["kernel"], values["support"], height_over_width)
+
+
+def lattice_density_in_space(values: Mapping[str, Value]) -> float:
+    """Return the same for a cubic lattice, over mass per volume."""
+    if values["density"] == "continuity":
+        return 1.0
+    return cubic_density_sum(values["kernel"], values["support"])
 
 
 # the script's base: particles at rest below the water

@@ -256,7 +256,9 @@ def test_a_shirt_sewn_with_bonds_closes(
     assert f"22 seam bonds, up to {gap:g} long" in shown
     assert json.loads(summary.read_text())["seams"] == 22
     box = "region box block -2 2 -2 2 -2 2\n" if into == "--molecule" else ""
-    lmp = run_lines(box + printed_script(shown).replace(" BOX ", " box "))
+    script = printed_script(shown).replace(" BOX ", " box ")
+    # wide gaps close fast: present directions forgive that
+    lmp = run_lines(box + script.replace("pbd/cloth", "pbd/cloth direction current"))
     assert sizes(lmp)[:3] == [2 * 99, 2 * (99 + 160 - 1) + 22, 2 * 160]
     bonds = lmp.numpy.gather_bonds()
     seam, edge = (bonds[(bonds[:, 0] == 2) == is_seam][:, 1:] - 1 for is_seam in (True, False))

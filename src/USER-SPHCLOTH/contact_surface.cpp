@@ -821,7 +821,14 @@ void ContactSurface::freeze()
       caught.push_back(atom->tag[i]);
       for (int s : triangles[t]) caught.push_back(atom->tag[halo.atom_of(s)]);
     });
-    if (!zones.join(allgather(caught, comm->nprocs, world))) return;
+    const std::vector<tagint> groups = allgather(caught, comm->nprocs, world);
+    if (groups.empty()) return;
+    // a zone keeps its shape, unless it holds vertices that do not move alike
+    if (!zones.join(groups))
+      error->all(FLERR,
+                 "{}: held vertex {} or its neighbours move apart from others and crush what is "
+                 "between them, particle {}: move pins slower or lower the time step",
+                 label, groups[1], groups[0]);
     move_zones(zones);
     load_sweeps();
     bound();

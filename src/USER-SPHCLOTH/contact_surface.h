@@ -60,17 +60,19 @@ struct ContactCounts {
 
 class ContactZones {
  public:
-  // groups of four IDs that belong together; false if there are none
+  // groups of four IDs that belong together; false if that was known of all of them
   bool join(const std::vector<tagint> &groups)
   {
+    bool any_new = false;
     for (std::size_t k = 0; k < groups.size(); k += 4)
       for (int q = 0; q < 4; q++) {
         parent.try_emplace(groups[k + q], groups[k + q]);
+        any_new = any_new || root(groups[k + q]) != root(groups[k]);
         parent[root(groups[k + q])] = root(groups[k]);
       }
     number.clear();
     for (const auto &[id, ignored] : parent) number.try_emplace(root(id), number.size());
-    return !groups.empty();
+    return any_new;
   }
   int size() const { return static_cast<int>(number.size()); }
   int of(tagint id) const    // -1: in none

@@ -9,6 +9,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -42,6 +43,20 @@ inline tagint largest_id(const Atom *atom, MPI_Comm world)
   tagint mine = 0, all = 0;
   for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
+}
+
+// collective: every rank's list behind one another
+
+inline std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
+{
+  int n = static_cast<int>(mine.size());
+  std::vector<int> counts(nprocs), displs(nprocs, 0);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
+  std::vector<tagint> all(displs.back() + counts.back());
+  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), counts.data(), displs.data(),
+                 MPI_LMP_TAGINT, world);
   return all;
 }
 

@@ -1,6 +1,7 @@
 #include "cloth_topology.h"
 
 #include "atom.h"
+#include "atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -10,20 +11,6 @@
 #include <tuple>
 
 using namespace LAMMPS_NS;
-
-// every rank's list behind one another
-
-static std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
-{
-  int n = static_cast<int>(mine.size());
-  std::vector<int> counts(nprocs), displs(nprocs, 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-  std::vector<tagint> all(displs.back() + counts.back());
-  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), counts.data(), displs.data(),
-                 MPI_LMP_TAGINT, world);
-  return all;
-}
 
 // One way to write each element, so that two copies of it compare equal: edges ascending,
 // triangles rotated to start with the smallest vertex, hinges with the edge ascending.

@@ -10,22 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
-
-static std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
-{
-  int n = static_cast<int>(mine.size());
-  std::vector<int> sizes(nprocs), begins(nprocs, 0);
-  MPI_Allgather(&n, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  std::partial_sum(sizes.begin(), sizes.end() - 1, begins.begin() + 1);
-  std::vector<tagint> all(begins.back() + sizes.back());
-  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), sizes.data(), begins.data(),
-                 MPI_LMP_TAGINT, world);
-  return all;
-}
 
 // a hair more than the gap, so that the next look finds it done
 static constexpr double HAIR = 1e-6;

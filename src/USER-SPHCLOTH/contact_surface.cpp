@@ -14,11 +14,16 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// a hair more than the gap, so that the next look finds it done
-static constexpr double HAIR = 1e-6;
+// Of the gap, what may be missing behind the solver, and a hair, so that the next look finds done what
+// is done.  The smaller the hair, the less depends on whether it was.
+static constexpr double SLACK = 1e-6, HAIR = 1e-10;
 
 // of the thickness: what a particle that is too near may get back in one step
 static constexpr double RECOVERY = 0.1;
+
+// Of the speed with which a particle came too near behind the solver, as much is taken: the whole approach,
+// unless it hardly came too near.
+static constexpr double FIRM = 10.0;
 
 static constexpr int STOP_PASSES = 200;
 
@@ -280,17 +285,18 @@ void ContactSurface::meet()
   });
 }
 
-// over how many pairs the mass of each vertex is split
+// the sum of what each pair asks of the mass of its vertices
 
-template <class Counts> void ContactSurface::count_shares(Counts counts_in)
+template <class Part> void ContactSurface::share_out(Part part)
 {
   shares.assign(halo.n_slots(), Vec3::Zero());
   for (const Pair &pair : pairs)
-    if (counts_in(pair))
-      for (int s : triangles[pair.triangle]) shares[s][0] += 1.0;
+    for (int q = 0; q < 3; q++) shares[triangles[pair.triangle][q]][0] += part(pair, q);
   halo.reverse_add(0, shares.data());
   halo.forward(0, shares.data(), false);
 }
+
+// masses split evenly over all pairs
 
 double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &inverse_mass) const
 {
@@ -301,6 +307,19 @@ double ContactSurface::split_mass(const Pair &pair, const std::vector<double> &i
     inverse += inverse_mass[s] * shares[s][0] * pair.weight[q] * pair.weight[q];
   }
   return 1.0 / inverse;
+}
+
+// masses split as pairs push, so that one that hardly pushes hardly counts
+
+double ContactSurface::loaded_mass(const Pair &pair) const
+{
+  const Particle &p = particles[pair.particle];
+  double inverse = p.w * p.load;
+  for (int q = 0; q < 3; q++) {
+    const int s = triangles[pair.triangle][q];
+    inverse += w_solver[s] * pair.weight[q] * shares[s][0];
+  }
+  return pair.push / inverse;
 }
 
 /* ----------------------------------------------------------------------
@@ -390,9 +409,11 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
 {
   const Clock clock(counts->seconds);
   substep_dt = dt;
+  substep_start = vertices;
   for (Particle &p : particles) {
     p.from = p.end;
-    p.end += dt * p.velocity;
+    p.way = dt * p.velocity;
+    p.end = p.from + p.way;
     p.touched = false;
     p.contacts = 0;
   }
@@ -402,7 +423,7 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
     pair.push = 0.0;
     pair.rub.setZero();
   }
-  count_shares([](const Pair &) { return true; });
+  share_out([](const Pair &, int) { return 1.0; });
   if (rules->restitution > 0.0) load_velocities(v);
   if (rules->friction == 0.0) return;
   from.resize(halo.n_slots());
@@ -411,10 +432,13 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   halo.forward(0, from.data(), true);
 }
 
-void ContactSurface::project(Vertex *p)
+void ContactSurface::project(Vertex *way)
 {
   const Clock clock(counts->seconds);
-  for (int s = 0; s < halo.n_owned(); s++) end[s] = Vec3(p[s].x, p[s].y, p[s].z);
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const Vertex &from_here = substep_start[s];
+    end[s] = Vec3(from_here.x + way[s].x, from_here.y + way[s].y, from_here.z + way[s].z);
+  }
   halo.forward(0, end.data(), true);
   change.assign(halo.n_slots(), Vec3::Zero());
   for (Particle &particle : particles) particle.change.setZero();
@@ -424,24 +448,29 @@ void ContactSurface::project(Vertex *p)
     if (rules->friction > 0.0 && pair.met) rub(pair);
   }
 
-  for (Particle &particle : particles) particle.end += particle.w * particle.change;
+  for (Particle &p : particles) {
+    p.way += p.w * p.change;
+    p.end = p.from + p.way;
+  }
   halo.reverse_add(0, change.data());
   for (int s = 0; s < halo.n_owned(); s++) {
-    p[s].x += w_solver[s] * change[s][0];
-    p[s].y += w_solver[s] * change[s][1];
-    p[s].z += w_solver[s] * change[s][2];
+    way[s].x += w_solver[s] * change[s][0];
+    way[s].y += w_solver[s] * change[s][1];
+    way[s].z += w_solver[s] * change[s][2];
     received[s] += change[s] / substep_dt;
   }
 }
 
 // Closes what is missing of the gap.  What was pushed too far before is taken back, but a pair never
-// pulls.
+// pulls.  All of this is continuous in the positions: whether a gap that is just closed counts as a hit
+// is round-off, and makes no difference.
 
 void ContactSurface::press(Pair &pair)
 {
   const Particle &p = particles[pair.particle];
   const std::array<int, 3> &slots = triangles[pair.triangle];
-  const Touch touched = touch({p.start, p.end}, sweep_of_triangle(pair.triangle), rules->thickness);
+  const Touch touched =
+      touch({p.start, p.end}, sweep_of_triangle(pair.triangle), rules->thickness, 0.0);
   double missing = touched.depth;
   if (touched.hit) {
     pair.weight = touched.weight;
@@ -453,9 +482,11 @@ void ContactSurface::press(Pair &pair)
     counts->contacts++;
     counts->deepest = std::max(counts->deepest, touched.depth);
   } else if (pair.push > 0.0) {
-    Vec3 gap = p.end;
-    for (int q = 0; q < 3; q++) gap -= pair.weight[q] * end[slots[q]];
-    missing = pair.kept - gap.dot(pair.normal);
+    const Vec3 gap =
+        distance_vector(p.end, end[slots[0]], end[slots[1]], end[slots[2]], pair.weight);
+    const double distance = gap.norm();
+    missing = pair.kept - distance;
+    if (distance > 0.0) pair.normal = gap / distance;
   } else
     return;
   const double step = std::max(missing * split_mass(pair, w_solver), -pair.push);
@@ -498,16 +529,12 @@ void ContactSurface::end_substep(Vertex *v, double dt)
 {
   const Clock clock(counts->seconds);
   for (Particle &p : particles) {
-    if (p.touched) p.velocity = (p.end - p.from) / dt;
-    p.contacts = 0;
+    if (p.touched) p.velocity = p.way / dt;
+    p.load = 0.0;
     p.change.setZero();
   }
-  // what is left of a push that was taken back is round-off, and must not decide who counts
-  for (Pair &pair : pairs) {
-    if (pair.push * particles[pair.particle].w < SEAM * rules->thickness) pair.push = 0.0;
-    particles[pair.particle].contacts += pair.push > 0.0;
-  }
-  count_shares([](const Pair &pair) { return pair.push > 0.0; });
+  for (Pair &pair : pairs) particles[pair.particle].load += pair.push;
+  share_out([](const Pair &pair, int q) { return pair.push * pair.weight[q]; });
   load_velocities(v);
   change.assign(halo.n_slots(), Vec3::Zero());
   for (const Pair &pair : pairs)
@@ -524,7 +551,7 @@ void ContactSurface::end_substep(Vertex *v, double dt)
 
 void ContactSurface::part(const Pair &pair, double dt)
 {
-  const double mass = split_mass(pair, w_solver), pushed = pair.push / dt;
+  const double mass = loaded_mass(pair), pushed = pair.push / dt;
   const Vec3 velocity = velocity_from(pair);
   const double speed = velocity.dot(pair.normal);
   const double wanted = rules->restitution * std::max(0.0, -pair.speed_before);
@@ -600,13 +627,14 @@ void ContactSurface::load_sweeps()
   halo.forward(0, end.data(), true);
 }
 
-// The particle that is deepest below its gap in each pass is put back to it, alone and without a
-// change of velocity.  One that was too near before the step gets a part of the way back.
+// The particle that is deepest below its gap in each pass is put back to it, alone.  One that was too
+// near before the step gets a part of the way back, in the first pass.
 
 bool ContactSurface::stop(bool recover)
 {
   int mine = 0, particle = -1, triangle = -1;
   Touch deepest;
+  double approach = 0.0;    // of the deepest
   const auto put_back = [&] {
     if (triangle < 0) return;
     for (int d = 0; d < 3; d++) atom->x[particle][d] += deepest.depth * deepest.normal[d];
@@ -614,6 +642,7 @@ bool ContactSurface::stop(bool recover)
     mine = 1;
     counts->stops++;
     remember(particle, triangle, deepest);
+    pairs.back().approach = approach;
   };
   for_overlapping([&](int i, int t, const Sweep &sweep) {
     if (i != particle) {
@@ -622,13 +651,17 @@ bool ContactSurface::stop(bool recover)
       triangle = -1;
       deepest = Touch();
     }
-    Touch touched = touch(sweep, sweep_of_triangle(t), rules->thickness);
-    if (touched.hit)
-      touched.depth += HAIR * touched.kept;
-    else if (recover)
-      touched = recovery(sweep.end, t);
+    Touch touched = touch(sweep, sweep_of_triangle(t), rules->thickness, SLACK);
+    const double into = touched.depth - SLACK * touched.kept;
+    if (touched.through)
+      touched.depth += SLACK * touched.kept;
+    else {
+      if (touched.hit) touched.depth = into + HAIR * touched.kept;
+      if (recover) give_room(touched, sweep.end, t);
+    }
     if (!is_deeper(touched, t, deepest, triangle)) return;
     deepest = touched;
+    approach = touched.through ? std::numeric_limits<double>::max() : FIRM * into / update->dt;
     triangle = t;
   });
   put_back();
@@ -646,18 +679,20 @@ bool ContactSurface::is_deeper(const Touch &a, int triangle_a, const Touch &b, i
   return a.depth >= b.depth * (1.0 - SEAM) && element[triangle_a] < element[triangle_b];
 }
 
-// no contact, but something of the thickness that is missing
+// at least a part of the thickness, if something of it is missing; false if nothing is
 
-Touch ContactSurface::recovery(const Vec3 &p, int t) const
+bool ContactSurface::give_room(Touch &touched, const Vec3 &p, int t) const
 {
-  Touch touched;
   const std::array<int, 3> &s = triangles[t];
-  const Vec3 gap = distance_vector(p, end[s[0]], end[s[1]], end[s[2]], touched.weight);
+  Vec3 weight;
+  const Vec3 gap = distance_vector(p, end[s[0]], end[s[1]], end[s[2]], weight);
   const double distance = gap.norm();
-  if (distance == 0.0 || distance >= rules->thickness) return touched;
+  if (distance == 0.0 || distance >= rules->thickness) return false;
+  touched.weight = weight;
   touched.normal = gap / distance;
-  touched.depth = std::min(rules->thickness - distance, RECOVERY * rules->thickness);
-  return touched;
+  touched.depth = std::max(
+      touched.depth, std::min(rules->thickness - distance, RECOVERY * rules->thickness));
+  return true;
 }
 
 void ContactSurface::remember(int i, int triangle, const Touch &touched)
@@ -691,7 +726,8 @@ bigint ContactSurface::count_too_near(tagint &one)
   tagint example = 0;
   int last = -1;
   for_overlapping([&](int i, int t, const Sweep &sweep) {
-    if (i == last || recovery(sweep.end, t).depth == 0.0) return;
+    Touch touched;
+    if (i == last || !give_room(touched, sweep.end, t)) return;
     last = i;
     mine++;
     example = std::max(example, atom->tag[i]);
@@ -701,11 +737,12 @@ bigint ContactSurface::count_too_near(tagint &one)
   return all;
 }
 
-// both sides of what was stopped lose the motion towards each other
+// Both sides of what was stopped lose the motion towards each other, see FIRM.  What comes back comes
+// back at once.
 
 void ContactSurface::stop_approach()
 {
-  count_shares([](const Pair &) { return true; });
+  share_out([](const Pair &, int) { return 1.0; });
   now.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++) {
     const double *v = atom->v[halo.atom_of(s)];
@@ -722,7 +759,8 @@ void ContactSurface::stop_approach()
     const Vec3 velocity = velocity_from(pair);
     const double speed = velocity.dot(pair.normal);
     if (speed >= 0.0) continue;
-    const double mass = split_mass(pair, w), step = -(1.0 + rules->restitution) * speed * mass;
+    const double taken = rules->restitution > 0.0 ? -speed : std::min(-speed, pair.approach);
+    const double mass = split_mass(pair, w), step = (1.0 + rules->restitution) * taken * mass;
     const Vec3 sliding = mass * (velocity - speed * pair.normal);
     give(pair, step * pair.normal - at_most(sliding, rules->friction * step));
   }

@@ -108,7 +108,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
-  void project(sphcloth::Vertex *p) override;
+  void project(sphcloth::Vertex *way) override;
   void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }
@@ -165,8 +165,9 @@ class ContactSurface : public ClothGuest, protected Pointers {
     double w = 0.0;
     int contacts = 0;
     bool touched = false;
+    double load = 0.0;    // sum of the pushes of its pairs
     Vec3 start = Vec3::Zero(), end = Vec3::Zero();    // of the step so far
-    Vec3 from = Vec3::Zero();                         // at the start of the substep
+    Vec3 from = Vec3::Zero(), way = Vec3::Zero();    // at the start of the substep, and since then
     Vec3 velocity = Vec3::Zero(), velocity_before = Vec3::Zero(), change = Vec3::Zero();
   };
 
@@ -179,6 +180,7 @@ class ContactSurface : public ClothGuest, protected Pointers {
     double push = 0.0;    // of this substep, mass times length
     Vec3 rub = Vec3::Zero();    // the same along the triangle
     double speed_before = 0.0;    // of the particle from the triangle
+    double approach = 0.0;    // behind the solver: the most that is taken of it
   };
 
   std::string label;
@@ -195,7 +197,8 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<int> element;                     // of the cloth, of each triangle
   std::vector<std::array<bool, 3>> at_border;    // of each element: the edge opposite to a vertex
   std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
-  std::vector<Vec3> from;    // by slot: at the start of the substep
+  const sphcloth::Vertex *substep_start = nullptr;    // by owned slot
+  std::vector<Vec3> from;    // the same by slot, with friction
   std::vector<Vec3> now;    // by slot: velocities
   std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
@@ -226,18 +229,19 @@ class ContactSurface : public ClothGuest, protected Pointers {
   void set_boxes(double margin);
   int side_at(const Vec3 &p, double reach);
   void meet();
-  template <class Counts> void count_shares(Counts counts_in);
+  template <class Part> void share_out(Part part);
   Vec3 velocity_from(const Pair &) const;
   void part(const Pair &, double dt);
   void load_velocities(const sphcloth::Vertex *v);
   double split_mass(const Pair &, const std::vector<double> &inverse_mass) const;
+  double loaded_mass(const Pair &) const;
   void forget_pairs();
   void remember(int atom, int triangle, const sphcloth::Touch &);
   void give(const Pair &, const Vec3 &by);
   void press(Pair &);
   void rub(Pair &);
   bool stop(bool recover);
-  sphcloth::Touch recovery(const Vec3 &p, int t) const;
+  bool give_room(sphcloth::Touch &, const Vec3 &p, int t) const;
   void stop_approach();
   void take_velocities();
   void take_held(int atom, const Vec3 &impulse);

@@ -36,14 +36,18 @@ static constexpr int GAP = 3, HOLD = 6;
 // body and what holds it within a few steps, whatever their masses; with 1 it would go on for ever.
 static constexpr double CLOSED = 0.25;
 
+// impulse before the first step
+static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
+
 /* ----------------------------------------------------------------------
    fix ID group pbd/cloth keyword value ...
 ------------------------------------------------------------------------- */
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::GAUSS_SEIDEL),
+    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
     iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
-    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), mesh(lmp, label), halo(lmp),
+    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), lent(nullptr),
+    mesh(lmp, label), halo(lmp),
     edge_colours(0), hinge_colours(0), edge_layers(1), mean_length(0.0), holding{}, sweeps(0),
     remembered(true), last_residual(0.0), last_energy(0.0), started(false)
 {
@@ -52,7 +56,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   create_attribute = 1;
   vector_flag = 1;
-  size_vector = 7;
+  size_vector = 10;
   global_freq = 1;
   extvector = 0;
   comm_forward = VertexHalo::LINK;
@@ -81,13 +85,15 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
 
 void FixPBDCloth::read_options(ArgReader &args)
 {
+  bool solver_given = false;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "iterations")
       iterations = args.integer("iterations", 1, 100000);
-    else if (keyword == "solver")
+    else if (keyword == "solver") {
       solver = static_cast<Solver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
-    else if (keyword == "direction")
+      solver_given = true;
+    } else if (keyword == "direction")
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
       tolerance = args.positive(keyword);
@@ -111,10 +117,15 @@ void FixPBDCloth::read_options(ArgReader &args)
   if (pinbit && attachbit && share_atoms(atom, pinbit, attachbit, world))
     error->all(FLERR, "{}: a vertex is in the group of pin and in that of attach: it can be in one",
                label);
+  if (!solver_given && (attachbit || tolerance > 0.0)) solver = Solver::GAUSS_SEIDEL;
   if (attachbit && solver == Solver::SUBSTEPS)
     args.fail("solver", "substeps",
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
   if (attachbit) want_holding_forces();
+  if (substeps() > 1) {
+    memory->create(lent, atom->nmax, 3, "pbd/cloth:lent");
+    std::fill_n(lent[0], 3 * atom->nmax, NOT_YET);
+  }
   if (tolerance > 0.0 && solver == Solver::SUBSTEPS)
     args.fail("tolerance", std::to_string(tolerance),
               "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
@@ -166,6 +177,7 @@ FixPBDCloth::~FixPBDCloth()
   atom->delete_callback(id, Atom::RESTART);
   memory->destroy(rest_x);
   memory->destroy(hold);
+  memory->destroy(lent);
 }
 
 FixPBDCloth *FixPBDCloth::find(LAMMPS *lmp, const std::string &asking, const std::string &id)
@@ -361,6 +373,7 @@ void FixPBDCloth::post_neighbor()
   for (int s = 0; s < halo.n_slots(); s++) p[s].w = w[s];
   start = p;
   v = p;
+  way = p;
   kick = w;
   for (int s : attached) kick[s] = 0.0;
   change.assign(solver == Solver::JACOBI ? n : 0, {});
@@ -458,6 +471,7 @@ double FixPBDCloth::inverse_mass(int i) const
 void FixPBDCloth::post_integrate()
 {
   if (pin_motion) move_pins();
+  if (lent) lend();
   load();
   if (hold) start_pulls();
   begin_guests();
@@ -508,7 +522,7 @@ void FixPBDCloth::load()
     v[s] = {u[0], u[1], u[2], p[s].w};
   }
   for (int s : attached) load_attached(s);
-  if (from_start) halo.forward(ALL, start.data(), true);
+  halo.forward(ALL, start.data(), true);
 }
 
 // An attached vertex starts where the solver left it and goes with its body, but for the part of
@@ -542,30 +556,40 @@ void FixPBDCloth::substep(int n)
   }
   const bool last = n == substeps() - 1;
   for (int s = 0; s < halo.n_owned(); s++) {
-    p[s].x = start[s].x + dt * v[s].x;
-    p[s].y = start[s].y + dt * v[s].y;
-    p[s].z = start[s].z + dt * v[s].z;
-    if (!last || p[s].w > 0.0) continue;
+    way[s] = {dt * v[s].x, dt * v[s].y, dt * v[s].z, way[s].w};
+    if (!last || way[s].w > 0.0) continue;
     const double *x = atom->x[halo.atom_of(s)];    // without rounding
-    p[s] = {x[0], x[1], x[2], 0.0};
+    way[s] = {x[0] - start[s].x, x[1] - start[s].y, x[2] - start[s].z, 0.0};
   }
-  halo.forward(ALL, p.data(), true);
+  halo.forward(ALL, way.data(), false);
   for (ClothGuest *guest : present) guest->begin_substep(start.data(), v.data(), dt);
 
   project_all(dt);
+  go();
   if (hold) {
     add_pull_on_pins(distance);
     add_pull_on_pins(bending);
   }
   const double inv_dt = 1.0 / dt;
   for (int s = 0; s < halo.n_owned(); s++) {
-    if (p[s].w == 0.0) continue;
-    v[s].x = inv_dt * (p[s].x - start[s].x);
-    v[s].y = inv_dt * (p[s].y - start[s].y);
-    v[s].z = inv_dt * (p[s].z - start[s].z);
+    if (way[s].w == 0.0) continue;
+    v[s].x = inv_dt * way[s].x;
+    v[s].y = inv_dt * way[s].y;
+    v[s].z = inv_dt * way[s].z;
   }
   for (ClothGuest *guest : present) guest->end_substep(v.data(), dt);
   if (!last) start = p;
+}
+
+// where everybody is after the way so far
+
+void FixPBDCloth::go()
+{
+  for (int s = 0; s < halo.n_slots(); s++) {
+    p[s].x = start[s].x + way[s].x;
+    p[s].y = start[s].y + way[s].y;
+    p[s].z = start[s].z + way[s].z;
+  }
 }
 
 // Takes the stretching motion out of the edges (line 29), at the rate that the user gave.
@@ -573,7 +597,6 @@ void FixPBDCloth::substep(int n)
 void FixPBDCloth::damp()
 {
   const double share = -std::expm1(-damping * update->dt / substeps());
-  if (!from_start) halo.forward(ALL, start.data(), true);
   halo.forward(ALL, v.data(), false);
   for (int c = 0; c < edge_colours; c++) {
     sphcloth::damp(distance, c, start.data(), v.data(), share);
@@ -583,7 +606,7 @@ void FixPBDCloth::damp()
 
 void FixPBDCloth::project_all(double dt)
 {
-  const ClothState state{p.data(), from_start ? start.data() : nullptr,
+  const ClothState state{start.data(), way.data(), from_start,
                          solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
   std::fill(distance.lambda.begin(), distance.lambda.end(), 0.0);
   std::fill(bending.lambda.begin(), bending.lambda.end(), 0.0);
@@ -591,11 +614,13 @@ void FixPBDCloth::project_all(double dt)
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
     for (ClothGuest *guest : present) {
-      guest->project(p.data());
-      halo.forward(ALL, p.data(), true);
+      guest->project(way.data());
+      halo.forward(ALL, way.data(), false);
     }
     sweeps++;
-    if (tolerance > 0.0 && converged()) break;
+    if (tolerance == 0.0) continue;
+    go();
+    if (converged()) break;
   }
 }
 
@@ -603,11 +628,11 @@ void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
   for (int c = 0; c < distance.colours(); c++) {
     project(distance, c, state);
-    halo.forward(channel_of_edge_colour(c), p.data(), true);
+    halo.forward(channel_of_edge_colour(c), way.data(), false);
   }
   for (int c = 0; c < bending.colours(); c++) {
     project(bending, c, state);
-    halo.forward(channel_of_hinge_colour(c), p.data(), true);
+    halo.forward(channel_of_hinge_colour(c), way.data(), false);
   }
 }
 
@@ -616,12 +641,12 @@ void FixPBDCloth::jacobi(const ClothState &state)
   for (int c = 0; c < distance.colours(); c++) project(distance, c, state);
   for (int c = 0; c < bending.colours(); c++) project(bending, c, state);
   for (int s = 0; s < halo.n_owned(); s++) {
-    p[s].x += change[s].x;
-    p[s].y += change[s].y;
-    p[s].z += change[s].z;
+    way[s].x += change[s].x;
+    way[s].y += change[s].y;
+    way[s].z += change[s].z;
   }
   std::fill(change.begin(), change.end(), Vertex());
-  halo.forward(ALL, p.data(), true);
+  halo.forward(ALL, way.data(), false);
 }
 
 // What the free vertices gained beyond the external forces came from those that are held.
@@ -653,6 +678,35 @@ void FixPBDCloth::store()
                "stiff edges, or the time step is too large",
                label, update->ntimestep);
   for (int d = 0; d < 3; d++) holding[d] = from_holders[d];
+}
+
+/* ----------------------------------------------------------------------
+   Substeps spread the forces of the start of a step evenly over it, so that what hangs at rest hangs
+   exactly, but they come half a step, less half a substep, late.  So much is lent ahead at the start
+   of each step, and what the last one has lent is taken back: that makes the step velocity Verlet,
+   which feeds no motion.
+------------------------------------------------------------------------- */
+
+void FixPBDCloth::lend()
+{
+  const double part = 0.5 * (1.0 - 1.0 / substeps()), dtf = part * update->dt * force->ftm2v;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    const bool first = std::isnan(lent[i][0]);
+    for (int d = 0; d < 3; d++) {
+      const double impulse = dtf * atom->f[i][d];
+      if (!first) atom->v[i][d] += kick[s] * (impulse - lent[i][d]);
+      lent[i][d] = impulse;
+    }
+  }
+}
+
+double FixPBDCloth::all_lent(int d) const
+{
+  double sum = 0.0;
+  for (int s = 0; lent && s < halo.n_owned(); s++)
+    if (const int i = halo.atom_of(s); kick[s] > 0.0 && !std::isnan(lent[i][d])) sum += lent[i][d];
+  return sum;
 }
 
 /* ----------------------------------------------------------------------
@@ -722,7 +776,7 @@ Eigen::Vector3d FixPBDCloth::holding_force(int i) const
 
 /* ----------------------------------------------------------------------
    output: force of the holders on the cloth (x, y, z), largest edge strain, residual, sweeps,
-   elastic energy
+   elastic energy, momentum that is lent ahead of time (x, y, z)
 ------------------------------------------------------------------------- */
 
 double FixPBDCloth::compute_vector(int n)
@@ -734,6 +788,7 @@ double FixPBDCloth::compute_vector(int n)
   if (n == 3) mine = largest_strain();
   if (n == 4) mine = last_residual;
   if (n == 6) mine = last_energy;
+  if (n > 6) mine = all_lent(n - 7);
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n == 3 || n == 4 ? MPI_MAX : MPI_SUM, world);
   return all;
 }
@@ -803,39 +858,49 @@ void FixPBDCloth::unpack_forward_comm(int n, int first, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   rest positions, and holds where they are wanted, travel with their vertices
+   rest positions, and what else is kept of a vertex, travel with it
 ------------------------------------------------------------------------- */
 
 void FixPBDCloth::grow_arrays(int nmax)
 {
   memory->grow(rest_x, nmax, 3, "pbd/cloth:rest");
   if (hold) memory->grow(hold, nmax, HOLD, "pbd/cloth:hold");
+  if (lent) memory->grow(lent, nmax, 3, "pbd/cloth:lent");
 }
 
 void FixPBDCloth::copy_arrays(int i, int j, int)
 {
   std::copy(rest_x[i], rest_x[i] + 3, rest_x[j]);
   if (hold) std::copy(hold[i], hold[i] + HOLD, hold[j]);
+  if (lent) std::copy(lent[i], lent[i] + 3, lent[j]);
 }
 
 void FixPBDCloth::set_arrays(int i)
 {
   std::fill(rest_x[i], rest_x[i] + 3, std::numeric_limits<double>::quiet_NaN());
   if (hold) std::fill(hold[i], hold[i] + HOLD, 0.0);
+  if (lent) std::fill(lent[i], lent[i] + 3, NOT_YET);
 }
 
 int FixPBDCloth::pack_exchange(int i, double *buf)
 {
-  std::copy(rest_x[i], rest_x[i] + 3, buf);
-  if (hold) std::copy(hold[i], hold[i] + HOLD, buf + 3);
-  return hold ? 3 + HOLD : 3;
+  double *end = std::copy(rest_x[i], rest_x[i] + 3, buf);
+  if (hold) end = std::copy(hold[i], hold[i] + HOLD, end);
+  if (lent) end = std::copy(lent[i], lent[i] + 3, end);
+  return static_cast<int>(end - buf);
 }
 
 int FixPBDCloth::unpack_exchange(int i, double *buf)
 {
-  std::copy(buf, buf + 3, rest_x[i]);
-  if (hold) std::copy(buf + 3, buf + 3 + HOLD, hold[i]);
-  return hold ? 3 + HOLD : 3;
+  const double *from = buf;
+  const auto take = [&from](double *to, int n) {
+    std::copy(from, from + n, to);
+    from += n;
+  };
+  take(rest_x[i], 3);
+  if (hold) take(hold[i], HOLD);
+  if (lent) take(lent[i], 3);
+  return static_cast<int>(from - buf);
 }
 
 // the first value of a restart record is its length
@@ -846,16 +911,27 @@ int FixPBDCloth::pack_restart(int i, double *buf)
   return static_cast<int>(buf[0]);
 }
 
+// It may have been written with another solver, or without holds.
+
 void FixPBDCloth::unpack_restart(int i, int nth)
 {
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
-  std::copy(record + 1, record + 4, rest_x[i]);
-  if (hold && *record > 4) std::copy(record + 4, record + 4 + HOLD, hold[i]);
+  const int size = static_cast<int>(*record) - 1;
+  const bool had_hold = size >= 3 + HOLD, had_lent = size - (had_hold ? HOLD : 0) > 3;
+  const double *from = record + 1;
+  std::copy(from, from + 3, rest_x[i]);
+  from += 3;
+  if (hold && had_hold) std::copy(from, from + HOLD, hold[i]);
+  if (had_hold) from += HOLD;
+  if (lent && had_lent)
+    std::copy(from, from + 3, lent[i]);
+  else if (lent)
+    std::fill(lent[i], lent[i] + 3, NOT_YET);
 }
 
 int FixPBDCloth::size_restart(int) { return maxsize_restart(); }
-int FixPBDCloth::maxsize_restart() { return hold ? 4 + HOLD : 4; }
+int FixPBDCloth::maxsize_restart() { return 4 + (hold ? HOLD : 0) + (lent ? 3 : 0); }
 
 void FixPBDCloth::write_restart(FILE *fp)
 {
@@ -869,9 +945,9 @@ void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(
 
 double FixPBDCloth::memory_usage()
 {
-  return (hold ? 3.0 + HOLD : 3.0) * sizeof(double) * atom->nmax + distance.bytes() +
+  return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax + distance.bytes() +
       bending.bytes() +
       static_cast<double>(sizeof(Vertex)) *
-      (p.capacity() + v.capacity() + start.capacity() + change.capacity()) +
+      (p.capacity() + v.capacity() + start.capacity() + way.capacity() + change.capacity()) +
       halo.memory_usage();
 }

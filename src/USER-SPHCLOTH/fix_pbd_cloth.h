@@ -97,6 +97,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double damping;    // rate at which stretching motion decays, 1/time
   double **rest_x;    // rest position of each vertex, unwrapped
   double **hold;    // what the cloth does to the holder of a vertex; null: not wanted
+  double **lent;    // impulse that forces have given ahead of time, see lend(); null: none
   ClothTopology mesh;
   VertexHalo halo;
 
@@ -112,7 +113,9 @@ class FixPBDCloth : public Fix, public ContactMesh {
   // what this rank projects, with slots of the halo as vertices
   sphcloth::Constraints<2> distance;
   sphcloth::Constraints<4> bending;
-  sphcloth::Vertices p, v, start, change;    // by slot, and one idle vertex behind
+  // by slot, and one idle vertex behind: places, velocities, places at the start of the (sub)step, ways
+  // since then, and of one Jacobi sweep
+  sphcloth::Vertices p, v, start, way, change;
   std::vector<int> attached;    // slots
   std::vector<double> kick;    // inverse mass to the forces: 0 also for attached vertices
   double holding[3];    // force of the holders in the last step, this rank's part
@@ -148,11 +151,14 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void load_attached(int slot);
   sphcloth::Vertex velocity_of_attached(int slot) const;
   void substep(int n);
+  void go();
   void damp();
   void project_all(double dt);
   void gauss_seidel(const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   void store();
+  void lend();
+  double all_lent(int dimension) const;
   void start_pulls();
   template <std::size_t N> void add_pull_on_pins(const sphcloth::Constraints<N> &);
   void let_bodies_feel();

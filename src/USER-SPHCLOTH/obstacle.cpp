@@ -45,8 +45,9 @@ bool ObstacleGuest::begin_step(const Vertex *start, const Vertex *end, double dt
   return any;
 }
 
-void ObstacleGuest::begin_substep(const Vertex *, const Vertex *v, double dt)
+void ObstacleGuest::begin_substep(const Vertex *start, const Vertex *v, double dt)
 {
+  substep_start = start;
   elapsed += dt;
   for (Meeting &m : meetings) {
     m.triangle = -1;
@@ -58,17 +59,18 @@ void ObstacleGuest::begin_substep(const Vertex *, const Vertex *v, double dt)
 
 // The deepest first, as often as there are triangles near.
 
-void ObstacleGuest::project(Vertex *p)
+void ObstacleGuest::project(Vertex *way)
 {
   for (Meeting &m : meetings) {
-    Vertex &vertex = p[m.slot];
+    Vertex &vertex = way[m.slot];
+    const Vec3 from = vector_of(substep_start[m.slot]);
     for (int pass = m.first; pass < m.last; pass++) {
       Touch deepest;
       int triangle = -1;
       for (int k = m.first; k < m.last; k++) {
         const Touch touched =
-            touch({m.start, vector_of(vertex)}, surface->triangle_until(near[k], elapsed / step_dt),
-                  rules->thickness);
+            touch({m.start, from + vector_of(vertex)}, surface->triangle_until(near[k], elapsed / step_dt),
+                  rules->thickness, 0.0);
         if (!touched.hit || !surface->is_deeper(touched, near[k], deepest, triangle)) continue;
         deepest = touched;
         triangle = near[k];

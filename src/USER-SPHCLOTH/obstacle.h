@@ -52,7 +52,7 @@ class ObstacleGuest : public ClothGuest, protected Pointers {
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
-  void project(sphcloth::Vertex *p) override;
+  void project(sphcloth::Vertex *way) override;
   void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }
@@ -72,6 +72,7 @@ class ObstacleGuest : public ClothGuest, protected Pointers {
   ContactSurface *surface;
   const ContactRules *rules;
   double step_dt = 0.0, elapsed = 0.0;    // of the step, up to the end of the substep
+  const sphcloth::Vertex *substep_start = nullptr;
   std::vector<int> near;
   std::vector<Meeting> meetings;
   std::vector<Vec3> received;    // by slot of the cloth

@@ -461,6 +461,22 @@ def test_stiffer_solvers_at_equal_cost(solver):
     assert x[:, 2].min() == pytest.approx(free_fall(0.1), rel=0.15)
 
 
+@pytest.mark.parametrize("solver", ["gs", "jacobi", "substeps"])
+@pytest.mark.parametrize("direction", ["current", "start"])
+def test_springs_of_other_fixes_neither_feed_nor_damp(solver, direction):
+    """A free sheet that springs hold as a whole, omega dt = 1.2: it swings alike for 300 periods."""
+    lmp = cloth(
+        "unfix gravity\nfix back all spring/self 250\ndisplace_atoms all move 0.3 0 0\n"
+        "timestep 0.01",
+        fix=f"solver {solver} direction {direction}",
+    )
+    far = []
+    for _ in range(200):
+        lmp.command("run 7 post no")
+        far.append(abs(by_id(lmp, "x")[:, 0].mean()))
+    assert max(far[-80:]) == pytest.approx(max(far[:80]), rel=1e-2)
+
+
 @pytest.mark.parametrize("solver", ["gs", "substeps"])
 def test_pins_that_move_carry_the_cloth_along(solver):
     """Pins at constant speed: after damping all moves with them, in substeps too."""

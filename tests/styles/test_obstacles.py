@@ -84,7 +84,7 @@ def test_cloth_drapes_over_a_ball(tmp_path):
     lmp = instance()
     fixes = (
         WEIGHT
-        + "fix s cloth pbd/cloth solver substeps damping 20\n"
+        + "fix s cloth pbd/cloth damping 20\n"
         + "fix c water cloth/contact 0.01 obstacle obstacle friction 0.6\n"
         + "fix drag cloth viscous 0.005"
     )
@@ -107,7 +107,7 @@ def test_a_moving_table_throws_cloth_and_water(tmp_path):
     table.apply_translation([0, 0, -0.3])
     lmp = instance()
     fixes = (
-        "fix m obstacle move linear 0 0 2 units box\nfix s cloth pbd/cloth solver substeps\n"
+        "fix m obstacle move linear 0 0 2 units box\nfix s cloth pbd/cloth\n"
         "fix c water cloth/contact 0.01 obstacle obstacle"
     )
     cloth = CLOTH.replace("0 0 0.35", "0 0 -0.1")
@@ -149,7 +149,7 @@ def test_ranks(tmp_path, ranks):
     fixes = (
         WEIGHT
         + "fix m obstacle move linear 0.1 0 0.5 units box\n"
-        + "fix s cloth pbd/cloth solver substeps damping 5\n"
+        + "fix s cloth pbd/cloth damping 5\n"
         + "fix c water cloth/contact 0.01 obstacle obstacle friction 0.3"
     )
     end = "write_dump all custom {}.txt id x y z vx vy vz modify sort id format float %.17g"

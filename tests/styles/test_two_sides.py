@@ -44,7 +44,7 @@ SHEET = "create_cloth 3 1.0 center 0.25 0.25 0 size 0.5 0.5 spacing 0.05 group c
 FILL = {"above": "create_atoms 1 region above", "below": "create_atoms 2 region below"}
 # by contact alone
 PARTED = (
-    "fix sheet cloth pbd/cloth solver substeps pin pins\n"
+    "fix sheet cloth pbd/cloth pin pins\n"
     "fix contact fluid cloth/contact 0.005 {sides}\n"
 )
 

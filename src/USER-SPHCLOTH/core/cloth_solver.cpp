@@ -29,13 +29,13 @@ namespace {
     }
   };
 
-  // p goes back moved, or what it would move by is added to the change
+  // the ways go back changed, or what they would change by is added to the change
 
   template <bool JACOBI>
   SPHCLOTH_INLINE void give(const ClothState &s, const Column &before, Column &after,
                             const int *slot)
   {
-    if (!JACOBI) return after.write(s.p, slot);
+    if (!JACOBI) return after.write(s.way, slot);
     Column sum;
     sum.read(s.change, slot);
 #pragma omp simd
@@ -52,58 +52,68 @@ namespace {
   {
     for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
-      Column p1, p2, s1, s2;
-      p1.read(s.p, one);
-      p2.read(s.p, two);
-      if (START) {
-        s1.read(s.start, one);
-        s2.read(s.start, two);
-      }
-      const Column before1 = p1, before2 = p2;
+      Column s1, s2, u1, u2;
+      s1.read(s.start, one);
+      s2.read(s.start, two);
+      u1.read(s.way, one);
+      u2.read(s.way, two);
+      const Column before1 = u1, before2 = u2;
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double dx = p1.x[l] - p2.x[l], dy = p1.y[l] - p2.y[l], dz = p1.z[l] - p2.z[l];
-        const double w = p1.w[l] + p2.w[l], a = compliance[l] * s.inv_dt_sq;
+        const double sx = s1.x[l] - s2.x[l], sy = s1.y[l] - s2.y[l], sz = s1.z[l] - s2.z[l];
+        const double dx = sx + (u1.x[l] - u2.x[l]), dy = sy + (u1.y[l] - u2.y[l]),
+                     dz = sz + (u1.z[l] - u2.z[l]);
+        const double w = u1.w[l] + u2.w[l], a = compliance[l] * s.inv_dt_sq;
         const DistanceStep d = START
-            ? distance_step_along(dx, dy, dz, s1.x[l] - s2.x[l], s1.y[l] - s2.y[l],
-                                  s1.z[l] - s2.z[l], w, rest[l], k[l], a, lambda[l], most[l])
+            ? distance_step_along(dx, dy, dz, sx, sy, sz, w, rest[l], k[l], a, lambda[l], most[l])
             : distance_step(dx, dy, dz, w, rest[l], k[l], a, lambda[l], most[l]);
         lambda[l] += d.lambda;
-        p1.move(l, p1.w[l], d.x, d.y, d.z);
-        p2.move(l, -p2.w[l], d.x, d.y, d.z);
+        u1.move(l, u1.w[l], d.x, d.y, d.z);
+        u2.move(l, -u2.w[l], d.x, d.y, d.z);
       }
-      give<JACOBI>(s, before1, p1, one);
-      give<JACOBI>(s, before2, p2, two);
+      give<JACOBI>(s, before1, u1, one);
+      give<JACOBI>(s, before2, u2, two);
     }
   }
 
-  SPHCLOTH_INLINE HingeShape shape_of(const Column &a, const Column &e1, const Column &e2,
-                                      const Column &b, int l)
-  {
-    return hinge_shape(a.x[l] - e1.x[l], a.y[l] - e1.y[l], a.z[l] - e1.z[l], e2.x[l] - e1.x[l],
-                       e2.y[l] - e1.y[l], e2.z[l] - e1.z[l], b.x[l] - e1.x[l], b.y[l] - e1.y[l],
-                       b.z[l] - e1.z[l]);
-  }
+  // of column p from column q
+
+  struct Apart {
+    double x, y, z;
+    SPHCLOTH_INLINE Apart(const Column &p_start, const Column &p, const Column &q_start,
+                          const Column &q, int l) :
+        x((p_start.x[l] - q_start.x[l]) + (p.x[l] - q.x[l])),
+        y((p_start.y[l] - q_start.y[l]) + (p.y[l] - q.y[l])),
+        z((p_start.z[l] - q_start.z[l]) + (p.z[l] - q.z[l]))
+    {
+    }
+  };
 
   template <bool JACOBI>
   SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
   {
     for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
-      Column a, e1, e2, b;
-      a.read(s.p, &c.slot[0][m]);
-      e1.read(s.p, &c.slot[1][m]);
-      e2.read(s.p, &c.slot[2][m]);
-      b.read(s.p, &c.slot[3][m]);
+      Column start_a, start_e1, start_e2, start_b, a, e1, e2, b;
+      start_a.read(s.start, &c.slot[0][m]);
+      start_e1.read(s.start, &c.slot[1][m]);
+      start_e2.read(s.start, &c.slot[2][m]);
+      start_b.read(s.start, &c.slot[3][m]);
+      a.read(s.way, &c.slot[0][m]);
+      e1.read(s.way, &c.slot[1][m]);
+      e2.read(s.way, &c.slot[2][m]);
+      b.read(s.way, &c.slot[3][m]);
       const Column before_a = a, before_e1 = e1, before_e2 = e2, before_b = b;
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const HingeShape h = shape_of(a, e1, e2, b, l);
+        const Apart u(start_a, a, start_e1, e1, l), e(start_e2, e2, start_e1, e1, l),
+            v(start_b, b, start_e1, e1, l);
+        const HingeShape h = hinge_shape(u.x, u.y, u.z, e.x, e.y, e.z, v.x, v.y, v.z);
         const double x2 = -(h.a2 * h.ax + h.b2 * h.bx), y2 = -(h.a2 * h.ay + h.b2 * h.by),
                      z2 = -(h.a2 * h.az + h.b2 * h.bz);
         // by difference: the sum of the gradients is zero however short the edge is
@@ -136,11 +146,11 @@ namespace {
 void project(Constraints<2> &c, int colour, const ClothState &s)
 {
   if (s.change)
-    s.start ? project_distances<true, true>(c, colour, s)
-            : project_distances<false, true>(c, colour, s);
+    s.along_start ? project_distances<true, true>(c, colour, s)
+                  : project_distances<false, true>(c, colour, s);
   else
-    s.start ? project_distances<true, false>(c, colour, s)
-            : project_distances<false, false>(c, colour, s);
+    s.along_start ? project_distances<true, false>(c, colour, s)
+                  : project_distances<false, false>(c, colour, s);
 }
 
 void project(Constraints<4> &c, int colour, const ClothState &s)

@@ -75,12 +75,15 @@ template <std::size_t N> class Constraints {
   int idle = 0;
 };
 
-// What a sweep works on.  Vertices of constraints are indices into these.
+// What a sweep works on.  Vertices of constraints are indices into these.  Vertices move from where they
+// were at the start of the (sub)step: ways are short, so that what two vertices exchange is not
+// rounded as places are, and momentum is kept.
 
 struct ClothState {
-  Vertex *p = nullptr;              // positions, moved (Gauss-Seidel)
-  const Vertex *start = nullptr;    // at the start of the step: project along these edges, or null
-  Vertex *change = nullptr;    // Jacobi: add up here what p would move, or null
+  const Vertex *start = nullptr;    // places
+  Vertex *way = nullptr;            // since then, moved (Gauss-Seidel); the inverse masses are these
+  bool along_start = false;    // project edges along the directions that they had at the start
+  Vertex *change = nullptr;    // Jacobi: add up here what the ways would change by, or null
   double inv_dt_sq = 0.0;
 };
 

@@ -35,33 +35,14 @@ Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
 
 ContactSurface::ContactSurface(LAMMPS *lmp, ContactMesh *mesh, Fix *contact, int meets,
                                const ContactRules *rules, ContactCounts *counts) :
-    Pointers(lmp), label(fmt::format("fix {} cloth/contact", contact->id)), mesh(mesh),
-    contact(contact), meets(meets), rules(rules), counts(counts), last_places(nullptr),
-    substep_dt(0.0), halo(lmp)
+    TriangleSet(lmp, mesh, contact, fmt::format("fix {} cloth/contact", contact->id)), meets(meets),
+    rules(rules), counts(counts), last_places(nullptr), substep_dt(0.0)
 {
 }
 
-bool ContactSurface::has_triangles() const { return mesh->topology().triangles.size() > 0; }
-
-/* ----------------------------------------------------------------------
-   triangles with vertices in reach of this rank, after each list build
-------------------------------------------------------------------------- */
-
 void ContactSurface::rebuild()
 {
-  std::vector<int> owned, reach;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
-    if (!mesh->has_vertex(i)) continue;
-    reach.push_back(i);
-    if (i < atom->nlocal) owned.push_back(i);
-  }
-  halo.reset(1, owned);
-  triangles.clear();
-  element.clear();
-  add_triangles(reach);
-  for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
-  halo.connect(contact);
-  check_reach();
+  TriangleSet::rebuild(rules->thickness);
 
   w.assign(halo.n_slots(), 0.0);
   w_solver = w;
@@ -76,54 +57,6 @@ void ContactSurface::rebuild()
   end.resize(halo.n_slots());
   received.assign(halo.n_owned(), Vec3::Zero());
   found_at.clear();    // nobody was looked for yet
-}
-
-// Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
-// out of reach is too far from this rank's particles to matter.
-
-void ContactSurface::add_triangles(const std::vector<int> &reach)
-{
-  const ClothTopology &cloth = mesh->topology();
-  const ClothElements<3> &t = cloth.triangles;
-  for (int i : reach) {
-    const int vertex = cloth.index_of(atom->tag[i]);
-    if (vertex < 0) continue;
-    for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
-      const std::array<int, 3> &members = t.vertices[t.incident[k]];
-      if (members[0] != vertex) continue;
-      const int j = cloth.image_near(members[1], i), l = cloth.image_near(members[2], i);
-      if ((j < 0 || l < 0) && i < atom->nlocal)
-        error->one(
-            FLERR,
-            "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
-            "it with 'comm_modify cutoff', or refine the mesh",
-            label, cloth.ids[vertex], cloth.ids[members[1]], cloth.ids[members[2]]);
-      if (j < 0 || l < 0) continue;
-      triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
-      element.push_back(t.incident[k]);
-    }
-  }
-}
-
-// A particle next to a triangle must see all of its vertices, also those of other ranks.
-
-void ContactSurface::check_reach()
-{
-  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
-  double longest_sq = 0.0;
-  for (const std::array<int, 3> &t : triangles)
-    for (int q = 0; q < 3; q++) {
-      const double *a = atom->x[halo.atom_of(t[q])], *b = atom->x[halo.atom_of(t[(q + 1) % 3])];
-      longest_sq =
-          std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
-    }
-  const double needed = std::sqrt(longest_sq) + rules->thickness, reach = comm->get_comm_cutoff();
-  if (needed > reach)
-    error->one(
-        FLERR,
-        "{}: the longest edge of the cloth and the thickness are {}, more than the ghost cut-off "
-        "{}: raise it with 'comm_modify cutoff', or refine the mesh",
-        label, needed, reach);
 }
 
 /* ----------------------------------------------------------------------
@@ -326,37 +259,10 @@ double ContactSurface::loaded_mass(const Pair &pair) const
    sides
 ------------------------------------------------------------------------- */
 
-void ContactSurface::check_winding()
-{
-  const ClothTopology &cloth = mesh->topology();
-  const auto &elements = cloth.triangles.vertices;
-  std::map<std::array<int, 2>, std::vector<int>> at_edge;    // edge as a triangle runs along it
-  for (std::size_t m = 0; m < elements.size(); m++)
-    for (int q = 0; q < 3; q++)
-      at_edge[{elements[m][q], elements[m][(q + 1) % 3]}].push_back(static_cast<int>(m));
-
-  at_border.assign(elements.size(), {false, false, false});
-  for (const auto &[edge, of] : at_edge) {
-    if (of.size() > 1)
-      error->all(
-          FLERR,
-          "{}: two triangles run from vertex {} to vertex {}: a cloth with two sides must be "
-          "wound alike everywhere ('sphcloth mesh' does that); or give 'sides no'",
-          label, cloth.ids[edge[0]], cloth.ids[edge[1]]);
-    if (at_edge.count({edge[1], edge[0]})) continue;
-    const std::array<int, 3> &v = elements[of[0]];
-    for (int q = 0; q < 3; q++)
-      if (v[q] == edge[0]) at_border[of[0]][(q + 2) % 3] = true;
-  }
-}
-
 void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sides)
 {
   const Clock clock(counts->seconds);
-  for (int s = 0; s < halo.n_slots(); s++) {
-    const double *x = atom->x[halo.atom_of(s)];
-    start[s] = end[s] = Vec3(x[0], x[1], x[2]);
-  }
+  for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = place(s);
   set_boxes(reach);
   spheres.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); t++) {
@@ -396,7 +302,7 @@ int ContactSurface::side_at(const Vec3 &p, double reach)
     }
     nearest = std::min(nearest, distance);
     if (std::fabs(over) > std::fabs(height)) height = over;
-    for (int q = 0; q < 3; q++) beyond = beyond || (weight[q] <= 0.0 && at_border[element[t]][q]);
+    for (int q = 0; q < 3; q++) beyond = beyond || (weight[q] <= 0.0 && is_border(element[t], q));
   });
   return beyond || height == 0.0 ? 0 : (height > 0.0 ? 1 : -1);
 }

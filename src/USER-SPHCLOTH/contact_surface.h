@@ -10,12 +10,10 @@
 #define SPHCLOTH_CONTACT_SURFACE_H
 
 #include "cloth_guest.h"
-#include "contact_mesh.h"
-#include "core/box_grid.h"
 #include "core/contact.h"
 #include "core/sides.h"
 #include "platform.h"
-#include "vertex_halo.h"
+#include "triangle_set.h"
 
 #include <array>
 #include <map>
@@ -23,8 +21,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-
-class Fix;
 
 // what the user asked for, and what is counted
 
@@ -92,10 +88,8 @@ class ContactZones {
 
 Eigen::Vector3d at_most(const Eigen::Vector3d &, double most);
 
-class ContactSurface : public ClothGuest, protected Pointers {
+class ContactSurface : public ClothGuest, public TriangleSet {
  public:
-  using Vec3 = Eigen::Vector3d;
-
   // contact: the fix that asks; meets: groups of the atoms that meet the mesh
   ContactSurface(LAMMPS *, ContactMesh *, Fix *contact, int meets, const ContactRules *,
                  ContactCounts *);
@@ -115,9 +109,6 @@ class ContactSurface : public ClothGuest, protected Pointers {
 
   // above or below this sheet, for particles nearer than `reach`: adds to what is there.  Own atoms.
   void find_sides(double reach, int sheet, std::vector<sphcloth::Sides> &);
-
-  // sides need triangles that are wound alike; collects the edges at the border
-  void check_winding();
 
   // Behind the solver: what still goes wrong on the way from the last step's places to the present
   // ones, to round-off.  Collective; was there anything?
@@ -150,12 +141,6 @@ class ContactSurface : public ClothGuest, protected Pointers {
   // a mesh whose vertices meet this one: those that are held do not give way
   void meet_vertices_of(const ContactMesh *other) { others.push_back(other); }
 
-  bool has_triangles() const;
-  int pack_link(int n, const int *atoms, double *buf) const
-  {
-    return halo.pack_link(n, atoms, buf);
-  }
-  void unpack_link(int n, int first, const double *buf) { halo.unpack_link(n, first, buf); }
   double memory_usage() const;
 
  private:
@@ -183,19 +168,12 @@ class ContactSurface : public ClothGuest, protected Pointers {
     double approach = 0.0;    // behind the solver: the most that is taken of it
   };
 
-  std::string label;
-  ContactMesh *mesh;
   std::vector<const ContactMesh *> others;
-  Fix *contact;
   int meets;
   const ContactRules *rules;
   ContactCounts *counts;
   double **last_places;
   double substep_dt;
-  VertexHalo halo;
-  std::vector<std::array<int, 3>> triangles;    // slots
-  std::vector<int> element;                     // of the cloth, of each triangle
-  std::vector<std::array<bool, 3>> at_border;    // of each element: the edge opposite to a vertex
   std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
   const sphcloth::Vertex *substep_start = nullptr;    // by owned slot
   std::vector<Vec3> from;    // the same by slot, with friction
@@ -218,8 +196,6 @@ class ContactSurface : public ClothGuest, protected Pointers {
   std::vector<int> entry;    // of an atom among them, or -1
   std::vector<Pair> pairs;
 
-  void add_triangles(const std::vector<int> &reach);
-  void check_reach();
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
   void find_near();

@@ -35,7 +35,8 @@ static constexpr int MOST_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false)
+    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false),
+    vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -57,8 +58,13 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
       read_obstacle(args);
     else if (keyword == "sides")
       rules.sides = args.choice(keyword, {"no", "yes"});
-    else
-      args.unknown(keyword, "friction, restitution, sides, obstacle");
+    else if (keyword == "wall") {
+      const int choice = args.choice(keyword, {"no", "own", "mirror", "extrapolate"});
+      walls.reset(choice ? new SheetWalls(lmp, label, groupbit,
+                                          static_cast<SheetWalls::Behind>(choice - 1))
+                         : nullptr);
+    } else
+      args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
   }
   restart_peratom = !obstacle_groups.empty();
   grow_arrays(atom->nmax);
@@ -98,6 +104,7 @@ void FixClothContact::init()
   obstacles.clear();
   hard.clear();
   guests.clear();
+  vertex_bits = 0;
   std::vector<FixPBDCloth *> cloths;
   bool behind = false;
   for (Fix *fix : modify->get_fix_list()) {
@@ -115,14 +122,19 @@ void FixClothContact::init()
         std::make_unique<ContactSurface>(lmp, cloth, this, groupbit, &rules, &counts));
     cloth->invite(surfaces.back().get());
     cloths.push_back(cloth);
+    vertex_bits |= cloth->groupbit;
   }
   if (surfaces.empty() && obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
-  const auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
   density_follows_velocity = fluid && fluid->integrates_density();
+  if (!walls) return;
+  walls->init(fluid);
+  for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], surfaces[k].get());
+  for (std::size_t k = 0; k < hard.size(); k++) walls->add(obstacles[k].get(), hard[k].get());
 }
 
 // Meets the group of this fix and the vertices of all cloths.
@@ -210,6 +222,7 @@ void FixClothContact::post_neighbor()
     surface.rebuild();
     surface.set_last_places(places);
   });
+  if (walls) walls->look();
   if (rules.sides) find_sides();
 }
 
@@ -244,25 +257,29 @@ void FixClothContact::post_integrate()
   keep_places();
 }
 
-// A particle leaves its contacts with the velocity of the last substep, which is not that of its way in
-// the step.  A density that is integrated must follow the way: forces are evaluated with the velocity
-// of the way, and what is beyond comes back behind them.
+// Vertices, and particles in contact, leave a step with the velocity of its last substep, which is not
+// that of their way.  A density that is integrated must follow the way: forces are evaluated with the
+// velocity of the way, and what is beyond comes back behind them.
 
 void FixClothContact::show_way()
 {
-  const double inv_dt = 1.0 / update->dt;
   for_all_surfaces([&](const ContactSurface &surface) {
-    for (int i : surface.met()) {
-      double *v = atom->v[i], *place = places[i], way[3];
-      for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - place[d];
-      domain->minimum_image(FLERR, way);
-      for (int d = 0; d < 3; d++) {
-        const double beyond = v[d] - inv_dt * way[d];
-        place[BEYOND + d] += beyond;
-        v[d] -= beyond;
-      }
-    }
+    for (int i : surface.met()) show_way_of(i);
   });
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & vertex_bits) show_way_of(i);
+}
+
+void FixClothContact::show_way_of(int i)
+{
+  double *v = atom->v[i], *place = places[i], way[3];
+  for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - place[d];
+  domain->minimum_image(FLERR, way);
+  for (int d = 0; d < 3; d++) {
+    const double beyond = v[d] - way[d] / update->dt;
+    place[BEYOND + d] += beyond;
+    v[d] -= beyond;
+  }
 }
 
 void FixClothContact::post_force(int)

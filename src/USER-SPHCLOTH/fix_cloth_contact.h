@@ -13,6 +13,7 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "contact_surface.h"
 #include "obstacle.h"
+#include "sheet_wall.h"
 
 #include <memory>
 #include <string>
@@ -54,6 +55,8 @@ class FixClothContact : public Fix {
   int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const { return side.data(); }
+  // what fills the kernel of fluid near the meshes; null with 'wall no'
+  SheetWalls *wall() const { return walls.get(); }
   // how far pair_style sph/tait looks
   void set_sight(double distance) { sight = distance; }
 
@@ -68,13 +71,16 @@ class FixClothContact : public Fix {
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
   std::vector<std::unique_ptr<ObstacleGuest>> guests;    // of every cloth and obstacle
+  std::unique_ptr<SheetWalls> walls;
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;
   bool density_follows_velocity;
+  int vertex_bits;    // groups of the cloths
 
   void keep_places();
   void show_way();
+  void show_way_of(int);
   void warn_of_too_near();
   void find_sides();
   void read_obstacle(ArgReader &);

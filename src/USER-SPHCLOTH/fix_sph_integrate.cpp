@@ -117,6 +117,7 @@ void FixSPHIntegrate::init()
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
+  if (scheme != SteppingScheme::CONSTANT && !cloths.empty()) pair->want_wetting();
 
   int wrong = 0, any_wrong = 0;
   for (int i = 0; i < atom->nlocal; i++)

@@ -13,6 +13,7 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "core/shift.h"
 #include "core/wall.h"
+#include "fluid_wall.h"
 
 #include <array>
 #include <string>
@@ -23,7 +24,7 @@ namespace LAMMPS_NS {
 class ArgReader;
 class PairSPHTait;
 
-class FixWallSPH : public Fix {
+class FixWallSPH : public Fix, public FluidWall {
  public:
   FixWallSPH(class LAMMPS *, int, char **);
   int setmask() override;
@@ -33,13 +34,10 @@ class FixWallSPH : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
-  // What pair_style sph/tait asks for while it evaluates, in this order: where the walls are now,
-  // what they add to the density of a fluid particle, and, once its pressure is known, the force.
-
-  void begin();
-  double density(int i);
-  double density_rate(int i, double back);
-  void push(int i, double pressure_term);
+  void begin() override;
+  double density(int i) override;
+  double density_rate(int i, double back) override;
+  void push(int i, double pressure_term) override;
 
   // What the walls, where they were then, add to the surroundings of a fluid particle
   void add_to(sphcloth::Crowd &, int i);

@@ -30,7 +30,7 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), walls(nullptr), sheets(nullptr), is_evaluated(false),
+    Pair(lmp), materials(lmp), sheets(nullptr), is_evaluated(false),
     measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
     elapsed(0.0), stage(Stage::DENSITY)
 {
@@ -119,8 +119,7 @@ void PairSPHTait::init_style()
   active = nullptr;    // until a fix says who is
   comm_forward = diffuses() ? 3 : 2;
 
-  const auto found = modify->get_fix_by_style("^wall/sph$");
-  walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
+  find_walls();
   find_sheets();
 
   // lists outlive init(): 'run pre no' goes on with them
@@ -133,6 +132,18 @@ void PairSPHTait::init_style()
     if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
     if (materials.extrapolates(i)) extrapolate = true;
   }
+}
+
+void PairSPHTait::find_walls()
+{
+  walls.clear();
+  meshes.clear();
+  for (Fix *fix : modify->get_fix_list()) {
+    if (auto *plane = dynamic_cast<FluidWall *>(fix)) walls.push_back(plane);
+    if (auto *contact = dynamic_cast<FixClothContact *>(fix); contact && contact->wall())
+      meshes.push_back(contact->wall());
+  }
+  walls.insert(walls.end(), meshes.begin(), meshes.end());
 }
 
 void PairSPHTait::find_sheets()
@@ -240,7 +251,7 @@ void PairSPHTait::compute(int eflag, int vflag)
 
   fluid->place(p, box());
   measure_amounts(p, new_neighbours);
-  if (walls) walls->begin();
+  for (FluidWall *wall : walls) wall->begin();
   densities(p);
   pressures(p);
   stage = Stage::DENSITY;
@@ -249,7 +260,12 @@ void PairSPHTait::compute(int eflag, int vflag)
   fluid->record(p);
 
   fluid->forces(p);
-  if (walls) for_each_fluid(p, [&](int i, const Tait &) { walls->push(i, pressure[i]); });
+  for (FluidWall *wall : walls) {
+    for_each_fluid(p, [&](int i, const Tait &) { wall->feel(i, pressure[i]); });
+    wall->all_felt();
+    for_each_fluid(p, [&](int i, const Tait &) { wall->push(i, pressure[i]); });
+    wall->end();
+  }
   if (vflag_either)
     fluid->virials(
         p,
@@ -377,7 +393,8 @@ void PairSPHTait::densities(const Particles &p)
 {
   if (!options.continuity) {
     fluid->gather(p, true);
-    if (walls) for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += walls->density(i); });
+    for (FluidWall *wall : walls)
+      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += wall->density(i); });
     return;
   }
   check_densities();
@@ -396,8 +413,8 @@ void PairSPHTait::integrate_density(const Particles &p)
   if (elapsed > 0.0) {
     const double back = 0.5 * elapsed;
     density_rates(p, back);
-    if (walls)
-      for_each_fluid(p, [&](int i, const Tait &) { rate[i] += walls->density_rate(i, back); });
+    for (FluidWall *wall : walls)
+      for_each_fluid(p, [&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
     for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {
@@ -454,6 +471,17 @@ void PairSPHTait::boundary_pressures(const Particles &p)
   comm->forward_comm(this, 2);
 }
 
+void PairSPHTait::add_virial(int i, const Eigen::Vector3d &apart, const Eigen::Vector3d &on)
+{
+  if (!vflag_either) return;
+  const double v[6] = {apart[0] * on[0], apart[1] * on[1], apart[2] * on[2],
+                       apart[0] * on[1], apart[0] * on[2], apart[1] * on[2]};
+  for (int m = 0; m < 6; m++) {
+    if (vflag_global) virial[m] += v[m];
+    if (vflag_atom) vatom[i][m] += v[m];
+  }
+}
+
 // internal energy of the fluid: what compression has stored
 
 void PairSPHTait::tally_energy(const Particles &p)
@@ -499,8 +527,18 @@ int PairSPHTait::count_neighbours(int i)
   return n;
 }
 
+void PairSPHTait::want_wetting() const
+{
+  for (SheetWalls *mesh : meshes) mesh->want_wetting();
+}
+
 PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
+  if (!materials.is_boundary(atom->type[i])) {
+    for (const SheetWalls *mesh : meshes)
+      if (mesh->fluid_mass(i) > 0.0) return {mesh->fluid_mass(i), mesh->sound(i)};
+    return {};
+  }
   const Particles p = particles();
   Wetting w;
   for (int t = 1; t <= atom->ntypes; t++) {

@@ -15,13 +15,16 @@ PairStyle(sph/tait,PairSPHTait);
 #include "core/wall.h"
 #include "sph_materials.h"
 
+#include <Eigen/Core>
+
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 class FixClothContact;
-class FixWallSPH;
+class FluidWall;
+class SheetWalls;
 
 class PairSPHTait : public Pair {
  public:
@@ -46,6 +49,7 @@ class PairSPHTait : public Pair {
   // what fixes, computes and commands need to know of a type
 
   bool is_fluid(int itype) const { return materials.is_fluid(itype); }
+  bool is_boundary(int itype) const { return materials.is_boundary(itype); }
   const sphcloth::Tait &equation_of_state(int itype) const { return materials.type(itype).eos; }
   double support(int itype) const { return support(itype, itype); }
   double support(int itype, int jtype) const { return materials.support(itype, jtype); }
@@ -67,12 +71,17 @@ class PairSPHTait : public Pair {
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
 
-  // A boundary particle that fluid touched in the last evaluation: the mass that fluid in its
-  // volume would have, and the sound speed of that fluid.  Both 0 if it is dry.
+  // Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass that
+  // fluid in its volume would have, and the sound speed of that fluid.  Both 0 if it is dry.  To be
+  // wanted in init().
   struct Wetting {
     double fluid_mass = 0.0, sound = 0.0;
   };
-  Wetting wetting(int boundary_atom);
+  void want_wetting() const;
+  Wetting wetting(int i);
+
+  // of a force on owned atom i from something that is `apart` behind it
+  void add_virial(int i, const Eigen::Vector3d &apart, const Eigen::Vector3d &force_on_it);
 
   // Are the owned atoms those of the last evaluation?  Only then the following may be asked.
   bool evaluated() const;
@@ -125,7 +134,8 @@ class PairSPHTait : public Pair {
   Options options;
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
-  FixWallSPH *walls;    // null without plane walls
+  std::vector<FluidWall *> walls;
+  std::vector<SheetWalls *> meshes;    // those of them that are meshes
   FixClothContact *sheets;    // that part the fluid; null without
   bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
@@ -147,6 +157,7 @@ class PairSPHTait : public Pair {
   void read_density(class ArgReader &);
   void forget_evaluation();
   void set_model();
+  void find_walls();
   void find_sheets();
   bool excluded(int, int) const;
   bool diffuses() const { return options.continuity && options.delta > 0.0; }

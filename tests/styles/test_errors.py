@@ -202,7 +202,7 @@ CASES = [
         "contact: coarse mesh",
         SHEET_FIX.replace("neighbor 0.05", "neighbor 0.02")
         + "fix c water cloth/contact 0.01\nrun 0",
-        r"longest edge of the cloth and the thickness are 0.15.*comm_modify cutoff",
+        r"longest edge of the mesh and the reach of its triangles are 0.15.*comm_modify cutoff",
     ),
     # fix sph/shift
     case("shift: keyword", SHIFT + "colour 1", r"fix shift sph/shift: unknown keyword 'colour'"),

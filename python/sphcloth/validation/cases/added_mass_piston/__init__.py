@@ -42,7 +42,14 @@ PARAMETERS = (
         "contact",
         "1",
         "of water and sheet",
-        choices=("contact", "pressure", "both"),
+        choices=("contact", "wall", "pressure", "both"),
+    ),
+    Parameter(
+        "behind",
+        "mirror",
+        "1",
+        "pressure behind the sheet with coupling wall",
+        choices=("extrapolate", "mirror", "own"),
     ),
     Parameter(
         "wall",

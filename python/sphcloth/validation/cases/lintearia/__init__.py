@@ -22,7 +22,7 @@ from sphcloth.validation.cases.lintearia.reference import HeavyLintearia, Lintea
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
 
-MODES = ("both", "contact", "pressure")
+MODES = ("wall", "both", "contact", "pressure")
 # particles over L of the coarse run of the order of convergence, in those of the case
 COARSE = 0.5
 # last share of the time over which is averaged
@@ -41,7 +41,7 @@ PARAMETERS = (
     Parameter("sound", 10.0, "sqrt(g depth)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 80, "1", "particles over L", 20, 1000, quick=40),
     Parameter("layers", 4, "1", "particles along the pool", 3, 100),
-    Parameter("mesh", 1.0, "1", "edge of the sheet over spacing", 0.2, 1.0),
+    Parameter("mesh", 1.0, "1", "edge of the sheet over spacing", 0.2, 8.0),
     Parameter("gap", 0.4, "1", "least distance from the sheet at the start over spacing", 0.1, 2.0),
     Parameter("thick", 1.2, "1", "volume of a vertex over area and spacing, 0 for auto", 0.0, 3.0),
     Parameter("thickness", 0.1, "1", "of contact over spacing", 0.01, 1.0),
@@ -52,6 +52,7 @@ PARAMETERS = (
         "pressure of the sheet",
         choices=("extrapolate", "mirror", "own"),
     ),
+    Parameter("behind", "mirror", "1", "pressure behind the sheet, mode wall", choices=("mirror", "own", "extrapolate")),
     Parameter("settle", 6.0, "sqrt(L/g)", "time to rest", 1.0, 1e3),
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),

@@ -1,0 +1,31 @@
+// What fills the kernel of fluid particles beside other particles: pair_style sph/tait asks while it
+// evaluates, in this order.
+
+#ifndef SPHCLOTH_FLUID_WALL_H
+#define SPHCLOTH_FLUID_WALL_H
+
+namespace LAMMPS_NS {
+
+class FluidWall {
+ public:
+  // where it is now
+  virtual void begin() = 0;
+  // adds to the density of an owned fluid particle
+  virtual double density(int i) = 0;
+  // the same to the rate of its density, where it was a time `back` ago
+  virtual double density_rate(int i, double back) = 0;
+  // once pressures are known: of each owned fluid particle, p/rho^2, then that of all
+  virtual void feel(int, double) {}
+  virtual void all_felt() {}
+  // the force on it; pressure_term = p/rho^2
+  virtual void push(int i, double pressure_term) = 0;
+  // all are pushed
+  virtual void end() {}
+
+ protected:
+  ~FluidWall() noexcept(false) = default;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,323 @@
+#include "sheet_wall.h"
+
+#include "atom.h"
+#include "atom_tools.h"
+#include "core/contact.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "pair_sph_tait.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// Triangles that are equally near, at an edge or a vertex, but for rounding.
+static constexpr double TIE = 1e-9;
+
+static Eigen::Vector3d place_of(const double *x) { return {x[0], x[1], x[2]}; }
+
+Eigen::Vector3d SheetWall::gap_to(const Vec3 &p, int t, Vec3 &weight) const
+{
+  const std::array<int, 3> &s = set->triangles[t];
+  return distance_vector(p, set->place(s[0]), set->place(s[1]), set->place(s[2]), weight);
+}
+
+// Until the next build particle and triangle come nearer by the skin at most, or go away by it.
+
+void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
+{
+  skin = list_skin;
+  forces.assign(set->halo.n_slots(), Vec3::Zero());
+  wetting = means = forces;
+  candidates.clear();
+  seekers.clear();
+  double farthest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) farthest = std::max(farthest, reach(i));
+  if (farthest == 0.0 || set->triangles.empty()) return;
+
+  std::vector<Box> boxes(set->triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); t++) {
+    boxes[t].setEmpty();
+    for (int s : set->triangles[t]) boxes[t].extend(set->place(s));
+    boxes[t].min().array() -= farthest + skin;
+    boxes[t].max().array() += farthest + skin;
+  }
+  BoxGrid grid;
+  grid.build(boxes);
+  std::vector<Candidate> near;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double own = reach(i);
+    if (own == 0.0) continue;
+    const Vec3 p = place_of(atom->x[i]);
+    near.clear();
+    double nearest = own + skin;
+    grid.query(Box(p), [&](int t) {
+      if (boxes[t].exteriorDistance(p) > 0.0) return;
+      Vec3 weight;
+      const double distance = gap_to(p, t, weight).norm();
+      if (distance > nearest + 2.0 * skin) return;
+      nearest = std::min(nearest, distance);
+      near.push_back({t, distance});
+    });
+    std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
+      return a.distance < b.distance;
+    });
+    if (near.empty() || near[0].distance > own + skin) continue;
+    const std::size_t first = candidates.size();
+    for (const Candidate &c : near)
+      if (c.distance <= nearest + 2.0 * skin) candidates.push_back(c);
+    seekers.push_back({i, own, first, candidates.size()});
+  }
+}
+
+void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
+{
+  std::fill(means.begin(), means.end(), Vec3::Zero());
+  for (const Seeker &seeker : seekers) {
+    const Vec3 p = place_of(atom->x[seeker.particle]);
+    Foot foot;
+    foot.distance = seeker.reach;
+    Vec3 nearest = Vec3::Zero();
+    int triangle = -1;
+    for (std::size_t k = seeker.first; k < seeker.last; k++) {
+      if (candidates[k].distance - skin > foot.distance) break;
+      Vec3 weight;
+      const Vec3 gap = gap_to(p, candidates[k].triangle, weight);
+      const double distance_sq = gap.squaredNorm();
+      if (distance_sq >= foot.distance * foot.distance) continue;
+      foot.distance = std::sqrt(distance_sq);
+      foot.weight = weight;
+      nearest = gap;
+      triangle = candidates[k].triangle;
+    }
+    if (triangle < 0 || foot.distance == 0.0) continue;
+    foot.particle = seeker.particle;
+    foot.sheet = sheet;
+    foot.vertices = set->triangles[triangle];
+    foot.normal = nearest / foot.distance;
+    foot.share = foot.weight.minCoeff() > 0.0 ? 1.0 : share_of(p, seeker, foot.distance);
+    feet.push_back(foot);
+  }
+}
+
+// Where the sheet ends the fluid does not: what it fills falls to nothing in its own plane beyond the
+// border.  Of triangles that are equally near, the one that is seen most from the front counts.
+
+double SheetWall::share_of(const Vec3 &p, const Seeker &seeker, double distance) const
+{
+  bool beyond = false;
+  double front = 0.0;
+  for (std::size_t k = seeker.first; k < seeker.last; k++) {
+    if (candidates[k].distance - skin > distance) break;
+    const int t = candidates[k].triangle;
+    Vec3 weight;
+    const Vec3 gap = gap_to(p, t, weight);
+    if (gap.norm() > distance * (1.0 + TIE)) continue;
+    for (int q = 0; q < 3; q++)
+      beyond = beyond || (weight[q] <= 0.0 && set->is_border(set->element[t], q));
+    const std::array<int, 3> &s = set->triangles[t];
+    const Vec3 a = set->place(s[0]);
+    const Vec3 normal = (set->place(s[1]) - a).cross(set->place(s[2]) - a).normalized();
+    front = std::max(front, std::fabs(normal.dot(gap)) / distance);
+  }
+  return beyond ? std::min(front, 1.0) : 1.0;
+}
+
+Eigen::Vector3d SheetWall::velocity_at(const Foot &foot) const
+{
+  Vec3 velocity = Vec3::Zero();
+  for (int q = 0; q < 3; q++)
+    velocity += foot.weight[q] * place_of(atom->v[set->halo.atom_of(foot.vertices[q])]);
+  return velocity;
+}
+
+void SheetWall::hear()
+{
+  set->halo.reverse_add(0, means.data());
+  set->halo.forward(0, means.data(), false);
+}
+
+double SheetWall::mean_at(const Foot &foot) const
+{
+  double sum = 0.0, weight = 0.0;
+  for (int q = 0; q < 3; q++) {
+    sum += foot.weight[q] * means[foot.vertices[q]][0];
+    weight += foot.weight[q] * means[foot.vertices[q]][1];
+  }
+  return weight > 0.0 ? sum / weight : 0.0;
+}
+
+void SheetWall::spread(const Foot &foot, const Vec3 &amount, std::vector<Vec3> &over)
+{
+  for (int q = 0; q < 3; q++) over[foot.vertices[q]] += foot.weight[q] * amount;
+}
+
+void SheetWall::sum_up(std::vector<Vec3> &amounts,
+                       const std::function<void(int, const Vec3 &)> &take)
+{
+  set->halo.reverse_add(0, amounts.data());
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    if (!amounts[s].isZero(0.0)) take(set->halo.atom_of(s), amounts[s]);
+  std::fill(amounts.begin(), amounts.end(), Vec3::Zero());
+}
+
+/* ----------------------------------------------------------------------
+   all meshes
+------------------------------------------------------------------------- */
+
+void SheetWalls::init(PairSPHTait *fluid)
+{
+  pair = fluid;
+  if (!pair)
+    error->all(FLERR,
+               "{}: 'wall' fills the kernel of fluid, and there is none: use 'pair_style sph/tait', "
+               "or 'wall no'",
+               label);
+  table = pair->wall_table();
+  sheets.clear();
+}
+
+void SheetWalls::add(const ContactMesh *mesh, TriangleSet *set)
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (mesh->has_vertex(i) && pair->is_boundary(atom->type[i]))
+      error->one(FLERR,
+                 "{}: vertex {} is of type {}, a boundary type, and would press twice with 'wall': "
+                 "use 'pair_coeff {} {} none', or 'wall no'",
+                 label, atom->tag[i], atom->type[i], atom->type[i], atom->type[i]);
+  sheets.emplace_back(lmp, set);
+}
+
+double SheetWalls::support(int i) const { return pair->support(atom->type[i]); }
+
+void SheetWalls::look()
+{
+  for (SheetWall &sheet : sheets)
+    sheet.look(neighbor->skin, [this](int i) {
+      return atom->mask[i] & groupbit && pair->is_fluid(atom->type[i]) ? support(i) : 0.0;
+    });
+}
+
+void SheetWalls::begin()
+{
+  feet.clear();
+  for (std::size_t k = 0; k < sheets.size(); k++) sheets[k].find_feet(static_cast<int>(k), feet);
+  if (sheets.size() > 1)
+    std::sort(feet.begin(), feet.end(), [](const Foot &a, const Foot &b) {
+      if (a.particle != b.particle) return a.particle < b.particle;
+      return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
+    });
+  first.assign(atom->nlocal, -1);
+  for (std::size_t k = 0; k < feet.size(); k++) {
+    Foot &foot = feet[k];
+    foot.value = table(foot.distance / support(foot.particle));
+    int &begin = first[foot.particle];
+    if (begin < 0) begin = static_cast<int>(k);
+    for (std::size_t nearer = begin; nearer < k; nearer++)
+      foot.share *= 1.0 - std::max(0.0, foot.normal.dot(feet[nearer].normal));
+  }
+}
+
+template <class Do> void SheetWalls::for_feet(int i, Do something)
+{
+  if (first[i] < 0) return;
+  for (std::size_t k = first[i]; k < feet.size() && feet[k].particle == i; k++) something(feet[k]);
+}
+
+double SheetWalls::density(int i)
+{
+  double lambda = 0.0;
+  for_feet(i, [&](const Foot &foot) { lambda += foot.share * foot.value.lambda; });
+  return pair->equation_of_state(atom->type[i]).rho0 * lambda;
+}
+
+double SheetWalls::density_rate(int i, double back)
+{
+  double rate = 0.0;
+  for_feet(i, [&](Foot foot) {
+    const double away = velocity_from(foot).dot(foot.normal);
+    foot.value = table((foot.distance - back * away) / support(i));
+    rate += slope(foot) * away;
+  });
+  return rate;
+}
+
+// d rho_i / d distance
+
+double SheetWalls::slope(const Foot &foot) const
+{
+  const double rho0 = pair->equation_of_state(atom->type[foot.particle]).rho0;
+  return foot.share * rho0 * foot.value.slope / support(foot.particle);
+}
+
+Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
+{
+  return place_of(atom->v[foot.particle]) - sheets[foot.sheet].velocity_at(foot);
+}
+
+void SheetWalls::feel(int i, double pressure_term)
+{
+  if (behind != Behind::EXTRAPOLATE) return;
+  for_feet(i, [&](const Foot &foot) {
+    sheets[foot.sheet].say(foot, pressure_term, -foot.share * foot.value.slope);
+  });
+}
+
+void SheetWalls::all_felt()
+{
+  if (behind != Behind::EXTRAPOLATE) return;
+  for (SheetWall &sheet : sheets) sheet.hear();
+}
+
+double SheetWalls::pressure_behind(const Foot &foot, double own) const
+{
+  switch (behind) {
+    case Behind::OWN: return 0.0;
+    case Behind::MIRROR: return own;
+    case Behind::EXTRAPOLATE: return sheets[foot.sheet].mean_at(foot);
+  }
+  return 0.0;
+}
+
+// Pressure and friction as of a plane wall, fix wall/sph, and the opposite on the mesh.
+
+void SheetWalls::push(int i, double pressure_term)
+{
+  const int type = atom->type[i];
+  const Tait &eos = pair->equation_of_state(type);
+  const double mass = atom_mass(atom, i), nu = pair->laminar_viscosity(type);
+  for_feet(i, [&](const Foot &foot) {
+    const Vec3 velocity = velocity_from(foot);
+    const double away = velocity.dot(foot.normal);
+    const double friction = nu * foot.share * 2.0 * eos.rho0 / atom->rho[i] *
+        wall_friction(foot.value, foot.distance / support(i), support(i));
+    const double pressure = pressure_term + pressure_behind(foot, pressure_term);
+    const Vec3 accel =
+        -pressure * slope(foot) * foot.normal - friction * (velocity - away * foot.normal);
+    const Vec3 force_on = mass / force->ftm2v * accel;
+    for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
+    atom->drho[i] += slope(foot) * away;
+    sheets[foot.sheet].give(foot, -force_on);
+    pair->add_virial(i, foot.distance * foot.normal, force_on);
+    if (wetting_wanted) {
+      const double moves = 2.0 * mass * foot.share * foot.value.lambda;
+      sheets[foot.sheet].wet(foot, Vec3(moves, moves * eos.sound_speed(), 0.0));
+    }
+  });
+}
+
+void SheetWalls::end()
+{
+  if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
+  for (SheetWall &sheet : sheets) {
+    sheet.hand_over([this](int i, const Vec3 &on) {
+      for (int d = 0; d < 3; d++) atom->f[i][d] += on[d];
+    });
+    if (wetting_wanted)
+      sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });
+  }
+}

@@ -1,0 +1,144 @@
+// A mesh as a wall to the fluid beside it: what the kernel of a particle misses behind the nearest point
+// of the mesh is filled as behind a plane there, core/wall.h.  The mesh may be coarser than the
+// fluid: what a particle pushes is spread over the triangle by the weights of that point.
+
+#ifndef SPHCLOTH_SHEET_WALL_H
+#define SPHCLOTH_SHEET_WALL_H
+
+#include "core/wall.h"
+#include "fluid_wall.h"
+#include "triangle_set.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairSPHTait;
+
+// the point of a mesh that is nearest to a particle
+
+struct Foot {
+  int particle = 0, sheet = 0;
+  std::array<int, 3> vertices{};              // slots
+  Eigen::Vector3d weight, normal;             // barycentric; from the mesh to the particle
+  double distance = 0.0;
+  double share = 1.0;                         // of what a plane would be
+  sphcloth::WallTable::Value value{0.0, 0.0};
+};
+
+class SheetWall : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  SheetWall(LAMMPS *lmp, TriangleSet *set) : Pointers(lmp), set(set) {}
+
+  // After each list build: whom each particle may be nearest to until the next one.  reach(i): of the
+  // kernel of an owned particle, 0 for one that does not feel this wall.
+  void look(double skin, const std::function<double(int)> &reach);
+
+  // where particles stand now, those within reach, added to what is there
+  void find_feet(int sheet, std::vector<Foot> &feet);
+
+  Vec3 velocity_at(const Foot &) const;
+
+  // force on the mesh at a foot; handed over to owned vertices, take(atom, force)
+  void give(const Foot &foot, const Vec3 &force) { spread(foot, force, forces); }
+  void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
+
+  // mean of what particles say, over those that stand near the same vertices
+  void say(const Foot &foot, double value, double weight)
+  {
+    spread(foot, Vec3(weight * value, weight, 0.0), means);
+  }
+  void hear();
+  double mean_at(const Foot &) const;
+
+  // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
+  void wet(const Foot &foot, const Vec3 &amount) { spread(foot, amount, wetting); }
+  void hand_over_wetting(const std::function<void(int, const Vec3 &)> &take)
+  {
+    sum_up(wetting, take);
+  }
+
+ private:
+  struct Candidate {
+    int triangle;
+    double distance;    // at the list build
+  };
+  struct Seeker {
+    int particle;
+    double reach;
+    std::size_t first, last;    // candidates, nearest first
+  };
+  TriangleSet *set;
+  double skin = 0.0;
+  std::vector<Candidate> candidates;
+  std::vector<Seeker> seekers;
+  std::vector<Vec3> forces, wetting, means;    // by slot
+
+  Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
+  double share_of(const Vec3 &p, const Seeker &, double distance) const;
+  static void spread(const Foot &, const Vec3 &, std::vector<Vec3> &);
+  void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
+};
+
+// All meshes of a scene together.  Where several are near, each counts as far as it does not lie behind
+// nearer ones.
+
+class SheetWalls : public FluidWall, protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  // Pressure behind the mesh: none, so that the force is the gradient of the particle's energy; the
+  // particle's own once more; or the mean of the fluid at that place.
+  enum class Behind { OWN, MIRROR, EXTRAPOLATE };
+
+  SheetWalls(LAMMPS *lmp, const std::string &label, int groupbit, Behind behind) :
+      Pointers(lmp), label(label), groupbit(groupbit), behind(behind)
+  {
+  }
+
+  // anew for each run, with the meshes that are there
+  void init(PairSPHTait *);
+  void add(const ContactMesh *, TriangleSet *);
+  void look();    // after each list build
+
+  void begin() override;
+  double density(int i) override;
+  double density_rate(int i, double back) override;
+  void feel(int i, double pressure_term) override;
+  void all_felt() override;
+  void push(int i, double pressure_term) override;
+  void end() override;
+
+  // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
+  void want_wetting() { wetting_wanted = true; }
+  double fluid_mass(int i) const { return wetting[i][0]; }
+  double sound(int i) const { return wetting[i][0] > 0.0 ? wetting[i][1] / wetting[i][0] : 0.0; }
+
+ private:
+  std::string label;
+  const int groupbit;
+  const Behind behind;
+  PairSPHTait *pair = nullptr;
+  sphcloth::WallTable table;
+  std::vector<SheetWall> sheets;
+  std::vector<Foot> feet;    // of one particle together, the nearest first
+  std::vector<int> first;    // of an owned particle, -1: none
+  bool wetting_wanted = false;
+  std::vector<Vec3> wetting;    // by owned atom
+
+  template <class Do> void for_feet(int i, Do something);
+  double support(int i) const;
+  double slope(const Foot &) const;
+  Vec3 velocity_from(const Foot &) const;
+  double pressure_behind(const Foot &, double own) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -59,10 +59,8 @@ FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     else if (keyword == "sides")
       rules.sides = args.choice(keyword, {"no", "yes"});
     else if (keyword == "wall") {
-      const int choice = args.choice(keyword, {"no", "own", "mirror", "extrapolate"});
-      walls.reset(choice ? new SheetWalls(lmp, label, groupbit,
-                                          static_cast<SheetWalls::Behind>(choice - 1))
-                         : nullptr);
+      const bool yes = args.choice(keyword, {"no", "yes"});
+      walls.reset(yes ? new SheetWalls(lmp, label, groupbit) : nullptr);
     } else
       args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
   }

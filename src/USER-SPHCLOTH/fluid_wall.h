@@ -14,13 +14,8 @@ class FluidWall {
   virtual double density(int i) = 0;
   // the same to the rate of its density, where it was a time `back` ago
   virtual double density_rate(int i, double back) = 0;
-  // once pressures are known: of each owned fluid particle, p/rho^2, then that of all
-  virtual void feel(int, double) {}
-  virtual void all_felt() {}
   // the force on it; pressure_term = p/rho^2
   virtual void push(int i, double pressure_term) = 0;
-  // all are pushed
-  virtual void end() {}
 
  protected:
   ~FluidWall() noexcept(false) = default;

@@ -143,7 +143,6 @@ void PairSPHTait::find_walls()
     if (auto *contact = dynamic_cast<FixClothContact *>(fix); contact && contact->wall())
       meshes.push_back(contact->wall());
   }
-  walls.insert(walls.end(), meshes.begin(), meshes.end());
 }
 
 void PairSPHTait::find_sheets()
@@ -252,6 +251,7 @@ void PairSPHTait::compute(int eflag, int vflag)
   fluid->place(p, box());
   measure_amounts(p, new_neighbours);
   for (FluidWall *wall : walls) wall->begin();
+  for (SheetWalls *mesh : meshes) mesh->begin();
   densities(p);
   pressures(p);
   stage = Stage::DENSITY;
@@ -260,11 +260,11 @@ void PairSPHTait::compute(int eflag, int vflag)
   fluid->record(p);
 
   fluid->forces(p);
-  for (FluidWall *wall : walls) {
-    for_each_fluid(p, [&](int i, const Tait &) { wall->feel(i, pressure[i]); });
-    wall->all_felt();
+  for (FluidWall *wall : walls)
     for_each_fluid(p, [&](int i, const Tait &) { wall->push(i, pressure[i]); });
-    wall->end();
+  for (SheetWalls *mesh : meshes) {
+    for_each_fluid(p, [&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
+    mesh->end();
   }
   if (vflag_either)
     fluid->virials(
@@ -395,6 +395,8 @@ void PairSPHTait::densities(const Particles &p)
     fluid->gather(p, true);
     for (FluidWall *wall : walls)
       for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += wall->density(i); });
+    for (SheetWalls *mesh : meshes)
+      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] *= mesh->stretch(i); });
     return;
   }
   check_densities();
@@ -415,6 +417,10 @@ void PairSPHTait::integrate_density(const Particles &p)
     density_rates(p, back);
     for (FluidWall *wall : walls)
       for_each_fluid(p, [&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
+    for (SheetWalls *mesh : meshes)
+      for_each_fluid(p, [&](int i, const Tait &) {
+        rate[i] = rate[i] * mesh->stretch(i) + mesh->density_rate(i, back);
+      });
     for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {
@@ -462,6 +468,9 @@ void PairSPHTait::pressures(const Particles &p)
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
   }
+  // a density that is stretched has a gradient that is
+  for (SheetWalls *mesh : meshes)
+    for_each_fluid(p, [&](int i, const Tait &) { term[i] *= mesh->stretch(i); });
 }
 
 void PairSPHTait::boundary_pressures(const Particles &p)
@@ -514,7 +523,13 @@ bool PairSPHTait::evaluated() const
       std::equal(evaluated_ids.begin(), evaluated_ids.end(), atom->tag, atom->tag + atom->nlocal);
 }
 
-double PairSPHTait::pressure_of(int i) const { return pressure[i] * atom->rho[i] * atom->rho[i]; }
+double PairSPHTait::pressure_of(int i) const
+{
+  double p = pressure[i] * atom->rho[i] * atom->rho[i];
+  if (is_fluid(atom->type[i]))
+    for (SheetWalls *mesh : meshes) p /= mesh->stretch(i);
+  return p;
+}
 
 int PairSPHTait::count_neighbours(int i)
 {

@@ -32,7 +32,7 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
 {
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
-  wetting = means = forces;
+  wetting = forces;
   candidates.clear();
   seekers.clear();
   double farthest = 0.0;
@@ -76,7 +76,6 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
 
 void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
 {
-  std::fill(means.begin(), means.end(), Vec3::Zero());
   for (const Seeker &seeker : seekers) {
     const Vec3 p = place_of(atom->x[seeker.particle]);
     Foot foot;
@@ -133,22 +132,6 @@ Eigen::Vector3d SheetWall::velocity_at(const Foot &foot) const
   for (int q = 0; q < 3; q++)
     velocity += foot.weight[q] * place_of(atom->v[set->halo.atom_of(foot.vertices[q])]);
   return velocity;
-}
-
-void SheetWall::hear()
-{
-  set->halo.reverse_add(0, means.data());
-  set->halo.forward(0, means.data(), false);
-}
-
-double SheetWall::mean_at(const Foot &foot) const
-{
-  double sum = 0.0, weight = 0.0;
-  for (int q = 0; q < 3; q++) {
-    sum += foot.weight[q] * means[foot.vertices[q]][0];
-    weight += foot.weight[q] * means[foot.vertices[q]][1];
-  }
-  return weight > 0.0 ? sum / weight : 0.0;
 }
 
 void SheetWall::spread(const Foot &foot, const Vec3 &amount, std::vector<Vec3> &over)
@@ -228,11 +211,11 @@ template <class Do> void SheetWalls::for_feet(int i, Do something)
   for (std::size_t k = first[i]; k < feet.size() && feet[k].particle == i; k++) something(feet[k]);
 }
 
-double SheetWalls::density(int i)
+double SheetWalls::stretch(int i)
 {
-  double lambda = 0.0;
-  for_feet(i, [&](const Foot &foot) { lambda += foot.share * foot.value.lambda; });
-  return pair->equation_of_state(atom->type[i]).rho0 * lambda;
+  double gamma = 1.0;
+  for_feet(i, [&](const Foot &foot) { gamma *= 1.0 - foot.share * foot.value.lambda; });
+  return 1.0 / gamma;
 }
 
 double SheetWalls::density_rate(int i, double back)
@@ -241,17 +224,18 @@ double SheetWalls::density_rate(int i, double back)
   for_feet(i, [&](Foot foot) {
     const double away = velocity_from(foot).dot(foot.normal);
     foot.value = table((foot.distance - back * away) / support(i));
-    rate += slope(foot) * away;
+    rate += rise(foot) * away;
   });
   return rate;
 }
 
 // d rho_i / d distance
 
-double SheetWalls::slope(const Foot &foot) const
+double SheetWalls::rise(const Foot &foot) const
 {
-  const double rho0 = pair->equation_of_state(atom->type[foot.particle]).rho0;
-  return foot.share * rho0 * foot.value.slope / support(foot.particle);
+  const int i = foot.particle;
+  const double slope = foot.share * foot.value.slope / support(i);
+  return atom->rho[i] * slope / (1.0 - foot.share * foot.value.lambda);
 }
 
 Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
@@ -259,31 +243,7 @@ Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
   return place_of(atom->v[foot.particle]) - sheets[foot.sheet].velocity_at(foot);
 }
 
-void SheetWalls::feel(int i, double pressure_term)
-{
-  if (behind != Behind::EXTRAPOLATE) return;
-  for_feet(i, [&](const Foot &foot) {
-    sheets[foot.sheet].say(foot, pressure_term, -foot.share * foot.value.slope);
-  });
-}
-
-void SheetWalls::all_felt()
-{
-  if (behind != Behind::EXTRAPOLATE) return;
-  for (SheetWall &sheet : sheets) sheet.hear();
-}
-
-double SheetWalls::pressure_behind(const Foot &foot, double own) const
-{
-  switch (behind) {
-    case Behind::OWN: return 0.0;
-    case Behind::MIRROR: return own;
-    case Behind::EXTRAPOLATE: return sheets[foot.sheet].mean_at(foot);
-  }
-  return 0.0;
-}
-
-// Pressure and friction as of a plane wall, fix wall/sph, and the opposite on the mesh.
+// Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.
 
 void SheetWalls::push(int i, double pressure_term)
 {
@@ -295,12 +255,11 @@ void SheetWalls::push(int i, double pressure_term)
     const double away = velocity.dot(foot.normal);
     const double friction = nu * foot.share * 2.0 * eos.rho0 / atom->rho[i] *
         wall_friction(foot.value, foot.distance / support(i), support(i));
-    const double pressure = pressure_term + pressure_behind(foot, pressure_term);
     const Vec3 accel =
-        -pressure * slope(foot) * foot.normal - friction * (velocity - away * foot.normal);
+        -pressure_term * rise(foot) * foot.normal - friction * (velocity - away * foot.normal);
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
-    atom->drho[i] += slope(foot) * away;
+    atom->drho[i] += rise(foot) * away;
     sheets[foot.sheet].give(foot, -force_on);
     pair->add_virial(i, foot.distance * foot.normal, force_on);
     if (wetting_wanted) {

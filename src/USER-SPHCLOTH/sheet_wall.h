@@ -6,7 +6,6 @@
 #define SPHCLOTH_SHEET_WALL_H
 
 #include "core/wall.h"
-#include "fluid_wall.h"
 #include "triangle_set.h"
 
 #include <array>
@@ -49,14 +48,6 @@ class SheetWall : protected Pointers {
   void give(const Foot &foot, const Vec3 &force) { spread(foot, force, forces); }
   void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
 
-  // mean of what particles say, over those that stand near the same vertices
-  void say(const Foot &foot, double value, double weight)
-  {
-    spread(foot, Vec3(weight * value, weight, 0.0), means);
-  }
-  void hear();
-  double mean_at(const Foot &) const;
-
   // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
   void wet(const Foot &foot, const Vec3 &amount) { spread(foot, amount, wetting); }
   void hand_over_wetting(const std::function<void(int, const Vec3 &)> &take)
@@ -78,7 +69,7 @@ class SheetWall : protected Pointers {
   double skin = 0.0;
   std::vector<Candidate> candidates;
   std::vector<Seeker> seekers;
-  std::vector<Vec3> forces, wetting, means;    // by slot
+  std::vector<Vec3> forces, wetting;    // by slot
 
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   double share_of(const Vec3 &p, const Seeker &, double distance) const;
@@ -86,19 +77,17 @@ class SheetWall : protected Pointers {
   void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
 };
 
-// All meshes of a scene together.  Where several are near, each counts as far as it does not lie behind
-// nearer ones.
+// All meshes of a scene together.  Where they cover a share lambda of the kernel of a particle, its
+// density is the sum over particles over gamma = 1 - lambda, and forces are the gradient of the energy
+// with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where several meshes
+// are near, each counts as far as it does not lie behind nearer ones.
 
-class SheetWalls : public FluidWall, protected Pointers {
+class SheetWalls : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // Pressure behind the mesh: none, so that the force is the gradient of the particle's energy; the
-  // particle's own once more; or the mean of the fluid at that place.
-  enum class Behind { OWN, MIRROR, EXTRAPOLATE };
-
-  SheetWalls(LAMMPS *lmp, const std::string &label, int groupbit, Behind behind) :
-      Pointers(lmp), label(label), groupbit(groupbit), behind(behind)
+  SheetWalls(LAMMPS *lmp, const std::string &label, int groupbit) :
+      Pointers(lmp), label(label), groupbit(groupbit)
   {
   }
 
@@ -107,13 +96,15 @@ class SheetWalls : public FluidWall, protected Pointers {
   void add(const ContactMesh *, TriangleSet *);
   void look();    // after each list build
 
-  void begin() override;
-  double density(int i) override;
-  double density_rate(int i, double back) override;
-  void feel(int i, double pressure_term) override;
-  void all_felt() override;
-  void push(int i, double pressure_term) override;
-  void end() override;
+  // What pair_style sph/tait asks for while it evaluates, in this order: where everybody is now; by
+  // what the density of an owned fluid particle is stretched, 1/gamma; what is added to the rate of its
+  // density, where it was a time `back` ago; the force on it and on the meshes, with p/rho^2; and
+  // that all are pushed.
+  void begin();
+  double stretch(int i);
+  double density_rate(int i, double back);
+  void push(int i, double pressure_term);
+  void end();
 
   // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
   void want_wetting() { wetting_wanted = true; }
@@ -123,7 +114,6 @@ class SheetWalls : public FluidWall, protected Pointers {
  private:
   std::string label;
   const int groupbit;
-  const Behind behind;
   PairSPHTait *pair = nullptr;
   sphcloth::WallTable table;
   std::vector<SheetWall> sheets;
@@ -134,9 +124,8 @@ class SheetWalls : public FluidWall, protected Pointers {
 
   template <class Do> void for_feet(int i, Do something);
   double support(int i) const;
-  double slope(const Foot &) const;
+  double rise(const Foot &) const;
   Vec3 velocity_from(const Foot &) const;
-  double pressure_behind(const Foot &, double own) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -45,13 +45,6 @@ PARAMETERS = (
         choices=("contact", "wall", "pressure", "both"),
     ),
     Parameter(
-        "behind",
-        "mirror",
-        "1",
-        "pressure behind the sheet with coupling wall",
-        choices=("extrapolate", "mirror", "own"),
-    ),
-    Parameter(
         "wall",
         "extrapolate",
         "1",

@@ -52,7 +52,6 @@ PARAMETERS = (
         "pressure of the sheet",
         choices=("extrapolate", "mirror", "own"),
     ),
-    Parameter("behind", "mirror", "1", "pressure behind the sheet, mode wall", choices=("mirror", "own", "extrapolate")),
     Parameter("settle", 6.0, "sqrt(L/g)", "time to rest", 1.0, 1e3),
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),

@@ -41,6 +41,9 @@ class FixWallSPH : public Fix {
   double density_rate(int i, double back);
   void push(int i, double pressure_term);
 
+  // the largest speed at which a wall in reach and a particle come near
+  double approach(int i);
+
   // What the walls, where they were then, add to the surroundings of a fluid particle
   void add_to(sphcloth::Crowd &, int i);
 

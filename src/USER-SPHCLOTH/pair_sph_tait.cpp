@@ -499,6 +499,17 @@ int PairSPHTait::count_neighbours(int i)
   return n;
 }
 
+const std::vector<double> &PairSPHTait::approach_speeds()
+{
+  approach.assign(atom->nmax, 0.0);
+  const Particles p = particles();
+  fluid->approach_speeds(p, approach.data());
+  if (walls)
+    for_each_fluid(
+        p, [&](int i, const Tait &) { approach[i] = std::max(approach[i], walls->approach(i)); });
+  return approach;
+}
+
 PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
   const Particles p = particles();
@@ -602,5 +613,6 @@ double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
       sizeof(double) *
-      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity());
+      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity() +
+       approach.capacity());
 }

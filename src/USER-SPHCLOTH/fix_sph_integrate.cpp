@@ -1,6 +1,5 @@
 // Semi-implicit Euler (lines 30 to 33 of Algorithm 1) with a constant or a global time step,
-// equations (10) to (12) and the limits in core/criteria.h.  The time of a cut step that ends at an
-// output time is set to that time, so that round-off does not add up.
+// equations (10) to (12) and the limits in core/criteria.h.
 
 #include "fix_sph_integrate.h"
 
@@ -41,7 +40,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives_at(0.0),
+    state(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
     limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;
@@ -198,7 +197,6 @@ void FixSPHIntegrate::end_of_step()
 
 void FixSPHIntegrate::finish_step()
 {
-  if (arrives_at > 0.0) arrive();
   previous = uncut > 0.0 ? uncut : update->dt;
   largest_before = compression.largest;
   steps_limited[static_cast<int>(limited_by)]++;
@@ -226,7 +224,7 @@ void FixSPHIntegrate::choose_step()
   if (interval > 0.0) head_for_output(step);
   limited_by = step.by;
   if (step.dt != update->dt) apply(step.dt);
-  if (arrives_at > 0.0) announce_thermo();
+  if (arrives) announce_thermo();
 }
 
 StepLimit FixSPHIntegrate::tightest_anywhere()
@@ -324,8 +322,8 @@ void FixSPHIntegrate::apply(double dt)
   if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
 }
 
-// LAMMPS reckons anew at which step a dump by time is due, and overlooks it where that is earlier
-// than before.
+// LAMMPS has found anew at which step each dump by time is due, but if that is earlier now it goes by
+// it only for dumps that ask computes.
 
 void FixSPHIntegrate::reschedule_dumps()
 {
@@ -345,16 +343,10 @@ void FixSPHIntegrate::head_for_output(StepLimit &step)
   const double reached = output_times_until(now, interval, SLACK * step.dt);
   const double next = output_time(reached + 1.0, interval);
   const double dt = step_towards(next - now, step.dt);
-  arrives_at = dt == next - now ? next : 0.0;
+  arrives = dt == next - now;
   uncut = step.dt;
   if (dt < (1.0 - SLACK) * step.dt) step.by = Limit::OUTPUT;
   step.dt = dt;
-}
-
-void FixSPHIntegrate::arrive()
-{
-  update->update_time();
-  update->atime = arrives_at;
 }
 
 bool FixSPHIntegrate::at_output_time() const
@@ -369,7 +361,7 @@ bool FixSPHIntegrate::at_output_time() const
 bigint FixSPHIntegrate::next_thermo() const
 {
   const bigint next = update->ntimestep + 1;
-  return arrives_at > 0.0 ? next : std::max(next, update->laststep + 1);
+  return arrives ? next : std::max(next, update->laststep + 1);
 }
 
 // A variable that says when thermodynamic output is due was asked when it was not yet known that

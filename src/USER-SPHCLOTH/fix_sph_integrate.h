@@ -75,7 +75,7 @@ class FixSPHIntegrate : public Fix {
   double largest_before;    // compression when that step was chosen
   sphcloth::Compression compression;    // when the step that comes next was chosen
   double uncut;         // that step, had no output time cut it; 0 without output times
-  double arrives_at;    // the output time at its end, 0: none
+  bool arrives;         // does it end at an output time?
   sphcloth::Limit limited_by;
   double updates;       // particle updates of this rank
   std::array<double, sphcloth::N_LIMITS> steps_limited;
@@ -88,7 +88,6 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit tightest_particle();
   void count(const sphcloth::StepLimit &own);
   void head_for_output(sphcloth::StepLimit &);
-  void arrive();
   bool at_output_time() const;
   bigint next_thermo() const;
   void announce_thermo();

@@ -179,8 +179,8 @@ inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, 
    output times: the multiples of an interval
 ------------------------------------------------------------------------- */
 
-// Two roundings above n times the interval, so that a test `time >= n T` in decimals is true and
-// time over interval rounds down to n.
+// Some roundings above n times the interval, so that a test `time >= n T` in decimals is true and
+// time over interval rounds down to n, also where the time at the end of a step is rounded.
 
 inline double output_time(double n, double interval)
 {

@@ -322,8 +322,8 @@ void FixSPHIntegrate::apply(double dt)
   if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
 }
 
-// LAMMPS has found anew at which step each dump by time is due, but if that is earlier now it goes by
-// it only for dumps that ask computes.
+// LAMMPS has found anew at which step each dump by time is due, but if that is earlier now, dumps of
+// style atom or xyz would be overlooked.
 
 void FixSPHIntegrate::reschedule_dumps()
 {

@@ -549,8 +549,8 @@ thermo_style custom step time dt f_step[28] press
 thermo_modify line yaml format float %.17g
 thermo v_next
 compute speed all property/atom vx
-dump plain all custom 1 plain.{part} id x
-dump_modify plain every/time {every} time yes format float %.17g first {first}
+dump plain all atom 1 plain.{part}
+dump_modify plain every/time {every} time yes first {first}
 dump computed all custom 1 computed.{part} id c_speed
 dump_modify computed every/time $(3*{every}) time yes format float %.17g
 """
@@ -662,8 +662,8 @@ def test_dumps_by_time_come_with_the_first_step_that_reaches_it(tmp_path):
             tmp_path,
             scene
             + "thermo_style custom step time dt dt\nthermo_modify line yaml format float %.17g\n"
-            + "thermo 1\ndump plain all custom 1 plain id x\n"
-            + "dump_modify plain every/time 0.0173 time yes format float %.17g first yes\n"
+            + "thermo 1\ndump plain all atom 1 plain\n"
+            + "dump_modify plain every/time 0.0173 time yes first yes\n"
             + "run 200\nthermo 50",
         )
     )

@@ -106,6 +106,11 @@ def test_density_limit():
     assert (dt, limit) == (pytest.approx(0.1 / rate, rel=1e-9), DENSITY)
 
 
+PAIRS = """
+    pair_coeff 1 1 fluid 1000 c0 20
+    pair_coeff 2 2 boundary
+"""
+
 CROWD = """
     units si
     atom_style sph
@@ -161,6 +166,14 @@ def test_relative_limit_is_that_of_the_fastest_approach():
     np.testing.assert_allclose(own, expected, rtol=1e-10)
     assert dt_and_limit(lmp) == (own.min(), RELATIVE)
     assert particles_by_limit(lmp) == {RELATIVE: np.sum(speed > 0), CEILING: np.sum(speed == 0)}
+
+
+def test_relative_limit_in_mixed_precision():
+    """Of a common speed of 40 m/s single precision leaves the relative speeds to 1e-5 m/s."""
+    lmp = instance()
+    lmp.commands_string(CROWD.format(extra="pair_style sph/tait 0.1 precision mixed\n" + PAIRS))
+    own = own_steps(lmp)[by_id(lmp, "type") == 1]
+    np.testing.assert_allclose(0.2 * 0.1 / own, approach_speeds(lmp), atol=3e-5)
 
 
 def test_relative_limit_sees_plane_walls():

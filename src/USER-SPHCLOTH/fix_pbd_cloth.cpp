@@ -824,6 +824,19 @@ bool FixPBDCloth::has_strain(int m) const
   return material && !material->no_rest && material->n_springs() > 0 && edge_rest[m] > 0.0;
 }
 
+// a seam, which closes to nothing, does not count
+
+double FixPBDCloth::shortest_edge(int i) const
+{
+  double shortest = std::numeric_limits<double>::infinity();
+  const int v = mesh.index_of(atom->tag[i]);
+  for (int k = mesh.edges.first[v]; k < mesh.edges.first[v + 1]; k++) {
+    const double rest = edge_rest[mesh.edges.incident[k]];
+    if (rest > 0.0) shortest = std::min(shortest, rest);
+  }
+  return shortest;
+}
+
 double FixPBDCloth::largest_strain() const
 {
   double strain = 0.0;

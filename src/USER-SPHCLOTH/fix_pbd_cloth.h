@@ -72,6 +72,8 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double rest_length(int m) const { return edge_rest[m]; }
   double rest_angle(int m) const { return hinge_rest[m]; }
   bool has_strain(int m) const;
+  // rest length of the shortest edge at an owned vertex, infinite without any
+  double shortest_edge(int owned_atom) const;
 
   // force of an atom's holder on the cloth in the last step: 0 for a free vertex.  Known from the
   // next step on if it is asked for before a run.

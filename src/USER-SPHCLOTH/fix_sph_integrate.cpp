@@ -11,6 +11,7 @@
 #include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
+#include "input.h"
 #include "integrate.h"
 #include "memory.h"
 #include "modify.h"
@@ -18,12 +19,18 @@
 #include "pair_sph_tait.h"
 #include "sph_adaptive.h"
 #include "update.h"
+#include "variable.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace sphcloth;
+
+// share of a step by which a time may miss what it is taken for
+static constexpr double SLACK = 1e-6;
 
 /* ----------------------------------------------------------------------
    fix ID group sph/integrate constant|global keyword value ...
@@ -32,15 +39,16 @@ using namespace sphcloth;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
-    ceiling(update->dt), growth(2.0), ceiling_given(false), clamp_at_floor(false), state(nullptr),
-    previous(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}
+    ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
+    state(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
+    limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
   restart_global = 1;
   create_attribute = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 5 + N_LIMITS - 1;
+  size_vector = 5 + N_LIMITS - 1 + N_OF_PARTICLES + 2;
   global_freq = 1;
   extscalar = extvector = 0;
   peratom_flag = 1;
@@ -72,6 +80,14 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       lambda.viscous = args.at_least(keyword, 0.0);
     else if (keyword == "density")
       lambda.density = args.at_least(keyword, 0.0);
+    else if (keyword == "relative")
+      lambda.relative = args.at_least(keyword, 0.0);
+    else if (keyword == "cloth")
+      lambda.cloth = args.at_least(keyword, 0.0);
+    else if (keyword == "fluctuation")
+      control.eta = args.at_least(keyword, 0.0);
+    else if (keyword == "output")
+      interval = args.at_least(keyword, 0.0);
     else if (keyword == "min")
       floor = args.positive(keyword);
     else if (keyword == "max") {
@@ -84,7 +100,9 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     } else if (keyword == "below")
       clamp_at_floor = args.choice(keyword, {"stop", "clamp"}) == 1;
     else
-      args.unknown(keyword, "velocity, force, acoustic, viscous, density, min, max, growth, below");
+      args.unknown(keyword,
+                   "velocity, force, acoustic, viscous, density, relative, cloth, fluctuation, "
+                   "output, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
@@ -112,8 +130,18 @@ void FixSPHIntegrate::init()
   const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
+  if (interval > 0.0 && scheme == SteppingScheme::CONSTANT)
+    error->all(FLERR,
+               "{}: output {} would shorten steps that are constant: use the scheme global, or a "
+               "timestep that divides {}",
+               label, interval, interval);
   pair->set_active(state, ACTIVE);
   if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
+  control.sound_time = std::numeric_limits<double>::infinity();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (pair->is_fluid(t))
+      control.sound_time = std::min(
+          control.sound_time, 0.5 * pair->support(t) / pair->equation_of_state(t).sound_speed());
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
@@ -170,7 +198,8 @@ void FixSPHIntegrate::end_of_step()
 
 void FixSPHIntegrate::finish_step()
 {
-  previous = update->dt;
+  previous = uncut > 0.0 ? uncut : update->dt;
+  largest_before = compression.largest;
   steps_limited[static_cast<int>(limited_by)]++;
   if (scheme == SteppingScheme::GLOBAL) choose_step();
 }
@@ -181,42 +210,65 @@ void FixSPHIntegrate::finish_step()
 
 void FixSPHIntegrate::choose_step()
 {
-  const StepLimit mine = tightest_particle();
-  struct {
-    double dt;
-    int by;
-  } in = {mine.dt, static_cast<int>(mine.by)}, out;
-  MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  const StepLimit wanted = {out.dt, static_cast<Limit>(out.by)};
-  const StepLimit step = bounded_step(wanted, previous, growth, floor, ceiling);
+  StepLimit wanted = tightest_anywhere();
+  if (control.eta > 0.0) {
+    compression = overall_compression();
+    wanted.tighten(control.step(previous, compression, largest_before), Limit::FLUCTUATION);
+  }
+  StepLimit step = bounded_step(wanted, previous, growth, floor, ceiling);
   if (step.by == Limit::FLOOR && !clamp_at_floor)
     error->all(
         FLERR,
         "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
         "to go on with min and count",
         label, limit_name(wanted.by), wanted.dt, floor);
+  if (interval > 0.0) head_for_output(step);
   limited_by = step.by;
   if (step.dt != update->dt) apply(step.dt);
+  if (arrives) announce_thermo();
+}
+
+StepLimit FixSPHIntegrate::tightest_anywhere()
+{
+  const StepLimit mine = tightest_particle();
+  struct {
+    double dt;
+    int by;
+  } in = {mine.dt, static_cast<int>(mine.by)}, out;
+  MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  return {out.dt, static_cast<Limit>(out.by)};
 }
 
 StepLimit FixSPHIntegrate::tightest_particle()
 {
   const double now = physical_time(update);
+  const double *approach = lambda.relative > 0.0 ? pair->approach_speeds().data() : nullptr;
   StepLimit tightest;
+  particles_limited.fill(0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const StepLimit own = particle_limit(lambda, particle_state(i));
+    StepState particle = particle_state(i);
+    if (approach) particle.approach = approach[i];
+    const StepLimit own = particle_limit(lambda, particle);
     state[i][OWN_STEP] = std::min(own.dt, ceiling);
     state[i][LAST_UPDATE] = now;
+    count(own);
     tightest.tighten(own.dt, own.by);
   }
   for (const FixPBDCloth *cloth : cloths)
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(atom->mask[i] & cloth->groupbit) || cloth->inverse_mass(i) == 0.0) continue;
-      const StepLimit own = particle_limit(lambda, vertex_state(i));
+      const double edge = lambda.cloth > 0.0 ? cloth->shortest_edge(i) : 0.0;
+      const StepLimit own = vertex_limit(lambda, vertex_state(i), edge);
+      count(own);
       tightest.tighten(own.dt, own.by);
     }
   return tightest;
+}
+
+void FixSPHIntegrate::count(const StepLimit &own)
+{
+  particles_limited[static_cast<int>(own.dt < ceiling ? own.by : Limit::CEILING)]++;
 }
 
 // what every kind of particle has; returns its mass
@@ -268,6 +320,64 @@ void FixSPHIntegrate::apply(double dt)
   if (force->pair) force->pair->reset_dt();
   for (Fix *other : modify->get_fix_list()) other->reset_dt();
   output->reset_dt();
+  if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
+}
+
+// LAMMPS has found anew at which step each dump by time is due, but if that is earlier now, dumps of
+// style atom or xyz would be overlooked.
+
+void FixSPHIntegrate::reschedule_dumps()
+{
+  for (int k = 0; k < output->ndump; k++)
+    output->next_dump_any = k ? std::min(output->next_dump_any, output->next_dump[k])
+                              : output->next_dump[k];
+  output->next = std::min({output->next_dump_any, output->next_restart, output->next_thermo});
+}
+
+/* ----------------------------------------------------------------------
+   output times
+------------------------------------------------------------------------- */
+
+void FixSPHIntegrate::head_for_output(StepLimit &step)
+{
+  const double now = physical_time(update);
+  const double reached = output_times_until(now, interval, SLACK * step.dt);
+  const double next = output_time(reached + 1.0, interval);
+  const double dt = step_towards(next - now, step.dt);
+  arrives = dt == next - now;
+  uncut = step.dt;
+  if (dt < (1.0 - SLACK) * step.dt) step.by = Limit::OUTPUT;
+  step.dt = dt;
+}
+
+bool FixSPHIntegrate::at_output_time() const
+{
+  if (interval == 0.0) return false;
+  const double now = physical_time(update), slack = SLACK * std::min(update->dt, interval);
+  return now - output_time(output_times_until(now, interval, slack), interval) < slack;
+}
+
+// the step that comes next if it ends at an output time, otherwise one that never comes
+
+bigint FixSPHIntegrate::next_thermo() const
+{
+  const bigint next = update->ntimestep + 1;
+  return arrives ? next : std::max(next, update->laststep + 1);
+}
+
+// A variable that says when thermodynamic output is due was asked when it was not yet known that
+// the next step ends at an output time.
+
+void FixSPHIntegrate::announce_thermo()
+{
+  const bigint next = update->ntimestep + 1;
+  if (!output->var_thermo || output->next_thermo <= next) return;
+  modify->clearstep_compute();
+  const double asked = input->variable->compute_equal(output->ivar_thermo);
+  if (static_cast<bigint>(asked) != next) return;
+  modify->addstep_compute_all(next);
+  output->next_thermo = next;
+  output->next = std::min(output->next, next);
 }
 
 /* ----------------------------------------------------------------------
@@ -293,10 +403,14 @@ double FixSPHIntegrate::own_step(int i) const
 double FixSPHIntegrate::compute_scalar() { return update->dt; }
 
 // limit in force, active fraction, particle updates, largest compression, steps clamped at min,
-// then steps by limit
+// then steps by limit, particles by limit, whether this is an output time, and the step for thermo
 
 double FixSPHIntegrate::compute_vector(int n)
 {
+  constexpr int PARTICLES = 5 + N_LIMITS - 1, TIMES = PARTICLES + N_OF_PARTICLES;
+  if (n == TIMES) return at_output_time();
+  if (n > TIMES) return static_cast<double>(next_thermo());
+  if (n >= PARTICLES) return sum_over_ranks(particles_limited[n - PARTICLES + 1]);
   if (n >= 5) return steps_limited[n - 4];
   switch (n) {
     case 0: return static_cast<double>(limited_by);
@@ -310,11 +424,7 @@ double FixSPHIntegrate::compute_vector(int n)
       MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
       return all[1] > 0.0 ? all[0] / all[1] : 0.0;
     }
-    case 2: {
-      double all;
-      MPI_Allreduce(&updates, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-      return all;
-    }
+    case 2: return sum_over_ranks(updates);
     case 3: {
       double mine = largest_compression(), all;
       MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
@@ -333,6 +443,27 @@ double FixSPHIntegrate::largest_compression() const
   return largest;
 }
 
+Compression FixSPHIntegrate::overall_compression() const
+{
+  double largest = largest_compression(), mine[2] = {0.0, 0.0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) {
+      const double rho0 = pair->equation_of_state(atom->type[i]).rho0;
+      mine[0] += std::max(0.0, atom->rho[i] / rho0 - 1.0);
+      mine[1] += 1.0;
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  return {largest, all[1] > 0.0 ? all[0] / all[1] : 0.0};
+}
+
+double FixSPHIntegrate::sum_over_ranks(double mine) const
+{
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
 /* ----------------------------------------------------------------------
    restart: the step before, the ceiling unless it is given anew, the counters
 ------------------------------------------------------------------------- */
@@ -342,9 +473,9 @@ void FixSPHIntegrate::write_restart(FILE *fp)
   double all_updates = 0.0;
   MPI_Reduce(&updates, &all_updates, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  std::array<double, 4 + N_LIMITS> list{previous, ceiling, static_cast<double>(limited_by),
-                                        all_updates};
-  std::copy(steps_limited.begin(), steps_limited.end(), list.begin() + 4);
+  std::array<double, 5 + N_LIMITS> list{previous, ceiling, static_cast<double>(limited_by),
+                                        all_updates, largest_before};
+  std::copy(steps_limited.begin(), steps_limited.end(), list.begin() + 5);
   const int bytes = static_cast<int>(sizeof(list));
   fwrite(&bytes, sizeof(int), 1, fp);
   fwrite(list.data(), sizeof(list), 1, fp);
@@ -358,7 +489,8 @@ void FixSPHIntegrate::restart(char *buf)
   if (!ceiling_given) ceiling = list[1];
   limited_by = static_cast<Limit>(static_cast<int>(list[2]));
   updates = comm->me == 0 ? list[3] : 0.0;
-  std::copy(list + 4, list + 4 + N_LIMITS, steps_limited.begin());
+  largest_before = list[4];
+  std::copy(list + 5, list + 5 + N_LIMITS, steps_limited.begin());
 }
 
 /* ----------------------------------------------------------------------

@@ -63,25 +63,42 @@ class FixSPHIntegrate : public Fix {
   SteppingScheme said, scheme;    // of this fix; in force, after the run style was asked
   bool run_style_drives;
   sphcloth::StepCoefficients lambda;
+  sphcloth::FluctuationControl control;
   double floor, ceiling, growth;
+  double interval;    // of output times, 0: none
   bool ceiling_given, clamp_at_floor;
 
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
 
-  double previous;      // the last step that was taken, 0 before the first
+  double previous;      // the last step, before an output time cut it; 0 before the first
+  double largest_before;    // compression when that step was chosen
+  sphcloth::Compression compression;    // when the step that comes next was chosen
+  double uncut;         // that step, had no output time cut it; 0 without output times
+  bool arrives;         // does it end at an output time?
   sphcloth::Limit limited_by;
   double updates;       // particle updates of this rank
   std::array<double, sphcloth::N_LIMITS> steps_limited;
+  // of this rank, by their own limit at the last choice; CEILING: no other limit is below it
+  std::array<double, sphcloth::N_OF_PARTICLES + 1> particles_limited;
 
   void read_options(ArgReader &);
   void choose_step();
+  sphcloth::StepLimit tightest_anywhere();
   sphcloth::StepLimit tightest_particle();
+  void count(const sphcloth::StepLimit &own);
+  void head_for_output(sphcloth::StepLimit &);
+  bool at_output_time() const;
+  bigint next_thermo() const;
+  void announce_thermo();
   double speed_and_force(int, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int) const;
   sphcloth::StepState vertex_state(int) const;
   void apply(double);
+  void reschedule_dumps();
   double largest_compression() const;
+  sphcloth::Compression overall_compression() const;
+  double sum_over_ranks(double mine) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -281,6 +281,16 @@ void FixWallSPH::push(int i, double pressure_term)
   }
 }
 
+double FixWallSPH::approach(int i)
+{
+  if (!look(i)) return 0.0;
+  const double support = pair->support(atom->type[i]);
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < walls.size(); k++)
+    if (walls[k].distance(atom->x[i]) < support) fastest = std::max(fastest, -departure(i, k));
+  return fastest;
+}
+
 void FixWallSPH::add_to(Crowd &crowd, int i)
 {
   if (!look(i)) return;

@@ -39,6 +39,9 @@ class FixWallSPH : public Fix, public FluidWall {
   double density_rate(int i, double back) override;
   void push(int i, double pressure_term) override;
 
+  // the largest speed at which a wall in reach and a particle come near
+  double approach(int i) override;
+
   // What the walls, where they were then, add to the surroundings of a fluid particle
   void add_to(sphcloth::Crowd &, int i);
 

@@ -17,6 +17,9 @@ class FluidWall {
   // the force on it; pressure_term = p/rho^2
   virtual void push(int i, double pressure_term) = 0;
 
+  // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
+  virtual double approach(int i) = 0;
+
  protected:
   ~FluidWall() noexcept(false) = default;
 };

@@ -547,6 +547,20 @@ void PairSPHTait::want_wetting() const
   for (SheetWalls *mesh : meshes) mesh->want_wetting();
 }
 
+const std::vector<double> &PairSPHTait::approach_speeds()
+{
+  approach.assign(atom->nmax, 0.0);
+  const Particles p = particles();
+  fluid->approach_speeds(p, approach.data());
+  const auto include = [&](auto *wall) {
+    for_each_fluid(
+        p, [&](int i, const Tait &) { approach[i] = std::max(approach[i], wall->approach(i)); });
+  };
+  for (FluidWall *wall : walls) include(wall);
+  for (SheetWalls *mesh : meshes) include(mesh);
+  return approach;
+}
+
 PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
   if (!materials.is_boundary(atom->type[i])) {
@@ -655,5 +669,6 @@ double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
       sizeof(double) *
-      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity());
+      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity() +
+       approach.capacity());
 }

@@ -95,6 +95,10 @@ class PairSPHTait : public Pair {
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
 
+  // Of the last evaluation, by owned atom: the largest speed at which a neighbour or a wall and an
+  // active fluid particle come near.  A pass over all neighbours.
+  const std::vector<double> &approach_speeds();
+
   // volume of a particle, owned or ghost, in the last evaluation
   double volume(int i) const
   {
@@ -149,6 +153,7 @@ class PairSPHTait : public Pair {
   double elapsed;
   std::vector<double> amount, pressure;    // per atom, owned and ghost
   std::vector<double> rate;
+  std::vector<double> approach;    // empty unless it is asked for
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
   std::vector<tagint> evaluated_ids;    // of the owned atoms, in the order of the arrays
   Stage stage;

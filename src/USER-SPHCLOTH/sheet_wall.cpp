@@ -269,6 +269,15 @@ void SheetWalls::push(int i, double pressure_term)
   });
 }
 
+double SheetWalls::approach(int i)
+{
+  double fastest = 0.0;
+  for_feet(i, [&](const Foot &foot) {
+    fastest = std::max(fastest, -velocity_from(foot).dot(foot.normal));
+  });
+  return fastest;
+}
+
 void SheetWalls::end()
 {
   if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());

@@ -106,6 +106,9 @@ class SheetWalls : protected Pointers {
   void push(int i, double pressure_term);
   void end();
 
+  // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
+  double approach(int i);
+
   // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
   void want_wetting() { wetting_wanted = true; }
   double fluid_mass(int i) const { return wetting[i][0]; }

@@ -1,6 +1,9 @@
 #include "check.h"
 #include "core/criteria.h"
 
+#include <set>
+#include <string>
+
 using namespace sphcloth;
 
 CASE("limits: each formula on its own")
@@ -26,6 +29,68 @@ CASE("limits: each formula on its own")
   s = rest;
   s.drho = -5000.0;
   CHECK_NEAR(particle_limit(lambda, s).dt, 0.1 * 0.2, 1e-17);
+  s = rest;
+  s.approach = 4.0;
+  CHECK(std::isinf(particle_limit(lambda, s).dt));    // off by default
+  StepCoefficients relative;
+  relative.relative = 0.3;
+  CHECK_NEAR(particle_limit(relative, s).dt, 0.3 * 0.1 / 4.0, 1e-17);
+  CHECK(particle_limit(relative, s).by == Limit::RELATIVE);
+}
+
+CASE("limits: of a vertex")
+{
+  StepCoefficients lambda;
+  StepState s{0.1, 4.0, 0.0, 20.0, 0.0, 0.0, 0.0};
+  CHECK_NEAR(vertex_limit(lambda, s, 0.01).dt, 0.5 * 0.05 / 20.0, 1e-17);
+  CHECK(vertex_limit(lambda, s, 0.01).by == Limit::WETTED);
+  lambda.cloth = 0.2;
+  CHECK_NEAR(vertex_limit(lambda, s, 0.01).dt, 0.2 * 0.01 / 2.0, 1e-17);
+  CHECK(vertex_limit(lambda, s, 0.01).by == Limit::CLOTH);
+}
+
+CASE("limits: every one has a name of its own")
+{
+  std::set<std::string> names;
+  for (int k = 0; k < N_LIMITS; k++) names.insert(limit_name(static_cast<Limit>(k)));
+  CHECK(names.size() == N_LIMITS);
+}
+
+CASE("control by compression: paces, shocks, bounds")
+{
+  const FluctuationControl control{0.01, 0.002};
+  CHECK(control.step(0.0, {0.0, 0.0}, 0.0) == 0.25 * 0.002);
+  CHECK_NEAR(control.step(1e-3, {0.0099, 0.0049}, 0.02), 1.002e-3, 1e-17);
+  CHECK_NEAR(control.step(1e-3, {0.0101, 0.0049}, 0.0), 0.998e-3, 1e-17);
+  CHECK_NEAR(control.step(1e-3, {0.0099, 0.0051}, 0.0), 0.998e-3, 1e-17);
+  CHECK(control.step(1e-3, {0.021, 0.001}, 0.019) == 0.5e-3);     // passes 2 eta
+  CHECK_NEAR(control.step(1e-3, {0.039, 0.001}, 0.021), 0.998e-3, 1e-17);
+  CHECK(control.step(1e-3, {0.041, 0.001}, 0.039) == 0.5e-3);     // passes 4 eta
+  CHECK(control.step(1.1e-4, {0.5, 0.1}, 0.0) == 0.05 * 0.002);
+}
+
+CASE("output times: the last two steps are balanced, none is tiny, the end is exact")
+{
+  CHECK(step_towards(1.0, 0.3) == 0.3);
+  CHECK(step_towards(0.5, 0.3) == 0.25);
+  CHECK(step_towards(0.25, 0.3) == 0.25);
+  CHECK(step_towards(0.3 * (1.0 + 1e-12), 0.3) == 0.3 * (1.0 + 1e-12));
+  CHECK(step_towards(0.3, 0.3) == 0.3);
+}
+
+CASE("output times: never below their decimal number, and back to their number")
+{
+  for (const double interval : {0.1, 0.7, 1.0 / 30.0, 0.0013, 2.5}) {
+    for (int n = 1; n < 3000; n++) {
+      const double t = output_time(n, interval);
+      CHECK(std::floor(t / interval) == n);
+      CHECK_NEAR(t, n * interval, 1e-15 * n * interval);
+      CHECK(output_times_until(t, interval, 0.0) == n);
+      CHECK(output_times_until(t - 1e-9, interval, 1e-8) == n);
+      CHECK(output_times_until(t - 1e-7, interval, 1e-8) == n - 1);
+    }
+  }
+  CHECK(output_time(3, 0.7) >= 2.1);    // 3 * 0.7 is below
 }
 
 CASE("limits: a coefficient of zero switches its limit off")

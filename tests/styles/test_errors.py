@@ -234,6 +234,20 @@ CASES = [
     case("step: keyword", STEP + "global speed 1", r"unknown keyword 'speed'"),
     case("step: growth", STEP + "global growth 3", r"growth is '3.*at most 2"),
     case("step: below", STEP + "global below zero", r"below is 'zero'.*stop or clamp"),
+    case("step: relative", STEP + "global relative -1", r"relative is '-1'.*>= 0"),
+    case("step: cloth limit", STEP + "global cloth nan", r"cloth is 'nan'.*finite"),
+    case("step: fluctuation", STEP + "global fluctuation x", r"fluctuation is 'x'.*finite"),
+    case("step: output", STEP + "global output", r"output is missing"),
+    case(
+        "step: output, constant",
+        STEP + "constant output 0.1\nrun 0",
+        r"fix step sph/integrate: output 0.1 would shorten.*use the scheme global",
+    ),
+    case(
+        "step: output, run style",
+        STEP + "global output 0.1\nrun_style sph/adaptive constant\nrun 0",
+        r"fix step sph/integrate: output 0.1 would shorten.*use the scheme global",
+    ),
     case("step: min > max", STEP + "global min 1 max 0.1", r"min 1 is above max 0.1"),
     case(
         "step: no pair",

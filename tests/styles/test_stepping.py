@@ -1,12 +1,14 @@
 """fix sph/integrate and run_style sph/adaptive."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
-from harness import by_id, instance
+from harness import by_id, instance, run, write
 
-VELOCITY, FORCE, ACOUSTIC, VISCOUS, DENSITY, CEILING, FLOOR, GROWTH = range(1, 9)
+VELOCITY, FORCE, ACOUSTIC, VISCOUS, DENSITY, RELATIVE, WETTED, CLOTH = range(1, 9)
+CEILING, FLOOR, GROWTH, FLUCTUATION, OUTPUT = range(9, 14)
 
 
 def free_particles(speed=0.0, options="", extra="", run="run 0", nu=0.0, timestep=0.01):
@@ -85,6 +87,16 @@ def test_acoustic_limit_uses_the_sound_speed_of_the_density():
     assert (dt, limit) == (pytest.approx(0.5 * 0.05 / sound, rel=1e-9), ACOUSTIC)
 
 
+def steps_by_limit(lmp):
+    counts = {k: int(lmp.extract_fix("step", 0, 1, 4 + k)) for k in range(1, 14)}
+    return {k: n for k, n in counts.items() if n}
+
+
+def particles_by_limit(lmp):
+    counts = {k: int(lmp.extract_fix("step", 0, 1, 17 + k)) for k in range(1, 10)}
+    return {k: n for k, n in counts.items() if n}
+
+
 def test_density_limit():
     lmp = compressed("force 0 velocity 0 acoustic 0")
     lmp.command("velocity all ramp vx 5 -5 x -0.2 0.2 units box")
@@ -92,6 +104,134 @@ def test_density_limit():
     rate = np.abs(by_id(lmp, "drho") / by_id(lmp, "rho")).max()
     dt, limit = dt_and_limit(lmp)
     assert (dt, limit) == (pytest.approx(0.1 / rate, rel=1e-9), DENSITY)
+
+
+PAIRS = """
+    pair_coeff 1 1 fluid 1000 c0 20
+    pair_coeff 2 2 boundary
+"""
+
+CROWD = """
+    units si
+    atom_style sph
+    atom_modify map yes
+    comm_modify vel yes
+    boundary p p f
+    region box block -0.2 0.2 -0.2 0.2 -0.2 0.2
+    create_box 2 box
+    mass * 0.125
+    create_atoms 1 random 60 42 NULL
+    create_atoms 2 random 30 43 NULL
+    pair_style sph/tait 0.1
+    pair_coeff 1 1 fluid 1000 c0 20
+    pair_coeff 2 2 boundary
+    neighbor 0.05 bin
+    timestep 1000
+    group fluid type 1
+    variable u atom 40+random(-1,1,11)
+    variable v atom random(-1,1,12)
+    variable w atom random(-1,1,13)
+    velocity all set v_u v_v v_w
+    {extra}
+    fix step fluid sph/integrate global velocity 0 force 0 acoustic 0 density 0 relative 0.2
+    run 0
+"""
+
+
+def approach_speeds(lmp, support=0.1):
+    x, v, kind = (by_id(lmp, name) for name in ("x", "v", "type"))
+    apart = x[:, None] - x[None]
+    apart[..., :2] -= 0.4 * np.round(apart[..., :2] / 0.4)
+    r = np.linalg.norm(apart, axis=2)
+    r[r == 0] = np.inf
+    closing = -((v[:, None] - v[None]) * apart).sum(axis=2) / r
+    return np.where(r < support, closing, 0).max(axis=1, initial=0)[kind == 1]
+
+
+def own_steps(lmp):
+    owned = lmp.extract_setting("nlocal")
+    order = np.argsort(lmp.numpy.extract_atom("id")[:owned])
+    return np.array(lmp.numpy.extract_fix("step", 1, 2)[:owned, 0])[order]
+
+
+def test_relative_limit_is_that_of_the_fastest_approach():
+    """Fluid and boundary particles count, across periodic faces too; common speed does not."""
+    lmp = instance()
+    lmp.commands_string(CROWD.format(extra=""))
+    speed = approach_speeds(lmp)
+    assert np.sum(speed > 0) > 40 and np.sum(speed == 0) > 0
+    own = own_steps(lmp)[by_id(lmp, "type") == 1]
+    with np.errstate(divide="ignore"):
+        expected = np.minimum(0.2 * 0.1 / speed, 1000)
+    np.testing.assert_allclose(own, expected, rtol=1e-10)
+    assert dt_and_limit(lmp) == (own.min(), RELATIVE)
+    assert particles_by_limit(lmp) == {RELATIVE: np.sum(speed > 0), CEILING: np.sum(speed == 0)}
+
+
+def test_relative_limit_in_mixed_precision():
+    """Of a common speed of 40 m/s single precision leaves the relative speeds to 1e-5 m/s."""
+    lmp = instance()
+    lmp.commands_string(CROWD.format(extra="pair_style sph/tait 0.1 precision mixed\n" + PAIRS))
+    own = own_steps(lmp)[by_id(lmp, "type") == 1]
+    np.testing.assert_allclose(0.2 * 0.1 / own, approach_speeds(lmp), atol=3e-5)
+
+
+def test_relative_limit_sees_plane_walls():
+    lmp = instance()
+    walls = "fix tank all wall/sph zlo -0.2 zhi 0.2"
+    lmp.commands_string(CROWD.format(extra=walls))
+    z, vz = by_id(lmp, "x")[:, 2], by_id(lmp, "v")[:, 2]
+    speed = approach_speeds(lmp)
+    fluid = by_id(lmp, "type") == 1
+    down = np.where(z < -0.1, -vz, 0)[fluid]
+    up = np.where(z > 0.1, vz, 0)[fluid]
+    speed = np.maximum.reduce([speed, down, up])
+    with np.errstate(divide="ignore"):
+        expected = np.minimum(0.2 * 0.1 / speed, 1000)
+    np.testing.assert_allclose(own_steps(lmp)[fluid], expected, rtol=1e-10)
+
+
+def steps_of_a_crash(speed, limits, steps=60):
+    """Two blobs meet in a frame that moves with a speed."""
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        atom_style sph
+        comm_modify vel yes
+        region box block -0.5 0.5 -0.3 0.3 -0.3 0.3
+        create_box 1 box
+        lattice sc 0.05 origin 0.5 0.5 0.5
+        region left block -0.25 -0.03 -0.1 0.1 -0.1 0.1 units box
+        region right block 0.03 0.25 -0.1 0.1 -0.1 0.1 units box
+        create_atoms 1 region left
+        create_atoms 1 region right
+        group left region left
+        group right region right
+        mass 1 0.125
+        pair_style sph/tait 0.1
+        pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
+        neighbor 0.03 bin
+        timestep 0.001
+        velocity left set {speed + 8} 0 0 units box
+        velocity right set {speed - 8} 0 0 units box
+        fix step all sph/integrate global {limits}
+        run 0""")
+    dts = []
+    for _ in range(steps):
+        lmp.command("run 1 post no")
+        dts.append(lmp.extract_global("dt"))
+    return np.array(dts), steps_by_limit(lmp)
+
+
+def test_a_moving_frame_takes_the_same_steps():
+    relative = "velocity 0 relative 0.1"
+    rest, limits = steps_of_a_crash(0.0, relative)
+    moving, same_limits = steps_of_a_crash(100.0, relative)
+    assert limits == same_limits and limits[RELATIVE] > 5
+    np.testing.assert_allclose(moving, rest, rtol=1e-8)
+    assert rest.max() > 1.4 * rest.min()
+    absolute, _ = steps_of_a_crash(100.0, "velocity 0.1")
+    assert absolute.max() < 0.5 * moving.min()  # what the paper's limit makes of it
 
 
 def test_growth_is_at_most_twofold():
@@ -201,39 +341,161 @@ def test_many_runs_are_one_run():
     assert parts.extract_global("dt") == pytest.approx(whole.extract_global("dt"), rel=1e-9)
 
 
+def wet_cloth(areal=1.0, options="", height=0.08, extra=""):
+    lmp = instance()
+    lmp.commands_string(f"""
+        units si
+        atom_style hybrid sph molecular
+        atom_modify map yes
+        comm_modify vel yes
+        region box block -1 1 -1 1 -1 1
+        create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+          extra/angle/per/atom 8 extra/dihedral/per/atom 8
+        mass 1 0.01
+        create_cloth 2 {areal} size 0.8 0.8 spacing 0.05 group cloth
+        create_atoms 1 single 0 0 {height}
+        group fluid type 1
+        special_bonds lj/coul 1 1 1
+        pair_style sph/tait 0.1
+        pair_coeff 1 1 fluid 1000 c0 20
+        pair_coeff 2 2 boundary
+        bond_style pbd
+        bond_coeff 1 1
+        dihedral_style pbd
+        dihedral_coeff 1 0
+        neighbor 0.02 bin
+        timestep 0.01
+        {extra}
+        fix step fluid sph/integrate global {options}
+        fix sheet cloth pbd/cloth
+        run 0""")
+    return lmp
+
+
 def test_light_wet_cloth_shortens_the_step():
     """The acoustic limit of a vertex grows with the root of the ratio of the masses."""
-    steps = []
-    for areal in (1.0, 4.0):
-        lmp = instance()
-        lmp.commands_string(f"""
-            units si
-            atom_style hybrid sph molecular
-            atom_modify map yes
-            comm_modify vel yes
-            region box block -1 1 -1 1 -1 1
-            create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-              extra/angle/per/atom 8 extra/dihedral/per/atom 8
-            mass 1 0.01
-            create_cloth 2 {areal} size 0.8 0.8 spacing 0.05 group cloth
-            create_atoms 1 single 0 0 0.08
-            group fluid type 1
-            special_bonds lj/coul 1 1 1
-            pair_style sph/tait 0.1
-            pair_coeff 1 1 fluid 1000 c0 20
-            pair_coeff 2 2 boundary
-            bond_style pbd
-            bond_coeff 1 1
-            dihedral_style pbd
-            dihedral_coeff 1 0
-            neighbor 0.02 bin
-            timestep 0.01
-            fix step fluid sph/integrate global
-            fix sheet cloth pbd/cloth
-            run 0""")
+    light, heavy = wet_cloth(1.0), wet_cloth(4.0)
+    dt, limit = dt_and_limit(light)
+    assert heavy.extract_global("dt") == pytest.approx(2 * dt, rel=1e-9)
+    assert heavy.extract_global("dt") < 0.5 * 0.05 / 20
+    assert limit == WETTED
+    vertices = 17 * 17
+    counts = particles_by_limit(light)
+    assert sum(counts.values()) == vertices + 1
+    x = by_id(light, "x")
+    wet = np.linalg.norm(x[:-1] - x[-1], axis=1) < 0.1
+    assert counts[WETTED] == wet.sum() > 4
+
+
+def test_cloth_limit_is_a_share_of_the_shortest_edge():
+    turn = "velocity all set 0 0 3 units box"
+    lmp = wet_cloth(options="velocity 0 cloth 0.2", height=0.5, extra=turn)
+    assert dt_and_limit(lmp) == (pytest.approx(0.2 * 0.05 / 3.0, rel=1e-12), CLOTH)
+    assert particles_by_limit(lmp) == {CLOTH: 17 * 17, CEILING: 1}
+    free = wet_cloth(options="velocity 0", height=0.5, extra=turn)
+    assert dt_and_limit(free) == (0.01, CEILING)
+
+
+def test_particles_are_counted_by_their_own_limit():
+    lmp = free_particles(extra="set atom 1 vx 5", run="run 0", options="max 0.005")
+    assert particles_by_limit(lmp) == {VELOCITY: 1, CEILING: 1}
+    assert steps_by_limit(lmp) == {}
+    lmp.command("run 3")
+    assert particles_by_limit(lmp) == {VELOCITY: 1, CEILING: 1}
+    assert steps_by_limit(lmp) == {VELOCITY: 3}
+
+
+COLUMN = """
+    units si
+    atom_style sph
+    comm_modify vel yes
+    boundary p p f
+    region box block 0 0.3 0 0.3 0 0.8
+    create_box 1 box
+    lattice sc 0.05 origin 0.5 0.5 0.5
+    region water block INF INF INF INF 0.0 0.5 units box
+    create_atoms 1 region water
+    mass * 0.125
+    pair_style sph/tait 0.1
+    pair_coeff 1 1 fluid 1000 c0 25 alpha 0.1
+    neighbor 0.03 bin
+    neigh_modify every 1 delay 0 check yes
+    timestep 0.01
+    fix gravity all gravity 9.81 vector 0 0 -1
+    fix tank all wall/sph zlo 0
+    fix step all sph/integrate global {options}
+    {run}
+"""
+
+
+def run_column(options, run):
+    lmp = instance()
+    lmp.commands_string(COLUMN.format(options=options, run=run))
+    return lmp
+
+
+OTHERS_OFF = "acoustic 0 velocity 0 force 0 density 0"
+
+
+def test_the_controller_finds_the_longest_step_that_keeps_the_compression():
+    """Far above the default step, below the limit of stability; without it the column bursts."""
+    eta, in_sound = 0.03, 25 / 0.05
+    lmp = run_column(f"{OTHERS_OFF} fluctuation {eta}", "run 0")
+    assert dt_and_limit(lmp) == (pytest.approx(0.25 / in_sound), FLUCTUATION)
+    lmp.command("run 1000")
+    steps, compressions = [], []
+    for _ in range(200):
+        lmp.command("run 10 post no")
+        steps.append(lmp.extract_global("dt") * in_sound)
+        compressions.append(lmp.extract_fix("step", 0, 1, 3))
+    assert 1.5 < max(steps) < 2.0 and np.mean(steps) > 2 * 0.5
+    assert eta < max(compressions) < 2.5 * eta
+    assert steps_by_limit(lmp) == {FLUCTUATION: 3000}
+    with pytest.raises(Exception, match=r"Lost atoms|density"):
+        run_column(f"{OTHERS_OFF} max {2.0 / in_sound}", "run 2000")
+
+
+def test_the_controller_takes_small_paces_and_halves_in_a_shock():
+    eta = 0.005
+    lmp = run_column(f"{OTHERS_OFF} fluctuation {eta}", "run 0")
+    steps, compressions = [lmp.extract_global("dt")], [lmp.extract_fix("step", 0, 1, 3)]
+    for _ in range(300):
+        lmp.command("run 1 post no")
         steps.append(lmp.extract_global("dt"))
-    assert steps[1] == pytest.approx(2 * steps[0], rel=1e-9)
-    assert steps[1] < 0.5 * 0.05 / 20
+        compressions.append(lmp.extract_fix("step", 0, 1, 3))
+    factors = np.array(steps[1:]) / np.array(steps[:-1])
+    least = np.array(steps[1:]) < 0.0501 * 0.05 / 25
+    doublings = np.floor(np.log2(np.maximum(1, np.array(compressions) / eta)))
+    shock = (doublings[1:] > doublings[:-1]) & ~least
+    assert shock.any() and least.any()
+    np.testing.assert_allclose(factors[shock], 0.5)
+    calm = np.array(compressions[1:]) < eta
+    np.testing.assert_allclose(factors[~shock & ~least & calm], 1.002)
+    np.testing.assert_allclose(factors[~shock & ~least & ~calm], 0.998)
+    assert min(steps) == pytest.approx(0.05 * 0.05 / 25, rel=1e-12)
+
+
+def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(tmp_path):
+    options = f"{OTHERS_OFF} fluctuation 0.01 output 0.0101"
+    whole = run_column(options, f"run 320\nwrite_restart {tmp_path / 'stop'}")
+    # what the controller knows of the past counts: no shock now, but one from rest
+    assert whole.extract_fix("step", 0, 1, 3) > 2 * 0.01
+    assert whole.extract_global("dt") > 2 * 0.05 * 0.05 / 25
+    whole.command("run 60")
+    again = instance()
+    again.commands_string(f"""
+        read_restart {tmp_path / "stop"}
+        comm_modify vel yes
+        neighbor 0.03 bin
+        neigh_modify every 1 delay 0 check yes
+        fix gravity all gravity 9.81 vector 0 0 -1
+        fix tank all wall/sph zlo 0
+        fix step all sph/integrate global {options}
+        run 60""")
+    for quantity in ("time", "dt"):
+        assert again.get_thermo(quantity) == whole.get_thermo(quantity)
+    assert steps_by_limit(again) == steps_by_limit(whole)
+    np.testing.assert_array_equal(by_id(again, "x"), by_id(whole, "x"))
 
 
 def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
@@ -282,3 +544,145 @@ def test_inactive_particles_rest_and_cost_no_sums():
     lmp.command("run 0")
     assert by_id(lmp, "rho")[neighbour] == pytest.approx(awake, rel=1e-12)
     assert by_id(lmp, "rho")[asleep - 1] != before["rho"]
+
+
+# so that steps differ by a factor of three within a few steps
+SHAKEN = """
+variable push equal 12*sin(200*time)
+fix shake fluid addforce v_push 0 0
+"""
+
+AFTER_RESTART = """read_restart stop
+comm_modify vel yes
+"""
+
+EXACT = """
+variable next equal f_step[29]
+thermo_style custom step time dt f_step[28] press
+thermo_modify line yaml format float %.17g
+thermo v_next
+compute speed all property/atom vx
+dump plain all atom 1 plain.{part}
+dump_modify plain every/time {every} time yes first {first}
+dump computed all custom 1 computed.{part} id c_speed
+dump_modify computed every/time $(3*{every}) time yes format float %.17g
+"""
+
+
+def times_of_frames(path):
+    lines = path.read_text().splitlines()
+    return np.array([float(b) for a, b in itertools.pairwise(lines) if a == "ITEM: TIME"])
+
+
+def thermo_columns(text):
+    """Step, time, dt and the flag of every line of thermodynamic output."""
+    rows = [line.strip(" -[],").split(", ") for line in text.splitlines() if line[:5] == "  - ["]
+    return np.array(rows, dtype=float)[:, :4].T
+
+
+def multiples(interval, until):
+    return interval * np.arange(0, np.floor(until / interval + 1e-9) + 1)
+
+
+@pytest.mark.parametrize("every", [0.0173, 0.0031, 0.0004])
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
+def test_every_output_time_is_met_once(tmp_path, style, ranks, every):
+    """Two runs, then a third after a restart: frames and thermo lines at all multiples."""
+    scene = DAM.replace("run 100", SHAKEN)
+    first = scene.format(scheme=f"global output {every} acoustic 1.2", style=style)
+    text = (
+        first
+        + EXACT.format(every=every, part=1, first="yes")
+        + "run 60\nrun 61\nwrite_restart stop\n"
+    )
+    after = re.sub(r"(?s)\natom_style.*pair_coeff 2 2 boundary", "\nread_restart stop", first)
+    after = after.replace("units si", "").replace("read_restart stop", AFTER_RESTART)
+    again = after + EXACT.format(every=every, part=2, first="no") + "run 80\n"
+    logs = [
+        run(write(tmp_path, script, f"in.{k}"), ranks=ranks)
+        for k, script in enumerate((text, again))
+    ]
+    columns = [thermo_columns(log) for log in logs]
+    end = columns[1][1, -1]
+    for name, apart in (("plain", every), ("computed", 3 * every)):
+        before, after = (times_of_frames(tmp_path / f"{name}.{part}") for part in (1, 2))
+        # as always, a run that starts at such a time writes it
+        new = after > before[-1] * (1 + 1e-12)
+        frames = np.concatenate([before, after[new]])
+        np.testing.assert_allclose(frames, multiples(apart, end), rtol=2e-15)
+        assert np.sum(~new) == np.isclose(before[-1], columns[0][1, -1], rtol=1e-12)
+    dts = np.concatenate(columns, axis=1)[2]
+    assert every < 0.01 or (dts.max() > 1.5 * dts.min() and dts.max() < 0.003)
+    # thermo: at the start and the end of every run, and at all output times
+    _, time, _, flag = np.concatenate(columns, axis=1)
+    np.testing.assert_allclose(np.unique(time[flag == 1]), multiples(every, end), rtol=2e-15)
+    assert np.sum(flag == 0) <= 5
+
+
+@pytest.mark.parametrize("place", ["before", "after"])
+@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
+def test_halt_and_timeout_end_runs_where_they_say(style, place):
+    halt = "fix stop all halt 1 v_done >= 1 error continue message no"
+    lmp = instance()
+    scene = DAM.format(scheme="global output 0.0141", style=style).replace("run 100", "")
+    if place == "before":
+        scene = scene.replace(
+            "fix gravity", f"variable done equal time>=0.0423\n{halt}\nfix gravity"
+        )
+    else:
+        scene += f"variable done equal time>=0.0423\n{halt}\n"
+    lmp.commands_string(scene + "thermo_style custom time f_step[28]\nrun 100000000 post no")
+    assert lmp.get_thermo("time") == pytest.approx(3 * 0.0141, rel=1e-15)
+    assert lmp.extract_fix("step", 0, 1, 27) == 1
+    lmp.command("unfix stop")
+    lmp.command("timer timeout 1 every 1")
+    lmp.command("run 100000000 post no")
+    assert lmp.get_thermo("time") > 3 * 0.0141
+    lmp.command("timer timeout off")
+    ahead = np.ceil(lmp.get_thermo("time") / 0.0141) + 2
+    lmp.command("variable done delete")
+    lmp.command(f"variable done equal time>={ahead * 0.0141}")
+    lmp.command(halt)
+    lmp.command("run 100000000 post no")
+    assert lmp.get_thermo("time") == pytest.approx(ahead * 0.0141, rel=1e-15)
+
+
+def test_steps_before_an_output_time_are_balanced():
+    """No step is tiny, and the one after it grows from the one that was cut."""
+    lmp = free_particles(options="output 0.025 growth 1.01", run="run 0")
+    dts = []
+    for _ in range(7):
+        dts.append(lmp.extract_global("dt"))
+        lmp.command("run 1 post no")
+    expected = [0.01, 0.0075, 0.0075, 0.01, 0.0075, 0.0075, 0.01]
+    np.testing.assert_allclose(dts, expected, rtol=1e-12)
+    assert lmp.get_thermo("time") == pytest.approx(0.06, rel=1e-12)
+    assert steps_by_limit(lmp) == {CEILING: 3, OUTPUT: 4}
+
+
+def test_a_ceiling_that_divides_the_interval_is_never_cut():
+    lmp = free_particles(options="output 0.1", run="run 1000")
+    assert steps_by_limit(lmp) == {CEILING: 1000}
+    assert lmp.get_thermo("time") == pytest.approx(10, rel=1e-15)
+
+
+def test_dumps_by_time_come_with_the_first_step_that_reaches_it(tmp_path):
+    """Also where steps grow and shrink much between two frames."""
+    scene = DAM.format(scheme="global acoustic 1.2", style="").replace("run 100", SHAKEN)
+    log = run(
+        write(
+            tmp_path,
+            scene
+            + "thermo_style custom step time dt dt\nthermo_modify line yaml format float %.17g\n"
+            + "thermo 1\ndump plain all atom 1 plain\n"
+            + "dump_modify plain every/time 0.0173 time yes first yes\n"
+            + "run 200\nthermo 50",
+        )
+    )
+    _, time, dt, _ = thermo_columns(log)
+    assert dt.max() > 2.5 * dt.min()
+    wanted = multiples(0.0173, time[-1])
+    np.testing.assert_allclose(
+        times_of_frames(tmp_path / "plain"), time[np.searchsorted(time, wanted)], rtol=1e-14
+    )

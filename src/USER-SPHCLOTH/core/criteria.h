@@ -3,6 +3,8 @@
 //
 // (10) and (11) use the support radius H, the paper's h.  The acoustic and the viscous limit use
 // the smoothing length h_s = H/2, as stability analysis does.
+//
+// The control by compression follows Ihmsen, Akinci, Gissler & Teschner, VRIPHYS 2010, 79.
 
 #ifndef SPHCLOTH_CORE_CRITERIA_H
 #define SPHCLOTH_CORE_CRITERIA_H
@@ -13,8 +15,27 @@
 
 namespace sphcloth {
 
-enum class Limit { NONE, VELOCITY, FORCE, ACOUSTIC, VISCOUS, DENSITY, CEILING, FLOOR, GROWTH };
-inline constexpr int N_LIMITS = 9;
+// those of a particle or a vertex, then those of the step
+
+enum class Limit {
+  NONE,
+  VELOCITY,
+  FORCE,
+  ACOUSTIC,
+  VISCOUS,
+  DENSITY,
+  RELATIVE,
+  WETTED,
+  CLOTH,
+  CEILING,
+  FLOOR,
+  GROWTH,
+  FLUCTUATION,
+  OUTPUT
+};
+inline constexpr int N_LIMITS = 1 + static_cast<int>(Limit::OUTPUT);
+// the limits that a particle can have for itself, the ceiling as the last
+inline constexpr int N_OF_PARTICLES = static_cast<int>(Limit::CEILING);
 
 inline const char *limit_name(Limit limit)
 {
@@ -25,9 +46,14 @@ inline const char *limit_name(Limit limit)
     case Limit::ACOUSTIC: return "acoustic";
     case Limit::VISCOUS: return "viscous";
     case Limit::DENSITY: return "density";
+    case Limit::RELATIVE: return "relative";
+    case Limit::WETTED: return "wetted";
+    case Limit::CLOTH: return "cloth";
     case Limit::CEILING: return "max";
     case Limit::FLOOR: return "min";
     case Limit::GROWTH: return "growth";
+    case Limit::FLUCTUATION: return "fluctuation";
+    case Limit::OUTPUT: return "output";
   }
   return "none";
 }
@@ -40,6 +66,8 @@ struct StepCoefficients {
   double acoustic = 0.5;     // of h_s/c; symplectic stepping is stable up to 1.6
   double viscous = 0.2;      // of h_s^2/nu; stable up to 0.3 in 3-D
   double density = 0.1;      // largest relative change of density in one step
+  double relative = 0.0;     // as velocity, of the speed at which a neighbour comes near
+  double cloth = 0.0;        // way of a vertex over the shortest edge at it
 };
 
 // what one particle brings along
@@ -52,6 +80,7 @@ struct StepState {
   double nu;          // kinematic viscosity, laminar and artificial together
   double rho;
   double drho;        // d rho / dt
+  double approach = 0.0;    // largest speed at which a neighbour comes near
 };
 
 struct StepLimit {
@@ -83,8 +112,53 @@ inline StepLimit particle_limit(const StepCoefficients &lambda, const StepState 
     limit.tighten(lambda.viscous * smoothing * smoothing / s.nu, Limit::VISCOUS);
   if (lambda.density > 0.0 && s.drho != 0.0)
     limit.tighten(lambda.density * s.rho / std::fabs(s.drho), Limit::DENSITY);
+  if (lambda.relative > 0.0 && s.approach > 0.0)
+    limit.tighten(lambda.relative * s.support / s.approach, Limit::RELATIVE);
   return limit;
 }
+
+// of a vertex of a cloth, whose sound is that of the fluid that wets it
+
+inline StepLimit vertex_limit(const StepCoefficients &lambda, const StepState &s, double edge)
+{
+  StepLimit limit = particle_limit(lambda, s);
+  if (limit.by == Limit::ACOUSTIC) limit.by = Limit::WETTED;
+  if (lambda.cloth > 0.0 && s.speed_sq > 0.0)
+    limit.tighten(lambda.cloth * edge / std::sqrt(s.speed_sq), Limit::CLOTH);
+  return limit;
+}
+
+// how far densities are above the rest density, relative to it
+
+struct Compression {
+  double largest = 0.0, mean = 0.0;
+};
+
+// The step of the controller: small factors, and half a step at once for a shock, whenever the
+// largest compression passes eta times 2, 4, 8 and so on.  It starts at START h_s/c0, and below
+// LEAST h_s/c0 a shorter step compresses no less.  Water at rest, of a depth that compresses it by
+// eta at the ground, has a mean compression of eta/2.
+
+struct FluctuationControl {
+  static constexpr double PACE = 0.002, MEAN = 0.5, START = 0.25, LEAST = 0.05;
+  double eta = 0.0;           // 0: off
+  double sound_time = 0.0;    // h_s/c0
+
+  double step(double previous, const Compression &now, double largest_before) const
+  {
+    if (previous == 0.0) return START * sound_time;
+    return std::max(LEAST * sound_time, factor(now, largest_before) * previous);
+  }
+  double factor(const Compression &now, double largest_before) const
+  {
+    if (doublings(now.largest) > doublings(largest_before)) return 0.5;
+    return now.largest < eta && now.mean < MEAN * eta ? 1.0 + PACE : 1.0 - PACE;
+  }
+  double doublings(double largest) const
+  {
+    return std::floor(std::log2(std::max(1.0, largest / eta)));
+  }
+};
 
 // The step that is taken: the tightest particle's limit between floor and ceiling, growing at
 // most by `growth` over the previous step (no limit if previous is 0: the first step).
@@ -99,6 +173,35 @@ inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, 
     wanted.by = Limit::FLOOR;
   }
   return wanted;
+}
+
+/* ----------------------------------------------------------------------
+   output times: the multiples of an interval
+------------------------------------------------------------------------- */
+
+// Some roundings above n times the interval, so that a test `time >= n T` in decimals is true and
+// time over interval rounds down to n, also where the time at the end of a step is rounded.
+
+inline double output_time(double n, double interval)
+{
+  return n * interval * (1.0 + 2.0 * std::numeric_limits<double>::epsilon());
+}
+
+// The number of the last output time up to now; what is nearer than `slack` counts as reached.
+
+inline double output_times_until(double now, double interval, double slack)
+{
+  return std::floor((now + slack) / interval);
+}
+
+// The step towards something that is `remaining` away.  It arrives exactly, and the last two steps
+// are equal rather than a whole and a tiny one.
+
+inline double step_towards(double remaining, double dt)
+{
+  constexpr double ROUNDING = 1e-9;
+  if (remaining <= (1.0 + ROUNDING) * dt) return remaining;
+  return std::min(dt, 0.5 * remaining);
 }
 
 }    // namespace sphcloth

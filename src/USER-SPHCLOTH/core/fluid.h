@@ -119,6 +119,10 @@ class Fluid {
   // (2): adds force and, if wanted, d rho/dt of all active owned particles
   virtual void forces(const Particles &) = 0;
 
+  // The largest speed at which a neighbour comes near, of every active fluid particle; of the last
+  // record()
+  virtual void approach_speeds(const Particles &, double *speed) = 0;
+
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);
   virtual void virials(const Particles &, Receiver, void *context) = 0;

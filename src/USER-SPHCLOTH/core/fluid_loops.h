@@ -13,6 +13,7 @@
 #include "gradient.h"
 
 #include <array>
+#include <limits>
 
 namespace sphcloth {
 
@@ -53,6 +54,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
   void forces(const Particles &) override;
+  void approach_speeds(const Particles &p, double *speed) override { all_approaches(p, speed); }
   void virials(const Particles &, Receiver, void *context) override;
   double lattice_sum(double support, double spacing) const override;
   double bytes() const override;
@@ -117,6 +119,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void place_all(const Particles &, const std::array<double, 3> &origin,
                  const std::array<double, 3> &per_quantum);
   void record_all(const Particles &);
+  void all_approaches(const Particles &, double *speed);
   void all_density_gradients(const Particles &, double *gradient);
   template <bool DIFFUSION> void all_density_rates(const Particles &, double back, double *rate);
 
@@ -143,6 +146,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
   void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
                        Columns &, Sums<RATE, VIRIAL> &) const;
+  double approach_sq(int i, const Stretch &, Real inv_support, Columns &) const;
   Differences density_differences(const Particles &, int i, const Stretch &, const Terms &,
                                   double equal, Columns &) const;
   template <bool FROM_BOUNDARY, bool DIFFUSION>
@@ -502,6 +506,55 @@ void FluidLoops<K, P>::forces_and_rates(const Particles &p)
     case Friction::ARTIFICIAL:
       return all_forces<Friction::ARTIFICIAL, RATE, false>(p, nullptr, nullptr);
     case Friction::ANY: return all_forces<Friction::ANY, RATE, false>(p, nullptr, nullptr);
+  }
+}
+
+// Square of the largest -v_ij . r_ij / r_ij over the neighbours inside the support, 0 if all recede
+
+template <class K, class P>
+SPHCLOTH_INLINE double FluidLoops<K, P>::approach_sq(int i, const Stretch &near, Real inv_support,
+                                                     Columns &c) const
+{
+  const Site site = sites[i];
+  const Motion motion = motions[i];
+  const Coordinate far = beyond(site, inv_support);
+  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+  const Real support_sq = Real(1) / (inv_support * inv_support);
+  alignas(64) Real most[LANES] = {};
+  for (int from = 0; from < near.n; from += LANES) {
+    fill(c, near, from, far);
+#pragma omp simd
+    for (int k = 0; k < LANES; k++) {
+      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                 dz = P::difference(site.z, c.z[k], qz);
+      const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+      const Real r_sq = dx * dx + dy * dy + dz * dz;
+      const Real closing = std::min(du * dx + dv * dy + dw * dz, Real(0));
+      const Real speed_sq = closing * closing / std::max(r_sq, std::numeric_limits<Real>::min());
+      most[k] = std::max(most[k], r_sq < support_sq ? speed_sq : Real(0));
+    }
+  }
+  return *std::max_element(most, most + LANES);
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(const Particles &p, double *speed)
+{
+  Columns c;
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+      const int i = lists.at(slot);
+      if (!p.is_active(i)) continue;
+      double most = 0.0;
+      for (int other = 1; other <= model.n_types; other++) {
+        const Stretch near = lists(slot, other);
+        if (near.n == 0) continue;
+        const Real inv_support = static_cast<Real>(model.pair(t, other).kernel.inv_support);
+        most = std::max(most, approach_sq(i, near, inv_support, c));
+      }
+      speed[i] = std::sqrt(most);
+    }
   }
 }
 

@@ -8,11 +8,11 @@ namespace {
 
   constexpr int WIDE = GROUP<double>;
 
-  // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is projected
-  // in columns: x of each, y of each, and so on.  Only differences of vertices are needed, so these
-  // are taken row by row and then turned into columns, with a w in the lane that is free.  What a
-  // vertex is moved by, but for its w, is turned back into rows, whose last lane is 0: added to
-  // the rows of the vertices they leave w as it is.
+  // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is
+  // projected in columns: x of each, y of each, and so on.  Only differences of vertices are needed,
+  // so these are taken row by row and then turned into columns, with a w in the lane that is free.
+  // What a vertex is moved by, but for its w, is turned back into rows, whose last lane is 0: added
+  // to the rows of the vertices they leave w as it is.
 
   struct Column {
     alignas(64) double x[WIDE], y[WIDE], z[WIDE], w[WIDE];
@@ -70,8 +70,8 @@ namespace {
     }
   }
 
-  // A group of hinges in columns: wing a, edge 2 and wing b relative to edge 1, with the w of each,
-  // then what they are moved by
+  // A group of hinges in columns: wing a, edge 2 and wing b relative to edge 1, with the w of each;
+  // once projected, what they are moved by
 
   struct HingeGroup {
     Column a, e2, b, e1;    // of edge 1 only w is of use
@@ -148,8 +148,8 @@ namespace {
     }
   };
 
-  // A hinge is a long chain of divisions, one waiting for the other.  Reading, projecting and moving
-  // in a short loop each lets the processor begin the next hinges meanwhile.
+  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only project
+  // or only move, a processor begins with the next group before it has ended the last.
 
   SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
   {

@@ -39,8 +39,8 @@ struct Spring {
   double most = 0.0;
 };
 
-// d lambda; weight = sum_j w_j |grad_j C|^2.  A constraint that can move nothing is left alone.  The
-// division does not wait for the error: what a projection takes is the time of its longest chain.
+// d lambda; weight = sum_j w_j |grad_j C|^2.  A constraint that can move nothing is left alone.
+// The division does not wait for the error: a projection takes as long as its longest chain.
 
 SPHCLOTH_INLINE double multiplier_step(double error, double weight, double k, double a,
                                        double lambda, double most)

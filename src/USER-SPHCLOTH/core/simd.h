@@ -127,7 +127,7 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lan
 #endif
 }
 
-// A record of four doubles, whole: one load, one sum, one store.  Rows are combined where they lie, and
+// A record of four doubles, whole: one load, one sum, one store.  Rows are combined as they lie, and
 // only what a loop over lanes needs of them is turned into columns.
 
 typedef double Row __attribute__((vector_size(32), aligned(8), may_alias));

@@ -41,7 +41,7 @@ int ClothTopology::image_near(int vertex, int i) const
   int j = atom->map(ids[vertex]);
   if (j < 0) return -1;
   // the nearest of the images that are here may still be one across the box
-  j = domain->closest_image(i, j);
+  if (atom->sametag[j] >= 0) j = domain->closest_image(i, j);
   const double *a = atom->x[i], *b = atom->x[j];
   return domain->minimum_image_check(a[0] - b[0], a[1] - b[1], a[2] - b[2]) ? -1 : j;
 }

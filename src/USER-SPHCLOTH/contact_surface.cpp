@@ -40,9 +40,9 @@ ContactSurface::ContactSurface(LAMMPS *lmp, ContactMesh *mesh, Fix *contact, int
 {
 }
 
-void ContactSurface::rebuild()
+void ContactSurface::rebuild(double far)
 {
-  TriangleSet::rebuild(rules->thickness);
+  TriangleSet::rebuild(far);
 
   w.assign(halo.n_slots(), 0.0);
   w_solver = w;

@@ -94,8 +94,8 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   ContactSurface(LAMMPS *, ContactMesh *, Fix *contact, int meets, const ContactRules *,
                  ContactCounts *);
 
-  // after each list build
-  void rebuild();
+  // after each list build; whole triangles are seen as far as this
+  void rebuild(double far);
 
   // of every atom at the end of the last step
   void set_last_places(double **places) { last_places = places; }

@@ -215,9 +215,10 @@ void FixClothContact::warn_of_too_near()
 
 void FixClothContact::post_neighbor()
 {
-  for_all_surfaces([this](ContactSurface &surface) {
+  const double far = std::max(rules.thickness, walls ? walls->reach() : 0.0);
+  for_all_surfaces([this, far](ContactSurface &surface) {
     linking = &surface;
-    surface.rebuild();
+    surface.rebuild(far);
     surface.set_last_places(places);
   });
   if (walls) walls->look();

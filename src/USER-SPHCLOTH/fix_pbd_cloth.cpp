@@ -1,8 +1,7 @@
 // Position-based dynamics of cloth: (4) to (9) and lines 19 to 29 of Algorithm 1.
 //
-// Constraints are projected colour by colour.  The colours follow from the global IDs alone and
-// every rank projects each constraint that touches one of its vertices, so that the result does not
-// depend on the number of ranks; after a colour only the vertices that it moved are forwarded.
+// Constraints (cloth_constraints.h) are projected colour by colour; after a colour only the
+// vertices that it moved are forwarded to other ranks.
 
 #include "fix_pbd_cloth.h"
 
@@ -11,8 +10,6 @@
 #include "atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
-#include "core/colouring.h"
-#include "dihedral_pbd.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -46,10 +43,9 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
     iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
-    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), lent(nullptr),
-    mesh(lmp, label), halo(lmp),
-    edge_colours(0), hinge_colours(0), edge_layers(1), mean_length(0.0), holding{}, sweeps(0),
-    remembered(true), last_residual(0.0), last_energy(0.0), started(false)
+    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), lent(nullptr), mesh(lmp, label),
+    constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0), remembered(true),
+    last_residual(0.0), last_energy(0.0), started(false)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -208,8 +204,8 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
-  measure_rest();
-  colour_mesh();
+  constraints.measure_rest(groupbit, rest_x);
+  constraints.colour(iterations, solver == Solver::JACOBI);
 }
 
 void FixPBDCloth::check_overlap()
@@ -244,101 +240,8 @@ void FixPBDCloth::check_styles()
                force->bond_style ? force->bond_style : "none");
 }
 
-// null: another style's
-
-const PBDMaterial *FixPBDCloth::material_of_edge(int type) const
-{
-  const auto *bond = dynamic_cast<BondPBD *>(force->bond_match("pbd"));
-  return bond->owns(type) ? &bond->material(type) : nullptr;
-}
-
-const PBDMaterial *FixPBDCloth::material_of_hinge(int type) const
-{
-  const auto *dihedral =
-      dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
-  return dihedral && dihedral->owns(type) ? &dihedral->material(type) : nullptr;
-}
-
-// Rest lengths and rest angles from the rest positions, which each vertex carries.
-
-void FixPBDCloth::measure_rest()
-{
-  const int n = mesh.n_vertices();
-  std::vector<Vec3> mine(n, Vec3::Zero()), rest(n);
-  int missing = 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2]))
-      missing = static_cast<int>(atom->tag[i]);
-    mine[mesh.index_of(atom->tag[i])] = Vec3(rest_x[i][0], rest_x[i][1], rest_x[i][2]);
-  }
-  int any_missing = 0;
-  MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);
-  if (any_missing)
-    error->all(
-        FLERR,
-        "{}: vertex {} has no rest position, it was added after the fix: define the fix when "
-        "the cloth is complete",
-        label, any_missing);
-  MPI_Allreduce(mine.data(), rest.data(), 3 * n, MPI_DOUBLE, MPI_SUM, world);
-
-  // nearest images, for cloth that closes over a periodic boundary
-  const auto from = [&](int a, int b) {
-    Vec3 d = rest[b] - rest[a];
-    domain->minimum_image(FLERR, d.data());
-    return d;
-  };
-  mean_length = 0.0;
-  edge_rest.resize(mesh.edges.size());
-  for (std::size_t m = 0; m < mesh.edges.size(); m++) {
-    const auto &[a, b] = mesh.edges.vertices[m];
-    edge_rest[m] = from(a, b).norm();
-    mean_length += edge_rest[m] / mesh.edges.size();
-  }
-  if (mean_length == 0.0) mean_length = 1.0;    // nothing has a size: residuals are lengths
-  hinge_rest.resize(mesh.hinges.size());
-  for (std::size_t m = 0; m < mesh.hinges.size(); m++) {
-    const auto &[a, e1, e2, b] = mesh.hinges.vertices[m];
-    const double angle = hinge_angle(from(e1, a), Vec3::Zero(), from(e1, e2), from(e1, b));
-    hinge_rest[m] = std::isnan(angle) ? 0.0 : angle;
-  }
-}
-
-void FixPBDCloth::colour_mesh()
-{
-  edge_colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), edge_colours);
-  hinge_colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinge_colours);
-  edge_layers = 1;
-  for (int t = 1; t <= atom->nbondtypes; t++)
-    if (const PBDMaterial *m = material_of_edge(t))
-      edge_layers = std::max(edge_layers, m->n_springs());
-
-  crowd.assign(mesh.n_vertices(), 0);
-  count_constraints(mesh.edges, [this](int type) { return material_of_edge(type); });
-  count_constraints(mesh.hinges, [this](int type) { return material_of_hinge(type); });
-}
-
-template <std::size_t N, class MaterialOf>
-void FixPBDCloth::count_constraints(const ClothElements<N> &elements, MaterialOf material_of)
-{
-  for (std::size_t m = 0; m < elements.size(); m++)
-    if (const PBDMaterial *material = material_of(elements.type[m]))
-      for (int vertex : elements.vertices[m]) crowd[vertex] += material->n_springs();
-}
-
-// What a constraint may do of its projection in a Jacobi sweep: the same for all its vertices, so
-// that momentum is kept.
-
-double FixPBDCloth::share_of(const int *vertices, int n) const
-{
-  if (solver != Solver::JACOBI) return 1.0;
-  int most = 1;
-  for (int q = 0; q < n; q++) most = std::max(most, crowd[vertices[q]]);
-  return 1.0 / most;
-}
-
 /* ----------------------------------------------------------------------
-   this rank's constraints, after each list build
+   this rank's vertices and constraints, after each list build
 ------------------------------------------------------------------------- */
 
 void FixPBDCloth::post_neighbor()
@@ -347,17 +250,8 @@ void FixPBDCloth::post_neighbor()
   std::vector<int> owned;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) owned.push_back(i);
-  halo.reset(1 + edge_colours * edge_layers + hinge_colours, owned);
-
-  collect(distance, mesh.edges, edge_colour, edge_colours, edge_layers, edge_rest, atom->nbondtypes,
-          [this](int type) { return material_of_edge(type); });
-  collect(bending, mesh.hinges, hinge_colour, hinge_colours, 1, hinge_rest, atom->ndihedraltypes,
-          [this](int type) { return material_of_hinge(type); });
-
-  std::vector<int> vertex_of_slot(halo.n_slots());
-  for (int s = 0; s < halo.n_slots(); s++)
-    vertex_of_slot[s] = mesh.index_of(atom->tag[halo.atom_of(s)]);
-  ask_for_ghosts(vertex_of_slot);
+  halo.reset(constraints.n_channels(), owned);
+  constraints.collect(halo);
   halo.connect(this);
 
   std::vector<double> w(halo.n_slots());
@@ -377,75 +271,6 @@ void FixPBDCloth::post_neighbor()
   kick = w;
   for (int s : attached) kick[s] = 0.0;
   change.assign(solver == Solver::JACOBI ? n : 0, {});
-}
-
-// Every constraint with at least one owned vertex, once: it is taken from the view of the first
-// of its vertices that is owned here.
-
-template <std::size_t N, class MaterialOf>
-void FixPBDCloth::collect(Constraints<N> &c, const ClothElements<N> &elements,
-                          const std::vector<int> &colour, int n_colours, int layers,
-                          const std::vector<double> &rest, int n_types, MaterialOf material_of)
-{
-  struct Found {
-    int colour, element;
-    std::array<int, N> slots;
-    Spring spring;
-    double share;
-  };
-  // of a unit rest length or angle, by type
-  std::vector<std::vector<Spring>> springs(1);
-  for (int t = 1; t <= n_types; t++) {
-    const PBDMaterial *material = material_of(t);
-    springs.push_back(material ? material->springs(1.0, iterations) : std::vector<Spring>());
-  }
-  std::vector<Found> found;
-  for (int s = 0; s < halo.n_owned(); s++) {
-    const int i = halo.atom_of(s);
-    const int vertex = mesh.index_of(atom->tag[i]);
-    for (int k = elements.first[vertex]; k < elements.first[vertex + 1]; k++) {
-      const int m = elements.incident[k];
-      if (springs[elements.type[m]].empty()) continue;
-      std::array<int, N> slots;
-      int viewer = -1;
-      for (std::size_t q = 0; q < N && (viewer < 0 || viewer == s); q++) {
-        slots[q] = halo.slot_of(mesh.image_here(elements.vertices[m][q], i));
-        if (viewer < 0 && !halo.is_ghost(slots[q])) viewer = slots[q];
-      }
-      if (viewer != s) continue;
-      int layer = 0;
-      for (Spring spring : springs[elements.type[m]]) {
-        spring.rest *= rest[m];
-        found.push_back({colour[m] + n_colours * layer++, m, slots, spring,
-                         share_of(elements.vertices[m].data(), N)});
-      }
-    }
-  }
-  std::sort(found.begin(), found.end(), [](const Found &a, const Found &b) {
-    return a.colour != b.colour ? a.colour < b.colour : a.element < b.element;
-  });
-
-  c.clear(n_colours * layers, halo.n_slots());
-  auto next = found.begin();
-  for (int k = 0; k < n_colours * layers; k++) {
-    for (; next != found.end() && next->colour == k; ++next)
-      c.add(next->slots, next->spring, next->share);
-    c.close_colour();
-  }
-}
-
-void FixPBDCloth::ask_for_ghosts(const std::vector<int> &vertex_of_slot)
-{
-  for (int s = halo.n_owned(); s < halo.n_slots(); s++) {
-    const int vertex = vertex_of_slot[s];
-    halo.need(s, ALL);
-    for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++)
-      for (int layer = 0; layer < edge_layers; layer++)
-        halo.need(
-            s, channel_of_edge_colour(edge_colour[mesh.edges.incident[k]] + edge_colours * layer));
-    for (int k = mesh.hinges.first[vertex]; k < mesh.hinges.first[vertex + 1]; k++)
-      halo.need(s, channel_of_hinge_colour(hinge_colour[mesh.hinges.incident[k]]));
-  }
 }
 
 bool FixPBDCloth::has_vertex(int i) const { return atom->mask[i] & groupbit; }
@@ -567,8 +392,8 @@ void FixPBDCloth::substep(int n)
   project_all(dt);
   go();
   if (hold) {
-    add_pull_on_pins(distance);
-    add_pull_on_pins(bending);
+    add_pull_on_pins(constraints.distance);
+    add_pull_on_pins(constraints.bending);
   }
   const double inv_dt = 1.0 / dt;
   for (int s = 0; s < halo.n_owned(); s++) {
@@ -598,9 +423,9 @@ void FixPBDCloth::damp()
 {
   const double share = -std::expm1(-damping * update->dt / substeps());
   halo.forward(ALL, v.data(), false);
-  for (int c = 0; c < edge_colours; c++) {
-    sphcloth::damp(distance, c, start.data(), v.data(), share);
-    halo.forward(channel_of_edge_colour(c), v.data(), false);
+  for (int c = 0; c < constraints.edge_colours(); c++) {
+    sphcloth::damp(constraints.distance, c, start.data(), v.data(), share);
+    halo.forward(constraints.channel_of_edge_colour(c), v.data(), false);
   }
 }
 
@@ -608,8 +433,8 @@ void FixPBDCloth::project_all(double dt)
 {
   const ClothState state{start.data(), way.data(), from_start,
                          solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
-  std::fill(distance.lambda.begin(), distance.lambda.end(), 0.0);
-  std::fill(bending.lambda.begin(), bending.lambda.end(), 0.0);
+  std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
+  std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = iterations / substeps();
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
@@ -626,20 +451,20 @@ void FixPBDCloth::project_all(double dt)
 
 void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
-  for (int c = 0; c < distance.colours(); c++) {
-    project(distance, c, state);
-    halo.forward(channel_of_edge_colour(c), way.data(), false);
+  for (int c = 0; c < constraints.distance.colours(); c++) {
+    project(constraints.distance, c, state);
+    halo.forward(constraints.channel_of_edge_colour(c), way.data(), false);
   }
-  for (int c = 0; c < bending.colours(); c++) {
-    project(bending, c, state);
-    halo.forward(channel_of_hinge_colour(c), way.data(), false);
+  for (int c = 0; c < constraints.bending.colours(); c++) {
+    project(constraints.bending, c, state);
+    halo.forward(constraints.channel_of_hinge_colour(c), way.data(), false);
   }
 }
 
 void FixPBDCloth::jacobi(const ClothState &state)
 {
-  for (int c = 0; c < distance.colours(); c++) project(distance, c, state);
-  for (int c = 0; c < bending.colours(); c++) project(bending, c, state);
+  for (int c = 0; c < constraints.distance.colours(); c++) project(constraints.distance, c, state);
+  for (int c = 0; c < constraints.bending.colours(); c++) project(constraints.bending, c, state);
   for (int s = 0; s < halo.n_owned(); s++) {
     way[s].x += change[s].x;
     way[s].y += change[s].y;
@@ -800,15 +625,16 @@ void FixPBDCloth::remember()
   remembered = true;
   last_residual = residual();
   last_energy = force->mvv2e *
-      (elastic_energy(distance, p.data(), halo.n_owned()) +
-       elastic_energy(bending, p.data(), halo.n_owned()));
+      (elastic_energy(constraints.distance, p.data(), halo.n_owned()) +
+       elastic_energy(constraints.bending, p.data(), halo.n_owned()));
 }
 
 double FixPBDCloth::residual() const
 {
   const double dt = update->dt / substeps(), inv_dt_sq = 1.0 / (dt * dt);
-  return std::max(sphcloth::residual(distance, p.data(), inv_dt_sq, mean_length),
-                  sphcloth::residual(bending, p.data(), inv_dt_sq));
+  return std::max(
+      sphcloth::residual(constraints.distance, p.data(), inv_dt_sq, constraints.mean_length()),
+      sphcloth::residual(constraints.bending, p.data(), inv_dt_sq));
 }
 
 bool FixPBDCloth::converged() const
@@ -818,12 +644,6 @@ bool FixPBDCloth::converged() const
   return all < tolerance;
 }
 
-bool FixPBDCloth::has_strain(int m) const
-{
-  const PBDMaterial *material = material_of_edge(mesh.edges.type[m]);
-  return material && !material->no_rest && material->n_springs() > 0 && edge_rest[m] > 0.0;
-}
-
 // a seam, which closes to nothing, does not count
 
 double FixPBDCloth::shortest_edge(int i) const
@@ -831,7 +651,7 @@ double FixPBDCloth::shortest_edge(int i) const
   double shortest = std::numeric_limits<double>::infinity();
   const int v = mesh.index_of(atom->tag[i]);
   for (int k = mesh.edges.first[v]; k < mesh.edges.first[v + 1]; k++) {
-    const double rest = edge_rest[mesh.edges.incident[k]];
+    const double rest = rest_length(mesh.edges.incident[k]);
     if (rest > 0.0) shortest = std::min(shortest, rest);
   }
   return shortest;
@@ -850,7 +670,7 @@ double FixPBDCloth::largest_strain() const
       if (j < 0 || (is_held(i) && is_held(j))) continue;
       const Vec3 edge(atom->x[i][0] - atom->x[j][0], atom->x[i][1] - atom->x[j][1],
                       atom->x[i][2] - atom->x[j][2]);
-      strain = std::max(strain, std::fabs(edge.norm() / edge_rest[m] - 1.0));
+      strain = std::max(strain, std::fabs(edge.norm() / rest_length(m) - 1.0));
     }
   }
   return strain;
@@ -958,8 +778,8 @@ void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(
 
 double FixPBDCloth::memory_usage()
 {
-  return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax + distance.bytes() +
-      bending.bytes() +
+  return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax +
+      constraints.distance.bytes() + constraints.bending.bytes() +
       static_cast<double>(sizeof(Vertex)) *
       (p.capacity() + v.capacity() + start.capacity() + way.capacity() + change.capacity()) +
       halo.memory_usage();

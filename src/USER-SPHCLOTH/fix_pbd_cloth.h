@@ -11,6 +11,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "fix.h"
 
+#include "cloth_constraints.h"
 #include "cloth_guest.h"
 #include "cloth_topology.h"
 #include "contact_mesh.h"
@@ -25,7 +26,6 @@ FixStyle(pbd/cloth,FixPBDCloth);
 namespace LAMMPS_NS {
 
 class ArgReader;
-struct PBDMaterial;
 
 class FixPBDCloth : public Fix, public ContactMesh {
  public:
@@ -69,9 +69,9 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void invite(ClothGuest *guest) { guests.push_back(guest); }
 
   // of edge and hinge m of the topology; an edge without a length or a constraint has no strain
-  double rest_length(int m) const { return edge_rest[m]; }
-  double rest_angle(int m) const { return hinge_rest[m]; }
-  bool has_strain(int m) const;
+  double rest_length(int m) const { return constraints.rest_length(m); }
+  double rest_angle(int m) const { return constraints.rest_angle(m); }
+  bool has_strain(int m) const { return constraints.has_strain(m); }
   // rest length of the shortest edge at an owned vertex, infinite without any
   double shortest_edge(int owned_atom) const;
 
@@ -101,20 +101,9 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double **hold;    // what the cloth does to the holder of a vertex; null: not wanted
   double **lent;    // impulse that forces have given ahead of time, see lend(); null: none
   ClothTopology mesh;
+  ClothConstraints constraints;
   VertexHalo halo;
 
-  // by element of the mesh: rest length or angle, colour
-  std::vector<double> edge_rest, hinge_rest;
-  std::vector<int> edge_colour, hinge_colour;
-  int edge_colours, hinge_colours;
-  // a type may be several constraints at once; the second of an edge has a colour of its own
-  int edge_layers;
-  double mean_length;
-  std::vector<int> crowd;    // of a mesh vertex: constraints that it is in
-
-  // what this rank projects, with slots of the halo as vertices
-  sphcloth::Constraints<2> distance;
-  sphcloth::Constraints<4> bending;
   // by slot, and one idle vertex behind: places, velocities, places at the start of the (sub)step, ways
   // since then, and of one Jacobi sweep
   sphcloth::Vertices p, v, start, way, change;
@@ -136,17 +125,6 @@ class FixPBDCloth : public Fix, public ContactMesh {
   bool is_held(int atom) const;
   bool is_pinned(int atom) const;
   void check_styles();
-  const PBDMaterial *material_of_edge(int type) const;
-  const PBDMaterial *material_of_hinge(int type) const;
-  void measure_rest();
-  void colour_mesh();
-  template <std::size_t N, class MaterialOf>
-  void count_constraints(const ClothElements<N> &, MaterialOf);
-  template <std::size_t N, class MaterialOf>
-  void collect(sphcloth::Constraints<N> &, const ClothElements<N> &, const std::vector<int> &colour,
-               int n_colours, int layers, const std::vector<double> &rest, int n_types, MaterialOf);
-  double share_of(const int *vertices, int n) const;
-  void ask_for_ghosts(const std::vector<int> &);
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
   void move_pins();
   void load();
@@ -169,9 +147,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void remember();
   double largest_strain() const;
 
-  static constexpr int ALL = 0;    // halo channels: all ghosts, then one per colour
-  int channel_of_edge_colour(int c) const { return 1 + c; }
-  int channel_of_hinge_colour(int c) const { return 1 + edge_colours * edge_layers + c; }
+  static constexpr int ALL = ClothConstraints::ALL;
 };
 
 }    // namespace LAMMPS_NS

@@ -175,6 +175,14 @@ void SheetWalls::add(const ContactMesh *mesh, TriangleSet *set)
   sheets.emplace_back(lmp, set);
 }
 
+double SheetWalls::reach() const
+{
+  double longest = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (pair->is_fluid(t)) longest = std::max(longest, pair->support(t));
+  return longest + neighbor->skin;
+}
+
 double SheetWalls::support(int i) const { return pair->support(atom->type[i]); }
 
 void SheetWalls::look()

@@ -94,6 +94,7 @@ class SheetWalls : protected Pointers {
   // anew for each run, with the meshes that are there
   void init(PairSPHTait *);
   void add(const ContactMesh *, TriangleSet *);
+  double reach() const;    // as far as fluid feels a mesh until the next list build
   void look();    // after each list build
 
   // What pair_style sph/tait asks for while it evaluates, in this order: where everybody is now; by

@@ -105,6 +105,26 @@ CASE("partition of a list in place")
   check_partition([](auto... a) { return partition_plain(a...); });
 }
 
+CASE("rows to columns and back")
+{
+  double numbers[4][4], column[4][4];
+  for (auto &row : numbers)
+    for (double &number : row) number = uniform();
+  Row rows[4];
+  for (int k = 0; k < 4; k++) rows[k] = *reinterpret_cast<const Row *>(numbers[k]);
+  to_columns(rows, column[0], column[1], column[2], column[3]);
+  for (int k = 0; k < 4; k++)
+    for (int lane = 0; lane < 4; lane++) CHECK(column[lane][k] == numbers[k][lane]);
+  Row back[4];
+  to_rows(column[0], column[1], column[2], back);
+  for (int k = 0; k < 4; k++) {
+    for (int lane = 0; lane < 3; lane++) CHECK(back[k][lane] == numbers[k][lane]);
+    CHECK(back[k][3] == 0.0);
+    take_last(back[k], rows[k]);
+    for (int lane = 0; lane < 4; lane++) CHECK(back[k][lane] == numbers[k][lane]);
+  }
+}
+
 CASE("columns of records")
 {
   check_columns<double, double>();

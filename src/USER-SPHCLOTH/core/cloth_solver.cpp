@@ -8,116 +8,108 @@ namespace {
 
   constexpr int WIDE = GROUP<double>;
 
-  // one vertex of each constraint of a group
+  // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is
+  // projected in columns: x of each, y of each, and so on.  Only differences of vertices are needed,
+  // so these are taken row by row and then turned into columns, with a w in the lane that is free.
+  // What a vertex is moved by, but for its w, is turned back into rows, whose last lane is 0: added
+  // to the rows of the vertices they leave w as it is.
 
   struct Column {
     alignas(64) double x[WIDE], y[WIDE], z[WIDE], w[WIDE];
 
-    SPHCLOTH_INLINE void read(const Vertex *v, const int *slot)
-    {
-      columns(&v[0].x, slot, x, y, z, w);
-    }
-    SPHCLOTH_INLINE void write(Vertex *v, const int *slot) const
-    {
-      records(x, y, z, w, slot, &v[0].x);
-    }
-    SPHCLOTH_INLINE void move(int l, double by, double dx, double dy, double dz)
-    {
-      x[l] += by * dx;
-      y[l] += by * dy;
-      z[l] += by * dz;
-    }
+    SPHCLOTH_INLINE void put(int l, double a, double b, double c) { x[l] = a, y[l] = b, z[l] = c; }
   };
 
-  // the ways go back changed, or what they would change by is added to the change
+  struct Rows {
+    Row of[WIDE];
 
-  template <bool JACOBI>
-  SPHCLOTH_INLINE void give(const ClothState &s, const Column &before, Column &after,
-                            const int *slot)
-  {
-    if (!JACOBI) return after.write(s.way, slot);
-    Column sum;
-    sum.read(s.change, slot);
-#pragma omp simd
-    for (int l = 0; l < WIDE; l++) {
-      sum.x[l] += after.x[l] - before.x[l];
-      sum.y[l] += after.y[l] - before.y[l];
-      sum.z[l] += after.z[l] - before.z[l];
-    }
-    sum.write(s.change, slot);
-  }
+    SPHCLOTH_INLINE void to(Column &c) const { to_columns(of, c.x, c.y, c.z, c.w); }
+    SPHCLOTH_INLINE void from(const Column &c) { to_rows(c.x, c.y, c.z, of); }
+  };
 
-  template <bool START, bool JACOBI>
+  SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
+  SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
+
+  template <bool START>
   SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int colour, const ClothState &s)
   {
+    const Vertex *start = s.start, *way = s.way;
+    Vertex *moved = s.change ? s.change : s.way;
     for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
-      Column s1, s2, u1, u2;
-      s1.read(s.start, one);
-      s2.read(s.start, two);
-      u1.read(s.way, one);
-      u2.read(s.way, two);
-      const Column before1 = u1, before2 = u2;
+      Rows before, now;
+      for (int l = 0; l < WIDE; l++) {
+        const Row &way1 = row(way[one[l]]), &way2 = row(way[two[l]]);
+        before.of[l] = row(start[one[l]]) - row(start[two[l]]);
+        now.of[l] = before.of[l] + (way1 - way2);
+        take_last(now.of[l], way1 + way2);
+      }
+      Column e, d, step;
+      before.to(e);
+      now.to(d);
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double sx = s1.x[l] - s2.x[l], sy = s1.y[l] - s2.y[l], sz = s1.z[l] - s2.z[l];
-        const double dx = sx + (u1.x[l] - u2.x[l]), dy = sy + (u1.y[l] - u2.y[l]),
-                     dz = sz + (u1.z[l] - u2.z[l]);
-        const double w = u1.w[l] + u2.w[l], a = compliance[l] * s.inv_dt_sq;
-        const DistanceStep d = START
-            ? distance_step_along(dx, dy, dz, sx, sy, sz, w, rest[l], k[l], a, lambda[l], most[l])
-            : distance_step(dx, dy, dz, w, rest[l], k[l], a, lambda[l], most[l]);
-        lambda[l] += d.lambda;
-        u1.move(l, u1.w[l], d.x, d.y, d.z);
-        u2.move(l, -u2.w[l], d.x, d.y, d.z);
+        const double a = compliance[l] * s.inv_dt_sq;
+        const DistanceStep by = START
+            ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
+                                  k[l], a, lambda[l], most[l])
+            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l], most[l]);
+        lambda[l] += by.lambda;
+        step.put(l, by.x, by.y, by.z);
       }
-      give<JACOBI>(s, before1, u1, one);
-      give<JACOBI>(s, before2, u2, two);
+      Rows by;
+      by.from(step);
+      for (int l = 0; l < WIDE; l++) {
+        const double w1 = way[one[l]].w, w2 = way[two[l]].w;
+        row(moved[one[l]]) += w1 * by.of[l];
+        row(moved[two[l]]) -= w2 * by.of[l];
+      }
     }
   }
 
-  // of column p from column q
+  // A group of hinges in columns: wing a, edge 2 and wing b relative to edge 1, with the w of each;
+  // once projected, what they are moved by
 
-  struct Apart {
-    double x, y, z;
-    SPHCLOTH_INLINE Apart(const Column &p_start, const Column &p, const Column &q_start,
-                          const Column &q, int l) :
-        x((p_start.x[l] - q_start.x[l]) + (p.x[l] - q.x[l])),
-        y((p_start.y[l] - q_start.y[l]) + (p.y[l] - q.y[l])),
-        z((p_start.z[l] - q_start.z[l]) + (p.z[l] - q.z[l]))
+  struct HingeGroup {
+    Column a, e2, b, e1;    // of edge 1 only w is of use
+
+    SPHCLOTH_INLINE void read(const Constraints<4> &c, int m, const Vertex *start,
+                              const Vertex *way)
     {
+      Rows rows_a, rows_2, rows_b, rows_1;
+      for (int l = 0; l < WIDE; l++) {
+        const int edge = c.slot[1][m + l];
+        const Row &start1 = row(start[edge]), &way1 = row(way[edge]);
+        const auto relative = [&](int vertex, Row &r) {
+          r = (row(start[vertex]) - start1) + (row(way[vertex]) - way1);
+          take_last(r, row(way[vertex]));
+        };
+        relative(c.slot[0][m + l], rows_a.of[l]);
+        relative(c.slot[2][m + l], rows_2.of[l]);
+        relative(c.slot[3][m + l], rows_b.of[l]);
+        rows_1.of[l] = way1;
+      }
+      rows_a.to(a);
+      rows_2.to(e2);
+      rows_b.to(b);
+      rows_1.to(e1);
     }
-  };
 
-  template <bool JACOBI>
-  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
-  {
-    for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
-      Column start_a, start_e1, start_e2, start_b, a, e1, e2, b;
-      start_a.read(s.start, &c.slot[0][m]);
-      start_e1.read(s.start, &c.slot[1][m]);
-      start_e2.read(s.start, &c.slot[2][m]);
-      start_b.read(s.start, &c.slot[3][m]);
-      a.read(s.way, &c.slot[0][m]);
-      e1.read(s.way, &c.slot[1][m]);
-      e2.read(s.way, &c.slot[2][m]);
-      b.read(s.way, &c.slot[3][m]);
-      const Column before_a = a, before_e1 = e1, before_e2 = e2, before_b = b;
+    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq)
+    {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const Apart u(start_a, a, start_e1, e1, l), e(start_e2, e2, start_e1, e1, l),
-            v(start_b, b, start_e1, e1, l);
-        const HingeShape h = hinge_shape(u.x, u.y, u.z, e.x, e.y, e.z, v.x, v.y, v.z);
+        const HingeShape h =
+            hinge_shape(a.x[l], a.y[l], a.z[l], e2.x[l], e2.y[l], e2.z[l], b.x[l], b.y[l], b.z[l]);
         const double x2 = -(h.a2 * h.ax + h.b2 * h.bx), y2 = -(h.a2 * h.ay + h.b2 * h.by),
                      z2 = -(h.a2 * h.az + h.b2 * h.bz);
-        // by difference: the sum of the gradients is zero however short the edge is
-        const double x1 = -(h.ax + h.bx + x2), y1 = -(h.ay + h.by + y2), z1 = -(h.az + h.bz + z2);
+        const double x1 = h.ax + h.bx + x2, y1 = h.ay + h.by + y2, z1 = h.az + h.bz + z2;
         const double ga = h.ax * h.ax + h.ay * h.ay + h.az * h.az,
                      gb = h.bx * h.bx + h.by * h.by + h.bz * h.bz, g1 = x1 * x1 + y1 * y1 + z1 * z1,
                      g2 = x2 * x2 + y2 * y2 + z2 * z2;
@@ -127,17 +119,50 @@ namespace {
         const double lever = weight - LEAST_LEVER * w * steepest;
         const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
-                                            compliance[l] * s.inv_dt_sq, lambda[l], most[l]);
+                                            compliance[l] * inv_dt_sq, lambda[l], most[l]);
         lambda[l] += step;
-        a.move(l, step * a.w[l], h.ax, h.ay, h.az);
-        b.move(l, step * b.w[l], h.bx, h.by, h.bz);
-        e1.move(l, step * e1.w[l], x1, y1, z1);
-        e2.move(l, step * e2.w[l], x2, y2, z2);
+        a.put(l, step * h.ax, step * h.ay, step * h.az);
+        e2.put(l, step * x2, step * y2, step * z2);
+        b.put(l, step * h.bx, step * h.by, step * h.bz);
       }
-      give<JACOBI>(s, before_a, a, &c.slot[0][m]);
-      give<JACOBI>(s, before_e1, e1, &c.slot[1][m]);
-      give<JACOBI>(s, before_e2, e2, &c.slot[2][m]);
-      give<JACOBI>(s, before_b, b, &c.slot[3][m]);
+    }
+
+    SPHCLOTH_INLINE void move(const Constraints<4> &c, int m, const Vertex *way,
+                              Vertex *moved) const
+    {
+      Rows by_a, by_2, by_b;
+      by_a.from(a);
+      by_2.from(e2);
+      by_b.from(b);
+      for (int l = 0; l < WIDE; l++) {
+        const auto add = [&](int vertex, const Row &by) {
+          const double w_of = way[vertex].w;
+          row(moved[vertex]) += w_of * by;
+        };
+        add(c.slot[0][m + l], by_a.of[l]);
+        add(c.slot[2][m + l], by_2.of[l]);
+        add(c.slot[3][m + l], by_b.of[l]);
+        // what the others get: the sum of the gradients is zero however short the edge is
+        add(c.slot[1][m + l], -(by_a.of[l] + by_2.of[l] + by_b.of[l]));
+      }
+    }
+  };
+
+  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only project
+  // or only move, a processor begins with the next group before it has ended the last.
+
+  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
+  {
+    constexpr int BATCH = 4;
+    const Vertex *start = s.start, *way = s.way;
+    Vertex *moved = s.change ? s.change : s.way;
+    const int end = c.begin[colour + 1];
+    for (int m = c.begin[colour]; m < end; m += BATCH * WIDE) {
+      HingeGroup group[BATCH];
+      const int n = std::min(BATCH, (end - m) / WIDE);
+      for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, way);
+      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq);
+      for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, way, moved);
     }
   }
 
@@ -145,39 +170,39 @@ namespace {
 
 void project(Constraints<2> &c, int colour, const ClothState &s)
 {
-  if (s.change)
-    s.along_start ? project_distances<true, true>(c, colour, s)
-                  : project_distances<false, true>(c, colour, s);
-  else
-    s.along_start ? project_distances<true, false>(c, colour, s)
-                  : project_distances<false, false>(c, colour, s);
+  s.along_start ? project_distances<true>(c, colour, s) : project_distances<false>(c, colour, s);
 }
 
-void project(Constraints<4> &c, int colour, const ClothState &s)
-{
-  s.change ? project_hinges<true>(c, colour, s) : project_hinges<false>(c, colour, s);
-}
+void project(Constraints<4> &c, int colour, const ClothState &s) { project_hinges(c, colour, s); }
 
 SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int colour, const Vertex *p, Vertex *v,
                                 double share)
 {
   for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
     const int *one = &c.slot[0][m], *two = &c.slot[1][m];
-    Column p1, p2, v1, v2;
-    p1.read(p, one);
-    p2.read(p, two);
-    v1.read(v, one);
-    v2.read(v, two);
+    Rows apart, faster;
+    for (int l = 0; l < WIDE; l++) {
+      const Row &p1 = row(p[one[l]]), &p2 = row(p[two[l]]);
+      apart.of[l] = p1 - p2;
+      take_last(apart.of[l], p1 + p2);
+      faster.of[l] = row(v[one[l]]) - row(v[two[l]]);
+    }
+    Column d, u, step;
+    apart.to(d);
+    faster.to(u);
 #pragma omp simd
     for (int l = 0; l < WIDE; l++) {
-      const DistanceStep d =
-          damping_step(p1.x[l] - p2.x[l], p1.y[l] - p2.y[l], p1.z[l] - p2.z[l], v1.x[l] - v2.x[l],
-                       v1.y[l] - v2.y[l], v1.z[l] - v2.z[l], p1.w[l] + p2.w[l], share);
-      v1.move(l, p1.w[l], d.x, d.y, d.z);
-      v2.move(l, -p2.w[l], d.x, d.y, d.z);
+      const DistanceStep by =
+          damping_step(d.x[l], d.y[l], d.z[l], u.x[l], u.y[l], u.z[l], d.w[l], share);
+      step.put(l, by.x, by.y, by.z);
     }
-    v1.write(v, one);
-    v2.write(v, two);
+    Rows by;
+    by.from(step);
+    for (int l = 0; l < WIDE; l++) {
+      const double w1 = p[one[l]].w, w2 = p[two[l]].w;
+      row(v[one[l]]) += w1 * by.of[l];
+      row(v[two[l]]) -= w2 * by.of[l];
+    }
   }
 }
 

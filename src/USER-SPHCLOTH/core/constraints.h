@@ -40,14 +40,15 @@ struct Spring {
 };
 
 // d lambda; weight = sum_j w_j |grad_j C|^2.  A constraint that can move nothing is left alone.
+// The division does not wait for the error: a projection takes as long as its longest chain.
 
 SPHCLOTH_INLINE double multiplier_step(double error, double weight, double k, double a,
                                        double lambda, double most)
 {
   const double denominator = weight + a;
   const double share = denominator > 0.0 ? k : 0.0;
-  const double step = -share * (error + a * lambda) / (denominator > 0.0 ? denominator : 1.0);
-  return std::min(step, most - lambda);
+  const double by = -share / (denominator > 0.0 ? denominator : 1.0);
+  return std::min(by * (error + a * lambda), most - lambda);
 }
 
 // (4): dp_1 = w_1 d, dp_2 = -w_2 d.  Coincident ends have no direction: they are left alone until
@@ -65,8 +66,9 @@ SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, doub
 {
   const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
   const bool apart = length > 0.0;
+  const double per_length = 1.0 / (apart ? length : 1.0);
   const double step = multiplier_step(length - rest, w, apart ? k : 0.0, a, lambda, most);
-  const double along = step / (apart ? length : 1.0);
+  const double along = step * per_length;
   return {along * dx, along * dy, along * dz, step};
 }
 
@@ -93,11 +95,12 @@ SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz
   const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
   const double before = std::sqrt(sx * sx + sy * sy + sz * sz);
   const bool apart = length > 0.0;
-  const double cosine = (dx * sx + dy * sy + dz * sz) / (apart ? length : 1.0);
+  const double per_length = 1.0 / (apart ? length : 1.0);
+  const double cosine = (dx * sx + dy * sy + dz * sz) * per_length;
   const double error = length - rest;
-  const double pull = (std::fabs(error) + w * std::fabs(lambda)) / (apart ? length : 1.0);
+  const double pull = (std::fabs(error) + w * std::fabs(lambda)) * per_length;
   const bool present = start_is_void(cosine, before, pull);
-  const double inv = 1.0 / (present ? (apart ? length : 1.0) : before);
+  const double inv = present ? per_length : 1.0 / (before > 0.0 ? before : 1.0);
   const double nx = inv * (present ? dx : sx), ny = inv * (present ? dy : sy),
                nz = inv * (present ? dz : sz);
   const double slope = present ? 1.0 : inv * cosine;
@@ -112,9 +115,8 @@ SPHCLOTH_INLINE double arc_tangent(double y, double x)
 {
   const double ax = std::fabs(x), ay = std::fabs(y);
   const double low = std::min(ax, ay), high = std::max(ax, ay);
-  const double t = low / (high > 0.0 ? high : 1.0);
-  const bool steep = t > 0.41421356237309503;    // tan(pi/8)
-  const double s = (steep ? t - 1.0 : t) / (steep ? t + 1.0 : 1.0);
+  const bool steep = low > 0.41421356237309503 * high;    // tan(pi/8)
+  const double s = (steep ? low - high : low) / (steep ? low + high : (high > 0.0 ? high : 1.0));
   const double z = s * s;
   const double p = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z -
                      7.500855792314704667340e1) *
@@ -169,7 +171,7 @@ SPHCLOTH_INLINE HingeShape hinge_shape(double ux, double uy, double uz, double e
   h.valid = valid ? 1.0 : 0.0;
   const double length = std::sqrt(valid ? length_sq : 1.0);
   const double cx = nay * nbz - naz * nby, cy = naz * nbx - nax * nbz, cz = nax * nby - nay * nbx;
-  h.angle = arc_tangent((cx * ex + cy * ey + cz * ez) / length, nax * nbx + nay * nby + naz * nbz);
+  h.angle = arc_tangent(cx * ex + cy * ey + cz * ez, length * (nax * nbx + nay * nby + naz * nbz));
   const double ga = -length / (valid ? na_sq : 1.0), gb = -length / (valid ? nb_sq : 1.0);
   h.ax = ga * nax, h.ay = ga * nay, h.az = ga * naz;
   h.bx = gb * nbx, h.by = gb * nby, h.bz = gb * nbz;

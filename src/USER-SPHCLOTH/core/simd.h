@@ -127,40 +127,67 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lan
 #endif
 }
 
-// The way back, of doubles: records of index[k] for k up to GROUP, one after the other, so that of
-// several with one index the last one stays.
+// A record of four doubles, whole: one load, one sum, one store.  Rows are combined as they lie, and
+// only what a loop over lanes needs of them is turned into columns.
 
-SPHCLOTH_INLINE void records(const double *x, const double *y, const double *z, const double *w,
-                             const int *index, double *records)
+typedef double Row __attribute__((vector_size(32), aligned(8), may_alias));
+
+// columns of four rows
+
+SPHCLOTH_INLINE void to_columns(const Row *rows, double *x, double *y, double *z, double *w)
 {
-  const auto record = [&](int k) { return records + 4 * static_cast<std::ptrdiff_t>(index[k]); };
 #ifdef SPHCLOTH_X86_TARGETS
-  typedef double Group __attribute__((vector_size(32), aligned(8), may_alias));
-  const auto get = [](Group &g, const double *column) {
-    g = *reinterpret_cast<const Group *>(column);
-  };
-  Group cx, cy, cz, cw;
+  const auto put = [](double *column, const Row &r) { *reinterpret_cast<Row *>(column) = r; };
+  const Row xy02 = __builtin_shufflevector(rows[0], rows[2], 0, 1, 4, 5);
+  const Row xy13 = __builtin_shufflevector(rows[1], rows[3], 0, 1, 4, 5);
+  const Row zw02 = __builtin_shufflevector(rows[0], rows[2], 2, 3, 6, 7);
+  const Row zw13 = __builtin_shufflevector(rows[1], rows[3], 2, 3, 6, 7);
+  put(x, __builtin_shufflevector(xy02, xy13, 0, 4, 2, 6));
+  put(y, __builtin_shufflevector(xy02, xy13, 1, 5, 3, 7));
+  put(z, __builtin_shufflevector(zw02, zw13, 0, 4, 2, 6));
+  put(w, __builtin_shufflevector(zw02, zw13, 1, 5, 3, 7));
+#else
+  for (int k = 0; k < 4; k++) {
+    x[k] = rows[k][0];
+    y[k] = rows[k][1];
+    z[k] = rows[k][2];
+    w[k] = rows[k][3];
+  }
+#endif
+}
+
+// The way back, with 0 in the last lane
+
+SPHCLOTH_INLINE void to_rows(const double *x, const double *y, const double *z, Row *rows)
+{
+#ifdef SPHCLOTH_X86_TARGETS
+  const auto get = [](Row &r, const double *column) { r = *reinterpret_cast<const Row *>(column); };
+  Row cx, cy, cz;
   get(cx, x);
   get(cy, y);
   get(cz, z);
-  get(cw, w);
-  const Group xy02 = __builtin_shufflevector(cx, cy, 0, 4, 2, 6);
-  const Group xy13 = __builtin_shufflevector(cx, cy, 1, 5, 3, 7);
-  const Group zw02 = __builtin_shufflevector(cz, cw, 0, 4, 2, 6);
-  const Group zw13 = __builtin_shufflevector(cz, cw, 1, 5, 3, 7);
-  const auto put = [&](int k, const Group &g) { *reinterpret_cast<Group *>(record(k)) = g; };
-  put(0, __builtin_shufflevector(xy02, zw02, 0, 1, 4, 5));
-  put(1, __builtin_shufflevector(xy13, zw13, 0, 1, 4, 5));
-  put(2, __builtin_shufflevector(xy02, zw02, 2, 3, 6, 7));
-  put(3, __builtin_shufflevector(xy13, zw13, 2, 3, 6, 7));
+  const Row none{};
+  const Row xy02 = __builtin_shufflevector(cx, cy, 0, 4, 2, 6);
+  const Row xy13 = __builtin_shufflevector(cx, cy, 1, 5, 3, 7);
+  const Row zw02 = __builtin_shufflevector(cz, none, 0, 4, 2, 6);
+  const Row zw13 = __builtin_shufflevector(cz, none, 1, 5, 3, 7);
+  rows[0] = __builtin_shufflevector(xy02, zw02, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(xy13, zw13, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(xy02, zw02, 2, 3, 6, 7);
+  rows[3] = __builtin_shufflevector(xy13, zw13, 2, 3, 6, 7);
 #else
-  for (int k = 0; k < GROUP<double>; k++) {
-    double *r = record(k);
-    r[0] = x[k];
-    r[1] = y[k];
-    r[2] = z[k];
-    r[3] = w[k];
-  }
+  for (int k = 0; k < 4; k++) rows[k] = Row{x[k], y[k], z[k], 0.0};
+#endif
+}
+
+// the first three lanes of one row, the last lane of another
+
+SPHCLOTH_INLINE void take_last(Row &row, const Row &last)
+{
+#ifdef SPHCLOTH_X86_TARGETS
+  row = __builtin_shufflevector(row, last, 0, 1, 2, 7);
+#else
+  row[3] = last[3];
 #endif
 }
 

@@ -40,12 +40,14 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
+    state(nullptr),
+    rates(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
     limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
   restart_global = 1;
+  restart_peratom = 1;
   create_attribute = 1;
   scalar_flag = vector_flag = 1;
   size_vector = 5 + N_LIMITS - 1 + N_OF_PARTICLES + 2;
@@ -63,6 +65,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
 
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
 }
 
@@ -112,7 +115,9 @@ void FixSPHIntegrate::read_options(ArgReader &args)
 FixSPHIntegrate::~FixSPHIntegrate()
 {
   atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
   memory->destroy(state);
+  memory->destroy(rates);
 }
 
 int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_RUN; }
@@ -130,12 +135,8 @@ void FixSPHIntegrate::init()
   const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
-  if (interval > 0.0 && scheme == SteppingScheme::CONSTANT)
-    error->all(FLERR,
-               "{}: output {} would shorten steps that are constant: use the scheme global, or a "
-               "timestep that divides {}",
-               label, interval, interval);
-  pair->set_active(state, ACTIVE);
+  check_scheme();
+  pair->set_active(state, ACTIVE, rates != nullptr);
   if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
   control.sound_time = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
@@ -159,9 +160,32 @@ void FixSPHIntegrate::init()
         label, group->names[igroup], any_wrong);
 }
 
+void FixSPHIntegrate::check_scheme()
+{
+  if (interval > 0.0 && scheme == SteppingScheme::CONSTANT)
+    error->all(FLERR,
+               "{}: output {} would shorten steps that are constant: use the scheme global, or a "
+               "timestep that divides {}",
+               label, interval, interval);
+  if (scheme != SteppingScheme::INDIVIDUAL) return;
+  if (pair->integrates_density())
+    error->all(FLERR,
+               "{}: run_style sph/adaptive individual interpolates densities, which 'density "
+               "continuity' integrates: use 'density summation', or another scheme",
+               label);
+  want_rates();
+}
+
+void FixSPHIntegrate::want_rates()
+{
+  if (rates) return;
+  memory->create(rates, atom->nmax, N_RATES, "sph/integrate:rates");
+  std::fill_n(rates[0], N_RATES * atom->nmax, 0.0);
+}
+
 void FixSPHIntegrate::setup(int)
 {
-  if (scheme == SteppingScheme::GLOBAL) choose_step();
+  if (scheme != SteppingScheme::CONSTANT) choose_step();
 }
 
 /* ----------------------------------------------------------------------
@@ -170,9 +194,18 @@ void FixSPHIntegrate::setup(int)
 
 void FixSPHIntegrate::initial_integrate(int)
 {
+  pair->advance(update->dt);
+  if (scheme == SteppingScheme::INDIVIDUAL) {
+    move_individually();
+    select_active();
+  } else
+    move_all();
+}
+
+void FixSPHIntegrate::move_all()
+{
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
-  pair->advance(dt);
   bool all_active = true;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -191,6 +224,42 @@ void FixSPHIntegrate::initial_integrate(int)
   pair->set_active(all_active ? nullptr : state, ACTIVE);
 }
 
+// From the last update, a time T ago, to now: v = v_last + T a, x = x_last + T v.  What is added to v
+// and x in one step follows, so that others may move a particle in between.
+
+void FixSPHIntegrate::move_individually()
+{
+  const double dt = update->dt, before = physical_time(update) - dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double elapsed = before - state[i][LAST_UPDATE];
+    double *x = atom->x[i], *v = atom->v[i];
+    for (int d = 0; d < 3; d++) {
+      const double accel = rates[i][ACCEL + d];
+      v[d] += dt * accel;
+      x[d] += dt * (v[d] + elapsed * accel);
+    }
+  }
+}
+
+// (15): those whose own step, in whole steps of now, divides the number of the step.  The density of the
+// others is interpolated, line 12.
+
+void FixSPHIntegrate::select_active()
+{
+  const double dt = update->dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const bool active = update->ntimestep % whole_steps(state[i][OWN_STEP], dt) == 0;
+    state[i][ACTIVE] = active;
+    if (active)
+      updates++;
+    else
+      atom->rho[i] += dt * rates[i][DENSITY];
+  }
+  pair->set_active(state, ACTIVE, true);
+}
+
 void FixSPHIntegrate::end_of_step()
 {
   if (!run_style_drives) finish_step();
@@ -201,7 +270,7 @@ void FixSPHIntegrate::finish_step()
   previous = uncut > 0.0 ? uncut : update->dt;
   largest_before = compression.largest;
   steps_limited[static_cast<int>(limited_by)]++;
-  if (scheme == SteppingScheme::GLOBAL) choose_step();
+  if (scheme != SteppingScheme::CONSTANT) choose_step();
 }
 
 /* ----------------------------------------------------------------------
@@ -247,11 +316,16 @@ StepLimit FixSPHIntegrate::tightest_particle()
   particles_limited.fill(0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    StepState particle = particle_state(i);
-    if (approach) particle.approach = approach[i];
-    const StepLimit own = particle_limit(lambda, particle);
-    state[i][OWN_STEP] = std::min(own.dt, ceiling);
-    state[i][LAST_UPDATE] = now;
+    StepLimit own{state[i][OWN_STEP],
+                  rates ? static_cast<Limit>(static_cast<int>(rates[i][BY])) : Limit::NONE};
+    if (state[i][ACTIVE] != 0.0 || !rates) {
+      StepState particle = particle_state(i);
+      if (approach) particle.approach = approach[i];
+      own = particle_limit(lambda, particle);
+      state[i][OWN_STEP] = std::min(own.dt, ceiling);
+      state[i][LAST_UPDATE] = now;
+      if (rates) hold(i, own);
+    }
     count(own);
     tightest.tighten(own.dt, own.by);
   }
@@ -264,6 +338,16 @@ StepLimit FixSPHIntegrate::tightest_particle()
       tightest.tighten(own.dt, own.by);
     }
   return tightest;
+}
+
+// what goes on until the next update
+
+void FixSPHIntegrate::hold(int i, const StepLimit &own)
+{
+  const double to_accel = force->ftm2v / atom_mass(atom, i);
+  for (int d = 0; d < 3; d++) rates[i][ACCEL + d] = to_accel * atom->f[i][d];
+  rates[i][DENSITY] = atom->drho[i];
+  rates[i][BY] = static_cast<double>(own.by);
 }
 
 void FixSPHIntegrate::count(const StepLimit &own)
@@ -290,10 +374,10 @@ StepState FixSPHIntegrate::particle_state(int i) const
   speed_and_force(i, s);
   s.rho = atom->rho[i];
   s.nu = pair->viscosity(atom->type[i]);
-  // a particle in free flight carries no sound and compresses nothing
-  if (pair->pressure_term()[i] == 0.0) return s;
-  s.sound = pair->equation_of_state(atom->type[i]).sound_speed(s.rho);
-  s.drho = atom->drho[i];
+  // a particle in free flight carries no sound and compresses nothing, but its density is interpolated
+  const bool flies = pair->pressure_term()[i] == 0.0;
+  if (!flies) s.sound = pair->equation_of_state(atom->type[i]).sound_speed(s.rho);
+  if (!flies || rates) s.drho = atom->drho[i];
   return s;
 }
 
@@ -386,7 +470,7 @@ void FixSPHIntegrate::announce_thermo()
 
 void FixSPHIntegrate::post_run()
 {
-  if (comm->me || scheme != SteppingScheme::GLOBAL) return;
+  if (comm->me || scheme == SteppingScheme::CONSTANT) return;
   std::string line;
   for (int k = 1; k < N_LIMITS; k++)
     if (steps_limited[k] > 0.0)
@@ -500,31 +584,61 @@ void FixSPHIntegrate::restart(char *buf)
 void FixSPHIntegrate::grow_arrays(int nmax)
 {
   memory->grow(state, nmax, N_COLUMNS, "sph/integrate:state");
+  if (rates) memory->grow(rates, nmax, N_RATES, "sph/integrate:rates");
   array_atom = state;
-  if (pair) pair->set_active(state, ACTIVE);
+  if (pair) pair->set_active(state, ACTIVE, rates != nullptr);
 }
 
 void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
   std::copy(state[i], state[i] + N_COLUMNS, state[j]);
+  if (rates) std::copy(rates[i], rates[i] + N_RATES, rates[j]);
 }
 
 void FixSPHIntegrate::set_arrays(int i)
 {
   state[i][OWN_STEP] = state[i][LAST_UPDATE] = 0.0;
   state[i][ACTIVE] = 1.0;
+  if (rates) std::fill(rates[i], rates[i] + N_RATES, 0.0);
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
-  std::copy(state[i], state[i] + N_COLUMNS, buf);
-  return N_COLUMNS;
+  double *end = std::copy(state[i], state[i] + N_COLUMNS, buf);
+  if (rates) end = std::copy(rates[i], rates[i] + N_RATES, end);
+  return static_cast<int>(end - buf);
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
   std::copy(buf, buf + N_COLUMNS, state[i]);
-  return N_COLUMNS;
+  if (!rates) return N_COLUMNS;
+  std::copy(buf + N_COLUMNS, buf + N_COLUMNS + N_RATES, rates[i]);
+  return N_COLUMNS + N_RATES;
 }
 
-double FixSPHIntegrate::memory_usage() { return sizeof(double) * N_COLUMNS * atom->nmax; }
+// The first value of a record is its length.  Only individual steps have more to say.
+
+int FixSPHIntegrate::pack_restart(int i, double *buf)
+{
+  buf[0] = rates ? 1 + pack_exchange(i, buf + 1) : 1;
+  return static_cast<int>(buf[0]);
+}
+
+void FixSPHIntegrate::unpack_restart(int i, int nth)
+{
+  const double *record = atom->extra[i];
+  for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
+  if (*record == 1.0) return;
+  want_rates();
+  std::copy(record + 1, record + 1 + N_COLUMNS, state[i]);
+  std::copy(record + 1 + N_COLUMNS, record + 1 + N_COLUMNS + N_RATES, rates[i]);
+}
+
+int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
+int FixSPHIntegrate::maxsize_restart() { return 1 + N_COLUMNS + N_RATES; }
+
+double FixSPHIntegrate::memory_usage()
+{
+  return static_cast<double>(sizeof(double)) * (N_COLUMNS + (rates ? N_RATES : 0)) * atom->nmax;
+}

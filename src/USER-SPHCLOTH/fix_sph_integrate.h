@@ -23,7 +23,7 @@ class ArgReader;
 class FixPBDCloth;
 class PairSPHTait;
 
-enum class SteppingScheme : int { CONSTANT, GLOBAL };
+enum class SteppingScheme : int { CONSTANT, GLOBAL, INDIVIDUAL };
 
 class FixSPHIntegrate : public Fix {
  public:
@@ -45,6 +45,10 @@ class FixSPHIntegrate : public Fix {
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
   double memory_usage() override;
 
   // the step that this particle allows, whatever the others need
@@ -71,6 +75,10 @@ class FixSPHIntegrate : public Fix {
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
 
+  // per particle with individual steps, of its last update: dv/dt, d rho/dt, its own limit
+  enum Rate { ACCEL, DENSITY = 3, BY, N_RATES };
+  double **rates;    // null otherwise
+
   double previous;      // the last step, before an output time cut it; 0 before the first
   double largest_before;    // compression when that step was chosen
   sphcloth::Compression compression;    // when the step that comes next was chosen
@@ -83,6 +91,12 @@ class FixSPHIntegrate : public Fix {
   std::array<double, sphcloth::N_OF_PARTICLES + 1> particles_limited;
 
   void read_options(ArgReader &);
+  void check_scheme();
+  void want_rates();
+  void move_all();
+  void move_individually();
+  void select_active();
+  void hold(int i, const sphcloth::StepLimit &own);
   void choose_step();
   sphcloth::StepLimit tightest_anywhere();
   sphcloth::StepLimit tightest_particle();

@@ -117,6 +117,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
+  pressures_follow = false;
   comm_forward = diffuses() ? 3 : 2;
 
   find_walls();
@@ -458,19 +459,18 @@ void PairSPHTait::pressures(const Particles &p)
   const double least = options.tension ? -std::numeric_limits<double>::max() : 0.0;
   double *term = pressure.data();
   for (int i = 0; i < p.n_owned; i++) {
-    if (!is_fluid(p.type[i]) || !p.is_active(i)) continue;
+    if (!is_fluid(p.type[i]) || !(p.is_active(i) || pressures_follow)) continue;
     const Tait &eos = equation_of_state(p.type[i]);
     const double rho = p.rho[i];
     term[i] = std::max(eos.pressure(rho), least) / (rho * rho);
+    // a density that is stretched has a gradient that is
+    for (SheetWalls *mesh : meshes) term[i] *= mesh->stretch(i);
     // neither true of what is not a number
     if (!(term[i] < std::numeric_limits<double>::max()) || !(rho > 0.0))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
   }
-  // a density that is stretched has a gradient that is
-  for (SheetWalls *mesh : meshes)
-    for_each_fluid(p, [&](int i, const Tait &) { term[i] *= mesh->stretch(i); });
 }
 
 void PairSPHTait::boundary_pressures(const Particles &p)

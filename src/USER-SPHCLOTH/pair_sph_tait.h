@@ -109,11 +109,13 @@ class PairSPHTait : public Pair {
   sphcloth::Stretch neighbours(int i, int type) { return fluid->neighbours(i, type); }
 
   // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
-  // without an array all are active.
-  void set_active(double **array, int column)
+  // without an array all are active.  Densities of the others may be interpolated by who says so, and
+  // their pressures follow.
+  void set_active(double **array, int column, bool interpolated = false)
   {
     active = array;
     active_column = column;
+    pressures_follow = interpolated;
   }
 
   // d rho/dt goes to atom->drho with the forces; to be asked for in init()
@@ -150,6 +152,7 @@ class PairSPHTait : public Pair {
   // scratch, kept from step to step
   double **active;
   int active_column;
+  bool pressures_follow;
   double elapsed;
   std::vector<double> amount, pressure;    // per atom, owned and ghost
   std::vector<double> rate;

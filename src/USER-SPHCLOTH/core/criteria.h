@@ -204,6 +204,14 @@ inline double step_towards(double remaining, double dt)
   return std::min(dt, 0.5 * remaining);
 }
 
+// (15): a particle's own step in whole steps of now, rounded down, at least one
+
+inline long long whole_steps(double own, double dt)
+{
+  constexpr double MOST = 1e15, ROUNDING = 1e-12;
+  return static_cast<long long>(std::clamp((1.0 + ROUNDING) * own / dt, 1.0, MOST));
+}
+
 }    // namespace sphcloth
 
 #endif

@@ -18,7 +18,8 @@ class ClothGuest {
                           double dt) = 0;
   virtual void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v,
                              double dt) = 0;
-  virtual void project(sphcloth::Vertex *way) = 0;    // since that start, of owned vertices: changes it
+  virtual void
+  project(sphcloth::Vertex *way) = 0;    // since that start, of owned vertices: changes it
   virtual void end_substep(sphcloth::Vertex *v, double dt) = 0;    // changes velocities
   virtual void end_step() = 0;
 

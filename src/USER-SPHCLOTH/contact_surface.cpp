@@ -596,8 +596,8 @@ bool ContactSurface::give_room(Touch &touched, const Vec3 &p, int t) const
   if (distance == 0.0 || distance >= rules->thickness) return false;
   touched.weight = weight;
   touched.normal = gap / distance;
-  touched.depth = std::max(
-      touched.depth, std::min(rules->thickness - distance, RECOVERY * rules->thickness));
+  touched.depth =
+      std::max(touched.depth, std::min(rules->thickness - distance, RECOVERY * rules->thickness));
   return true;
 }
 

@@ -35,8 +35,7 @@ static constexpr int MOST_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false),
-    vertex_bits(0)
+    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false), vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;

@@ -40,8 +40,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr),
-    rates(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
+    state(nullptr), rates(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
     limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;

@@ -69,8 +69,8 @@ void ObstacleGuest::project(Vertex *way)
       int triangle = -1;
       for (int k = m.first; k < m.last; k++) {
         const Touch touched =
-            touch({m.start, from + vector_of(vertex)}, surface->triangle_until(near[k], elapsed / step_dt),
-                  rules->thickness, 0.0);
+            touch({m.start, from + vector_of(vertex)},
+                  surface->triangle_until(near[k], elapsed / step_dt), rules->thickness, 0.0);
         if (!touched.hit || !surface->is_deeper(touched, near[k], deepest, triangle)) continue;
         deepest = touched;
         triangle = near[k];

@@ -30,9 +30,9 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), sheets(nullptr), is_evaluated(false),
-    measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
-    elapsed(0.0), stage(Stage::DENSITY)
+    Pair(lmp), materials(lmp), sheets(nullptr), is_evaluated(false), measure_volume(false),
+    extrapolate(false), any_fluid(true), active(nullptr), active_column(0), elapsed(0.0),
+    stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;

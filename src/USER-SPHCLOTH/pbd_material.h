@@ -51,7 +51,8 @@ struct PBDMaterial {    // plain, for the restart file
   std::vector<sphcloth::Spring> springs(double rest, int n) const
   {
     constexpr double PULLS_AND_PUSHES = std::numeric_limits<double>::infinity(), PULLS = 0.0;
-    constexpr double SOFTEST = 1e200;    // does nothing, and is still finite over a time step squared
+    constexpr double SOFTEST =
+        1e200;    // does nothing, and is still finite over a time step squared
     std::vector<sphcloth::Spring> all;
     if (no_rest) rest = 0.0;
     const auto add = [&](double share, double most) {

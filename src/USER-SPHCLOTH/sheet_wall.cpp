@@ -63,9 +63,8 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
       nearest = std::min(nearest, distance);
       near.push_back({t, distance});
     });
-    std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
-      return a.distance < b.distance;
-    });
+    std::sort(near.begin(), near.end(),
+              [](const Candidate &a, const Candidate &b) { return a.distance < b.distance; });
     if (near.empty() || near[0].distance > own + skin) continue;
     const std::size_t first = candidates.size();
     for (const Candidate &c : near)
@@ -156,10 +155,11 @@ void SheetWalls::init(PairSPHTait *fluid)
 {
   pair = fluid;
   if (!pair)
-    error->all(FLERR,
-               "{}: 'wall' fills the kernel of fluid, and there is none: use 'pair_style sph/tait', "
-               "or 'wall no'",
-               label);
+    error->all(
+        FLERR,
+        "{}: 'wall' fills the kernel of fluid, and there is none: use 'pair_style sph/tait', "
+        "or 'wall no'",
+        label);
   table = pair->wall_table();
   sheets.clear();
 }

@@ -22,10 +22,10 @@ class PairSPHTait;
 
 struct Foot {
   int particle = 0, sheet = 0;
-  std::array<int, 3> vertices{};              // slots
-  Eigen::Vector3d weight, normal;             // barycentric; from the mesh to the particle
+  std::array<int, 3> vertices{};    // slots
+  Eigen::Vector3d weight, normal;    // barycentric; from the mesh to the particle
   double distance = 0.0;
-  double share = 1.0;                         // of what a plane would be
+  double share = 1.0;    // of what a plane would be
   sphcloth::WallTable::Value value{0.0, 0.0};
 };
 

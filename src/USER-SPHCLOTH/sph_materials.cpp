@@ -68,10 +68,11 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
   if (count) return;
   if (of_type)
     error->all(FLERR, "{}: a role belongs to one type: give the same type twice (I = J)", COEFF);
-  error->all(FLERR,
-             "{}: pair {} {} has no role: start with 'fluid', 'boundary' or 'none' for I = J, and give "
-             "I < J for two types",
-             COEFF, arg[0], arg[1]);
+  error->all(
+      FLERR,
+      "{}: pair {} {} has no role: start with 'fluid', 'boundary' or 'none' for I = J, and give "
+      "I < J for two types",
+      COEFF, arg[0], arg[1]);
 }
 
 SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &own) const

@@ -31,7 +31,8 @@ constexpr double FREE = std::numeric_limits<double>::infinity();
 
 template <std::size_t N> struct Alone {
   Constraints<N> c;
-  std::array<Vertex, N + 1> p, start, way, change;    // p: after the sweeps, from there the next ones go on
+  std::array<Vertex, N + 1> p, start, way,
+      change;    // p: after the sweeps, from there the next ones go on
   bool along_start = false;
 
   Alone(const std::array<Vec3, N> &x, const std::array<double, N> &w, const Spring &spring)
@@ -50,7 +51,8 @@ template <std::size_t N> struct Alone {
   {
     for (std::size_t q = 0; q < N; q++)
       way[q] = {p[q].x - start[q].x, p[q].y - start[q].y, p[q].z - start[q].z, p[q].w};
-    for (int k = 0; k < n; k++) project(c, 0, {start.data(), way.data(), along_start, nullptr, 1.0});
+    for (int k = 0; k < n; k++)
+      project(c, 0, {start.data(), way.data(), along_start, nullptr, 1.0});
     for (std::size_t q = 0; q < N; q++)
       p[q] = {start[q].x + way[q].x, start[q].y + way[q].y, start[q].z + way[q].z, p[q].w};
   }

@@ -112,3 +112,12 @@ CASE("the step: ceiling at rest, growth, floor")
   CHECK(bounded_step(small, 0.002, 2.0, 1e-5, 0.01).by == Limit::FLOOR);
   CHECK(bounded_step(small, 0.002, 2.0, 0.0, 0.01).dt == 1e-6);
 }
+
+CASE("(15): whole steps, rounded down, at least one")
+{
+  CHECK(whole_steps(0.01, 0.003) == 3);
+  CHECK(whole_steps(0.3, 0.1) == 3);    // 0.3/0.1 is below
+  CHECK(whole_steps(0.001, 0.003) == 1);
+  CHECK(whole_steps(0.0, 0.003) == 1);
+  CHECK(whole_steps(1e300, 1e-300) > 1000000);
+}

@@ -67,7 +67,9 @@ def covered(distance, support):
     """Share of a Wendland C2 kernel in space that lies behind a plane, by quadrature."""
 
     def ring(r):
-        return 21 / (2 * np.pi) * (1 - r) ** 4 * (1 + 4 * r) * 2 * np.pi * r * (r - distance / support)
+        return (
+            21 / (2 * np.pi) * (1 - r) ** 4 * (1 + 4 * r) * 2 * np.pi * r * (r - distance / support)
+        )
 
     return quad(ring, distance / support, 1)[0]
 
@@ -115,15 +117,16 @@ def test_forces_are_the_gradient_of_the_energy(spacing):
 
 @pytest.mark.parametrize("moves", ["fluid", "cloth"])
 def test_an_integrated_density_follows_the_way(moves):
-    """One particle without pressure and a mesh approach: the density rises by what the wall adds."""
-    change = {}
+    """A particle without pressure and a mesh approach: the density rises by what is covered."""
+    change, speed = {}, -2 if moves == "fluid" else 2
     for density in ("summation", "continuity"):
         lmp = mesh(density=density, pin="")
         one = "group rest subtract fluid one\ndelete_atoms group rest compress no\n"
         lmp.commands_string(
-            "group one id 1\n" + one
+            "group one id 1\n"
+            + one
             + "pair_coeff 1 1 fluid 1000.0 c0 1e-3\nset group one x 0.03 y 0.04 z 0.12\n"
-            + f"velocity all set 0 0 0\nvelocity {moves} set 0 0 {-2 if moves == 'fluid' else 2} units box\n"
+            + f"velocity all set 0 0 0\nvelocity {moves} set 0 0 {speed} units box\n"
             + "run 0"
         )
         before = fluid(lmp, "rho")[0]
@@ -220,7 +223,9 @@ def test_restart_continues_bit_for_bit(drop):
     body = WALL_DROP.replace("read_data drop.data", "read_restart half.bin")
     after = body[: body.index("bond_style")] + body[body.index("neigh_modify") :]
     styles = "bond_style pbd\nbond_coeff 1 1.0\nangle_style zero\nangle_coeff *\n"
-    styles += "dihedral_style pbd\ndihedral_coeff 1 0.1\nneighbor 0.03 bin\ncomm_modify cutoff 0.3\n"
+    styles += (
+        "dihedral_style pbd\ndihedral_coeff 1 0.1\nneighbor 0.03 bin\ncomm_modify cutoff 0.3\n"
+    )
     after = after.replace("neigh_modify", styles + "neigh_modify", 1)
     run(write(drop, after + END, "in.again"), dump="again.txt", steps=50)
     whole, again = (last_frame(drop / f"{name}.txt") for name in ("whole", "again"))

@@ -43,10 +43,7 @@ fix step fluid sph/integrate constant
 SHEET = "create_cloth 3 1.0 center 0.25 0.25 0 size 0.5 0.5 spacing 0.05 group cloth pin rim pins"
 FILL = {"above": "create_atoms 1 region above", "below": "create_atoms 2 region below"}
 # by contact alone
-PARTED = (
-    "fix sheet cloth pbd/cloth pin pins\n"
-    "fix contact fluid cloth/contact 0.005 {sides}\n"
-)
+PARTED = "fix sheet cloth pbd/cloth pin pins\nfix contact fluid cloth/contact 0.005 {sides}\n"
 
 
 def pools(fill, sides, commands="run 0"):

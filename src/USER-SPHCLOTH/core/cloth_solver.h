@@ -81,7 +81,7 @@ template <std::size_t N> class Constraints {
 
 struct ClothState {
   const Vertex *start = nullptr;    // places
-  Vertex *way = nullptr;            // since then, moved (Gauss-Seidel); the inverse masses are these
+  Vertex *way = nullptr;    // since then, moved (Gauss-Seidel); the inverse masses are these
   bool along_start = false;    // project edges along the directions that they had at the start
   Vertex *change = nullptr;    // Jacobi: add up here what the ways would change by, or null
   double inv_dt_sq = 0.0;

@@ -166,7 +166,7 @@ void FixSPHIntegrate::check_scheme()
                "{}: output {} would shorten steps that are constant: use the scheme global, or a "
                "timestep that divides {}",
                label, interval, interval);
-  if (scheme != SteppingScheme::INDIVIDUAL) return;
+  if (scheme != SteppingScheme::INDIVIDUAL) return forget_rates();
   if (pair->integrates_density())
     error->all(FLERR,
                "{}: run_style sph/adaptive individual interpolates densities, which 'density "
@@ -180,6 +180,15 @@ void FixSPHIntegrate::want_rates()
   if (rates) return;
   memory->create(rates, atom->nmax, N_RATES, "sph/integrate:rates");
   std::fill_n(rates[0], N_RATES * atom->nmax, 0.0);
+}
+
+// of a run before, or a restart file, with individual steps
+
+void FixSPHIntegrate::forget_rates()
+{
+  if (!rates) return;
+  for (int i = 0; i < atom->nlocal; i++) state[i][ACTIVE] = 1.0;
+  memory->destroy(rates);
 }
 
 void FixSPHIntegrate::setup(int)
@@ -635,7 +644,7 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
 }
 
 int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
-int FixSPHIntegrate::maxsize_restart() { return 1 + N_COLUMNS + N_RATES; }
+int FixSPHIntegrate::maxsize_restart() { return rates ? 1 + N_COLUMNS + N_RATES : 1; }
 
 double FixSPHIntegrate::memory_usage()
 {

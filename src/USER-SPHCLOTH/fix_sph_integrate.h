@@ -93,6 +93,7 @@ class FixSPHIntegrate : public Fix {
   void read_options(ArgReader &);
   void check_scheme();
   void want_rates();
+  void forget_rates();
   void move_all();
   void move_individually();
   void select_active();

@@ -141,6 +141,15 @@ def test_restart_and_split_runs_in_the_middle_of_a_hierarchy(folder):
     assert np.abs(whole - split).max() < 1e-9
 
 
+def test_a_run_with_another_scheme_behind_it_updates_all(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    lmp = instance()
+    lmp.commands_string(fall("individual") + "run 40")
+    assert lmp.extract_fix("step", 0, 1, 1) < 1
+    lmp.commands_string("run_style sph/adaptive global\nrun 5")
+    assert lmp.extract_fix("step", 0, 1, 1) == 1
+
+
 def test_with_cloth_and_contact_nothing_passes(tmp_path):
     run(write(tmp_path, MAKE_DROP, "in.make"))
     script = DROP + "run_style sph/adaptive individual\n" + END

@@ -237,7 +237,7 @@ def test_momentum_of_a_free_sheet():
     lmp.commands_string(
         FREE_SHEET.replace("pbd/cloth", "pbd/cloth solver gs")
         .replace("3 3 boundary", "3 3 none")
-        .replace("cloth/contact 0.03", "cloth/contact 0.03 wall yes")
+        .replace("cloth/contact 0.03", "cloth/contact 0.03 wall yes\ncomm_modify cutoff 0.3")
     )
 
     def momentum():

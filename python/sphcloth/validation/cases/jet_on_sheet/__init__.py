@@ -43,7 +43,7 @@ PARAMETERS = (
         "contact",
         "1",
         "of water and sheet",
-        choices=("contact", "pressure", "both"),
+        choices=("contact", "wall", "pressure", "both"),
     ),
     Parameter(
         "wall", "own", "1", "pressure of the vertices", choices=("extrapolate", "mirror", "own")

@@ -12,6 +12,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
 from sphcloth.trajectory import Frame
@@ -25,6 +26,8 @@ from sphcloth.validation.lattice import cubic_density_sum
 MODES = ("wall", "both", "contact", "pressure")
 # particles over L of the coarse run of the order of convergence, in those of the case, and at least
 COARSE, COARSEST = 0.25, 20
+# rows of vertices along y: with fewer an edge would meet its own image
+LEAST_ROWS = 3
 # last share of the time over which is averaged
 LATE = 0.15
 # width of the bins in which the surface is looked for, in spacings
@@ -130,12 +133,17 @@ class Pool:
 
 def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     """Run two resolutions to rest and compare the finer one with the curve."""
-    exact = _reference(values)
-    across = [max(round(COARSE * values["across"]), COARSEST), values["across"]]
+    exact = curve_of(values)
+    if round(values["layers"] / values["mesh"]) < LEAST_ROWS:
+        raise UserError(
+            f"mesh {values['mesh']:g} with layers {values['layers']} makes fewer than {LEAST_ROWS} "
+            "rows of vertices: take layers larger"
+        )
+    across = coarse_and_fine(values)
     runs = [
         _run(values, bench, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
     ]
-    pools = [_pool(run, values, n) for run, n in zip(runs, across, strict=True)]
+    pools = [pool_of(run, values, n) for run, n in zip(runs, across, strict=True)]
     fine, pool = runs[-1], pools[-1]
     _plot(exact, pools, fine, bench.out / f"{bench.name}.png")
     order = compare.order([compare.rms(each.distances(exact)) for each in pools], across)
@@ -159,14 +167,20 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _reference(values: Mapping[str, Value]) -> HeavyLintearia:
+def coarse_and_fine(values: Mapping[str, Value]) -> list[int]:
+    """Return particles over L of the two runs."""
+    return [max(round(COARSE * values["across"]), COARSEST), values["across"]]
+
+
+def curve_of(values: Mapping[str, Value]) -> HeavyLintearia:
+    """Return the exact shape for the parameters of the case."""
     names = "L", "D", "A", "rho0", "gravity"
     return HeavyLintearia(Lintearia(*(values[name] for name in names)), values["areal"])
 
 
 def _run(values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
     """Run the script with so many particles over L."""
-    light = _reference(values).light
+    light = curve_of(values).light
     unit = math.sqrt(values["L"] / values["gravity"])
     shared = {name: values[name] for name in values if name != "settle"}
     return bench.run(
@@ -214,7 +228,7 @@ def _start(values: Mapping[str, Value], light: Lintearia, spacing: float) -> dic
     return {"slope": light.angle, "radius": radius, "level": float(level)}
 
 
-def _pool(run: Run, values: Mapping[str, Value], across: int) -> Pool:
+def pool_of(run: Run, values: Mapping[str, Value], across: int) -> Pool:
     """Average over the last frames and rows of the log."""
     spacing = values["L"] / across
     width = values["layers"] * spacing

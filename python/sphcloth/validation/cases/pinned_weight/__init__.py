@@ -19,6 +19,7 @@ from sphcloth.validation.cases.pinned_weight.reference import Load
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
 
+MODES = ("both", "contact", "wall")
 # edges over the side in the coarse run, in those of the case
 COARSE = 0.5
 # last share of the time over which is averaged; there is no drag then
@@ -31,7 +32,7 @@ PARAMETERS = (
     Parameter("rho0", 1000.0, "kg/m^3", "density of the water", 1.0, 1e5),
     Parameter("water", 0.03125, "side^3", "volume of the water", 1e-3, 0.05),
     Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
-    Parameter("mode", "both", "1", "what couples water and sheet", choices=("both", "contact")),
+    Parameter("mode", "both", "1", "what couples water and sheet", choices=MODES),
     Parameter("sound", 10.0, "sqrt(g depth)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 24, "1", "edges and particles over the side", 12, 200, quick=16),
     Parameter("thickness", 0.1, "1", "of contact over spacing", 0.01, 0.5),

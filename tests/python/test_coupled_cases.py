@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from sphcloth.errors import UserError
 from sphcloth.validation import validate
 from sphcloth.validation.cases.added_mass_piston import Swing
 from sphcloth.validation.cases.added_mass_piston.reference import Piston
 from sphcloth.validation.cases.blob_on_free_sheet import rise
 from sphcloth.validation.cases.blob_on_free_sheet.reference import Collision
 from sphcloth.validation.cases.jet_on_sheet.reference import TurnedJet
+from sphcloth.validation.cases.lintearia import modes
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum
 
 
@@ -109,3 +111,31 @@ def test_a_jet_pulls_at_the_pins(tmp_path: Path) -> None:
     result = run_case("jet-on-sheet", tmp_path, across="5", thickness="0.2", speed="1")
     assert abs(result.metrics["balance"].value) < 0.1
     assert result.metrics["passed_through"].passed
+
+
+def test_a_jet_on_a_sheet_that_is_a_wall_pulls_at_the_pins(tmp_path: Path) -> None:
+    settings = {"coupling": "wall", "gap": "0.5", "areal": "50", "length": "15"}
+    result = run_case("jet-on-sheet", tmp_path, **settings, across="5", thickness="0.2", speed="1")
+    # a sheet that heavy still swings
+    assert abs(result.metrics["balance"].value) < 0.2
+    assert result.metrics["passed_through"].passed
+
+
+def test_a_weight_on_a_sheet_that_is_a_wall_hangs_at_the_pins(tmp_path: Path) -> None:
+    settings = {"mode": "wall", "across": "12", "time": "4"}
+    result = run_case("pinned-weight", tmp_path, **settings)
+    for name in ("pins", "pins_by_atom", "crossed"):
+        assert result.metrics[name].passed, (name, result.metrics[name].value)
+
+
+def test_a_pool_on_a_sheet_stays_above_it_and_is_drawn(tmp_path: Path) -> None:
+    result = run_case("lintearia", tmp_path, settle="1", layers="3")
+    for name in ("crossed", "below", "length"):
+        assert result.metrics[name].passed, (name, result.metrics[name].value)
+    modes.main([str(tmp_path), "--out", str(tmp_path / "modes.png")])
+    assert (tmp_path / "modes.png").stat().st_size > 10_000
+
+
+def test_a_mesh_that_would_meet_its_own_image_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="mesh 4 with layers 4"):
+        run_case("lintearia", tmp_path, mesh="4")

@@ -48,7 +48,7 @@ def draw(folders: Sequence[Path], path: Path) -> None:
         error.set(xlabel="length along the sheet (m)")
     columns[0, 0].set_ylabel("z (m)")
     columns[0, 1].set_ylabel("distance from the curve (mm)")
-    FigureCanvasAgg(figure).print_figure(path, dpi=110)
+    FigureCanvasAgg(figure).print_figure(path, dpi=90, bbox_inches="tight")
 
 
 def _values(folder: Path) -> dict[str, Value]:
@@ -85,7 +85,7 @@ def _column(
         error.plot(each.arc, 1e3 * each.distances(exact), color=colour, label=label)
     for axes in (shape, error):
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="small", loc="upper center")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include "arg_reader.h"
 #include "atom.h"
 #include "atom_tools.h"
+#include "block_steps.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -40,11 +42,15 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr), rates(nullptr), previous(0.0), largest_before(0.0), uncut(0.0), arrives(false),
-    limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
+    state(nullptr), rows(nullptr), n_columns(0),
+    blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0), largest_before(0.0),
+    uncut(0.0), arrives(false), limited_by(Limit::NONE), updates(0.0), steps_limited{},
+    particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
+  comm_forward = 3;
+  comm_reverse = 1;
   restart_global = 1;
   restart_peratom = 1;
   create_attribute = 1;
@@ -90,6 +96,11 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       control.eta = args.at_least(keyword, 0.0);
     else if (keyword == "output")
       interval = args.at_least(keyword, 0.0);
+    else if (keyword == "ratio") {
+      blocks->options.ratio = args.integer(keyword, 2, 4);
+      if (blocks->options.ratio == 3) args.fail(keyword, "3", "steps differ by 2 or 4");
+    } else if (keyword == "waking")
+      blocks->options.waking = args.choice(keyword, {"no", "yes"});
     else if (keyword == "min")
       floor = args.positive(keyword);
     else if (keyword == "max") {
@@ -104,7 +115,7 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     else
       args.unknown(keyword,
                    "velocity, force, acoustic, viscous, density, relative, cloth, fluctuation, "
-                   "output, min, max, growth, below");
+                   "output, ratio, waking, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
@@ -116,7 +127,7 @@ FixSPHIntegrate::~FixSPHIntegrate()
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
   memory->destroy(state);
-  memory->destroy(rates);
+  memory->destroy(rows);
 }
 
 int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_RUN; }
@@ -135,7 +146,7 @@ void FixSPHIntegrate::init()
   run_style_drives = adaptive != nullptr;
   scheme = adaptive ? adaptive->scheme() : said;
   check_scheme();
-  pair->set_active(state, ACTIVE, rates != nullptr);
+  pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
   if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
   control.sound_time = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
@@ -166,29 +177,47 @@ void FixSPHIntegrate::check_scheme()
                "{}: output {} would shorten steps that are constant: use the scheme global, or a "
                "timestep that divides {}",
                label, interval, interval);
-  if (scheme != SteppingScheme::INDIVIDUAL) return forget_rates();
+  const bool individual = scheme == SteppingScheme::INDIVIDUAL;
+  if (!individual && scheme != SteppingScheme::BLOCK) return forget_rows();
   if (pair->integrates_density())
-    error->all(FLERR,
-               "{}: run_style sph/adaptive individual interpolates densities, which 'density "
-               "continuity' integrates: use 'density summation', or another scheme",
-               label);
-  want_rates();
+    error->all(
+        FLERR,
+        "{}: steps of individual particles need densities by summation, 'density continuity' "
+        "integrates them: use 'density summation', or another scheme than {}",
+        label, individual ? "individual" : "block");
+  if (!individual && control.eta > 0.0)
+    error->all(
+        FLERR,
+        "{}: fluctuation {} is for one step of all: leave it out, or use another scheme than "
+        "block",
+        label, control.eta);
+  want_rows(individual ? +N_RATES : +BlockSteps::N_COLUMNS);
+  if (!individual) blocks->init(pair);
 }
 
-void FixSPHIntegrate::want_rates()
+void FixSPHIntegrate::want_rows(int columns)
 {
-  if (rates) return;
-  memory->create(rates, atom->nmax, N_RATES, "sph/integrate:rates");
-  std::fill_n(rates[0], N_RATES * atom->nmax, 0.0);
+  if (rows && n_columns == columns) return;
+  forget_rows();
+  n_columns = columns;
+  memory->create(rows, atom->nmax, n_columns, "sph/integrate:rows");
+  for (int i = 0; i < atom->nmax; i++) set_row(i);
 }
 
-// of a run before, or a restart file, with individual steps
-
-void FixSPHIntegrate::forget_rates()
+void FixSPHIntegrate::set_row(int i)
 {
-  if (!rates) return;
+  std::fill(rows[i], rows[i] + n_columns, 0.0);
+  if (n_columns == BlockSteps::N_COLUMNS) blocks->set_new(rows[i]);
+}
+
+// of a run before, or a restart file, with steps of individual particles
+
+void FixSPHIntegrate::forget_rows()
+{
+  if (!rows) return;
+  blocks->forget();
   for (int i = 0; i < atom->nlocal; i++) state[i][ACTIVE] = 1.0;
-  memory->destroy(rates);
+  memory->destroy(rows);
 }
 
 void FixSPHIntegrate::setup(int)
@@ -203,33 +232,41 @@ void FixSPHIntegrate::setup(int)
 void FixSPHIntegrate::initial_integrate(int)
 {
   pair->advance(update->dt);
-  if (scheme == SteppingScheme::INDIVIDUAL) {
-    move_individually();
-    select_active();
-  } else
-    move_all();
+  switch (scheme) {
+    case SteppingScheme::INDIVIDUAL: move_individually(); return select_active();
+    case SteppingScheme::BLOCK: move_all(); return select_due();
+    default: updates += move_all(); pair->set_active(nullptr, ACTIVE);
+  }
 }
 
-void FixSPHIntegrate::move_all()
+// how many
+
+int FixSPHIntegrate::move_all()
 {
+  int moved = 0;
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
-  bool all_active = true;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (state[i][ACTIVE] == 0.0) {
-      all_active = false;
-      continue;
-    }
     const double kick = dtf / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
       x[i][d] += dt * v[i][d];
     }
-    updates++;
+    moved++;
   }
-  // while nobody rests, the pair style need not ask
-  pair->set_active(all_active ? nullptr : state, ACTIVE);
+  return moved;
+}
+
+void FixSPHIntegrate::select_due()
+{
+  blocks->begin_step();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_fluid(atom->type[i])) continue;
+    state[i][ACTIVE] = blocks->is_due(i);
+    updates += state[i][ACTIVE];
+  }
+  pair->set_active(state, ACTIVE);
 }
 
 // From the last update, a time T ago, to now: v = v_last + T a, x = x_last + T v.  What is added to v
@@ -243,7 +280,7 @@ void FixSPHIntegrate::move_individually()
     const double elapsed = before - state[i][LAST_UPDATE];
     double *x = atom->x[i], *v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      const double accel = rates[i][ACCEL + d];
+      const double accel = rows[i][ACCEL + d];
       v[d] += dt * accel;
       x[d] += dt * (v[d] + elapsed * accel);
     }
@@ -263,7 +300,7 @@ void FixSPHIntegrate::select_active()
     if (active)
       updates++;
     else
-      atom->rho[i] += dt * rates[i][DENSITY];
+      atom->rho[i] += dt * rows[i][DENSITY];
   }
   pair->set_active(state, ACTIVE, true);
 }
@@ -278,6 +315,10 @@ void FixSPHIntegrate::finish_step()
   previous = uncut > 0.0 ? uncut : update->dt;
   largest_before = compression.largest;
   steps_limited[static_cast<int>(limited_by)]++;
+  if (scheme == SteppingScheme::BLOCK) {
+    blocks->note_external_forces();
+    limit_vertices();
+  }
   if (scheme != SteppingScheme::CONSTANT) choose_step();
 }
 
@@ -287,6 +328,7 @@ void FixSPHIntegrate::finish_step()
 
 void FixSPHIntegrate::choose_step()
 {
+  if (scheme == SteppingScheme::BLOCK) return take_block_step();
   StepLimit wanted = tightest_anywhere();
   if (control.eta > 0.0) {
     compression = overall_compression();
@@ -305,6 +347,16 @@ void FixSPHIntegrate::choose_step()
   if (arrives) announce_thermo();
 }
 
+// The pair style had it chosen, with the impulses that act in it.
+
+void FixSPHIntegrate::take_block_step()
+{
+  limited_by = blocks->limited_by();
+  arrives = blocks->arrives();
+  if (const double dt = blocks->next_step(); dt != update->dt) apply(dt);
+  if (arrives) announce_thermo();
+}
+
 StepLimit FixSPHIntegrate::tightest_anywhere()
 {
   const StepLimit mine = tightest_particle();
@@ -319,43 +371,124 @@ StepLimit FixSPHIntegrate::tightest_anywhere()
 StepLimit FixSPHIntegrate::tightest_particle()
 {
   const double now = physical_time(update);
-  const double *approach = lambda.relative > 0.0 ? pair->approach_speeds().data() : nullptr;
+  const double *approach = wants_approach() ? pair->approach_speeds().data() : nullptr;
   StepLimit tightest;
   particles_limited.fill(0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     StepLimit own{state[i][OWN_STEP],
-                  rates ? static_cast<Limit>(static_cast<int>(rates[i][BY])) : Limit::NONE};
-    if (state[i][ACTIVE] != 0.0 || !rates) {
-      StepState particle = particle_state(i);
+                  rows ? static_cast<Limit>(static_cast<int>(rows[i][BY])) : Limit::NONE};
+    if (state[i][ACTIVE] != 0.0 || !rows) {
+      StepState particle = particle_state(i, atom->f[i]);
       if (approach) particle.approach = approach[i];
       own = particle_limit(lambda, particle);
       state[i][OWN_STEP] = std::min(own.dt, ceiling);
       state[i][LAST_UPDATE] = now;
-      if (rates) hold(i, own);
+      if (rows) hold(i, own);
     }
     count(own);
     tightest.tighten(own.dt, own.by);
   }
-  for (const FixPBDCloth *cloth : cloths)
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!(atom->mask[i] & cloth->groupbit) || cloth->inverse_mass(i) == 0.0) continue;
-      const double edge = lambda.cloth > 0.0 ? cloth->shortest_edge(i) : 0.0;
-      const StepLimit own = vertex_limit(lambda, vertex_state(i), edge);
-      count(own);
-      tightest.tighten(own.dt, own.by);
-    }
+  for_vertices([&](int i, const FixPBDCloth &cloth) {
+    const StepLimit own = limit_of_vertex(i, cloth);
+    count(own);
+    tightest.tighten(own.dt, own.by);
+  });
   return tightest;
 }
+
+// those that move
+
+template <class Do> void FixSPHIntegrate::for_vertices(Do something) const
+{
+  for (const FixPBDCloth *cloth : cloths)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & cloth->groupbit && cloth->inverse_mass(i) > 0.0) something(i, *cloth);
+}
+
+StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) const
+{
+  const double edge = lambda.cloth > 0.0 ? cloth.shortest_edge(i) : 0.0;
+  return vertex_limit(lambda, vertex_state(i), edge);
+}
+
+/* ----------------------------------------------------------------------
+   steps in powers of two
+------------------------------------------------------------------------- */
+
+StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double approach,
+                                         double before) const
+{
+  const double *f = atom->f[i];
+  const double total[3] = {f[0] + external[0], f[1] + external[1], f[2] + external[2]};
+  StepState particle = particle_state(i, total);
+  particle.approach = approach;
+  const StepLimit wanted = particle_limit(lambda, particle);
+  const StepLimit step = bounded_step(wanted, before, growth, floor, ceiling);
+  if (step.by == Limit::FLOOR && !clamp_at_floor)
+    error->one(
+        FLERR,
+        "{}: the {} limit asks for a step of {} for particle {}, below min {}: lower min, or "
+        "use 'below clamp' to go on with min and count",
+        label, limit_name(wanted.by), wanted.dt, atom->tag[i], floor);
+  return step;
+}
+
+void FixSPHIntegrate::set_own_step(int i, double dt)
+{
+  state[i][OWN_STEP] = dt;
+  state[i][LAST_UPDATE] = physical_time(update);
+}
+
+// Vertices move in every step of the scene, which is no longer than what any of them allows.
+
+void FixSPHIntegrate::limit_vertices()
+{
+  for_vertices([&](int i, const FixPBDCloth &cloth) {
+    const StepLimit own = limit_of_vertex(i, cloth);
+    state[i][OWN_STEP] = own.dt;
+    rows[i][BlockSteps::BY] = static_cast<double>(own.by);
+  });
+}
+
+double FixSPHIntegrate::vertex_step(int i) const
+{
+  return pair->is_fluid(atom->type[i]) ? 0.0 : state[i][OWN_STEP];
+}
+
+// none knows its own before the first step has been taken
+
+StepLimit FixSPHIntegrate::tightest_vertex() const
+{
+  StepLimit tightest{ceiling, Limit::CEILING};
+  for_vertices([&](int i, const FixPBDCloth &) {
+    if (state[i][OWN_STEP] > 0.0)
+      tightest.tighten(state[i][OWN_STEP],
+                       static_cast<Limit>(static_cast<int>(rows[i][BlockSteps::BY])));
+  });
+  return tightest;
+}
+
+/* ----------------------------------------------------------------------
+   what a particle brings along
+------------------------------------------------------------------------- */
 
 // what goes on until the next update
 
 void FixSPHIntegrate::hold(int i, const StepLimit &own)
 {
   const double to_accel = force->ftm2v / atom_mass(atom, i);
-  for (int d = 0; d < 3; d++) rates[i][ACCEL + d] = to_accel * atom->f[i][d];
-  rates[i][DENSITY] = atom->drho[i];
-  rates[i][BY] = static_cast<double>(own.by);
+  for (int d = 0; d < 3; d++) rows[i][ACCEL + d] = to_accel * atom->f[i][d];
+  rows[i][DENSITY] = atom->drho[i];
+  rows[i][BY] = static_cast<double>(own.by);
+}
+
+void FixSPHIntegrate::count_blocks()
+{
+  particles_limited.fill(0.0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[i][OWN_STEP] > 0.0)
+      count({state[i][OWN_STEP], static_cast<Limit>(static_cast<int>(rows[i][BlockSteps::BY]))});
 }
 
 void FixSPHIntegrate::count(const StepLimit &own)
@@ -365,10 +498,10 @@ void FixSPHIntegrate::count(const StepLimit &own)
 
 // what every kind of particle has; returns its mass
 
-double FixSPHIntegrate::speed_and_force(int i, StepState &s) const
+double FixSPHIntegrate::speed_and_force(int i, const double *f, StepState &s) const
 {
   const double mass = atom_mass(atom, i);
-  const double *v = atom->v[i], *f = atom->f[i];
+  const double *v = atom->v[i];
   const double to_accel = force->ftm2v / mass;
   s.support = pair->support(atom->type[i]);
   s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
@@ -376,17 +509,25 @@ double FixSPHIntegrate::speed_and_force(int i, StepState &s) const
   return mass;
 }
 
-StepState FixSPHIntegrate::particle_state(int i) const
+StepState FixSPHIntegrate::particle_state(int i, const double *f) const
 {
   StepState s{};
-  speed_and_force(i, s);
+  speed_and_force(i, f, s);
+  const Tait &eos = pair->equation_of_state(atom->type[i]);
   s.rho = atom->rho[i];
   s.nu = pair->viscosity(atom->type[i]);
-  // a particle in free flight carries no sound and compresses nothing, but its density is interpolated
+  s.sound = eos.sound_speed(s.rho);
   const bool flies = pair->pressure_term()[i] == 0.0;
-  if (!flies) s.sound = pair->equation_of_state(atom->type[i]).sound_speed(s.rho);
-  if (!flies || rates) s.drho = atom->drho[i];
+  if (flies) s.until_pressed = until_pressed(eos, s.rho, atom->drho[i]);
+  // nothing is compressed in free flight, but individual steps interpolate the density
+  if (!flies || scheme == SteppingScheme::INDIVIDUAL) s.drho = atom->drho[i];
   return s;
+}
+
+double FixSPHIntegrate::until_pressed(const Tait &eos, double rho, double drho)
+{
+  if (drho <= 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, eos.rho0 - rho) / drho;
 }
 
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is
@@ -395,7 +536,7 @@ StepState FixSPHIntegrate::particle_state(int i) const
 StepState FixSPHIntegrate::vertex_state(int i) const
 {
   StepState s{};
-  const double mass = speed_and_force(i, s);
+  const double mass = speed_and_force(i, atom->f[i], s);
   const PairSPHTait::Wetting wet = pair->wetting(i);
   s.sound = wet.sound * std::sqrt(std::max(1.0, wet.fluid_mass / mass));
   return s;
@@ -430,13 +571,20 @@ void FixSPHIntegrate::reschedule_dumps()
    output times
 ------------------------------------------------------------------------- */
 
+// infinite if there is none; what is nearer than a small part of a step of dt has passed
+
+double FixSPHIntegrate::next_output_time(double dt) const
+{
+  if (interval == 0.0) return std::numeric_limits<double>::infinity();
+  return output_time(output_times_until(physical_time(update), interval, SLACK * dt) + 1.0,
+                     interval);
+}
+
 void FixSPHIntegrate::head_for_output(StepLimit &step)
 {
-  const double now = physical_time(update);
-  const double reached = output_times_until(now, interval, SLACK * step.dt);
-  const double next = output_time(reached + 1.0, interval);
-  const double dt = step_towards(next - now, step.dt);
-  arrives = dt == next - now;
+  const double remaining = next_output_time(step.dt) - physical_time(update);
+  const double dt = step_towards(remaining, step.dt);
+  arrives = dt == remaining;
   uncut = step.dt;
   if (dt < (1.0 - SLACK) * step.dt) step.by = Limit::OUTPUT;
   step.dt = dt;
@@ -502,7 +650,10 @@ double FixSPHIntegrate::compute_vector(int n)
   constexpr int PARTICLES = 5 + N_LIMITS - 1, TIMES = PARTICLES + N_OF_PARTICLES;
   if (n == TIMES) return at_output_time();
   if (n > TIMES) return static_cast<double>(next_thermo());
-  if (n >= PARTICLES) return sum_over_ranks(particles_limited[n - PARTICLES + 1]);
+  if (n >= PARTICLES) {
+    if (blocks->begun()) count_blocks();
+    return sum_over_ranks(particles_limited[n - PARTICLES + 1]);
+  }
   if (n >= 5) return steps_limited[n - 4];
   switch (n) {
     case 0: return static_cast<double>(limited_by);
@@ -560,29 +711,61 @@ double FixSPHIntegrate::sum_over_ranks(double mine) const
    restart: the step before, the ceiling unless it is given anew, the counters
 ------------------------------------------------------------------------- */
 
+struct FixSPHIntegrate::Record {
+  double previous, ceiling, updates, largest_before;
+  Limit limited_by;
+  std::array<double, N_LIMITS> steps_limited;
+  BlockSteps::Place blocks;
+};
+
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
   double all_updates = 0.0;
   MPI_Reduce(&updates, &all_updates, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  std::array<double, 5 + N_LIMITS> list{previous, ceiling, static_cast<double>(limited_by),
-                                        all_updates, largest_before};
-  std::copy(steps_limited.begin(), steps_limited.end(), list.begin() + 5);
-  const int bytes = static_cast<int>(sizeof(list));
+  const Record record{previous,   ceiling,       all_updates,    largest_before,
+                      limited_by, steps_limited, blocks->place()};
+  const int bytes = static_cast<int>(sizeof(record));
   fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(list), 1, fp);
+  fwrite(&record, sizeof(record), 1, fp);
 }
 
 void FixSPHIntegrate::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  previous = list[0];
+  Record record;
+  std::memcpy(&record, buf, sizeof(record));
+  previous = record.previous;
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
-  if (!ceiling_given) ceiling = list[1];
-  limited_by = static_cast<Limit>(static_cast<int>(list[2]));
-  updates = comm->me == 0 ? list[3] : 0.0;
-  largest_before = list[4];
-  std::copy(list + 5, list + 5 + N_LIMITS, steps_limited.begin());
+  if (!ceiling_given) ceiling = record.ceiling;
+  limited_by = record.limited_by;
+  updates = comm->me == 0 ? record.updates : 0.0;
+  largest_before = record.largest_before;
+  steps_limited = record.steps_limited;
+  blocks->go_to(record.blocks);
+}
+
+/* ----------------------------------------------------------------------
+   ghosts of particles with steps in powers of two
+------------------------------------------------------------------------- */
+
+int FixSPHIntegrate::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  return blocks->pack_forward(n, list, buf);
+}
+
+void FixSPHIntegrate::unpack_forward_comm(int n, int first, double *buf)
+{
+  blocks->unpack_forward(n, first, buf);
+}
+
+int FixSPHIntegrate::pack_reverse_comm(int n, int first, double *buf)
+{
+  return blocks->pack_reverse(n, first, buf);
+}
+
+void FixSPHIntegrate::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  blocks->unpack_reverse(n, list, buf);
 }
 
 /* ----------------------------------------------------------------------
@@ -592,44 +775,44 @@ void FixSPHIntegrate::restart(char *buf)
 void FixSPHIntegrate::grow_arrays(int nmax)
 {
   memory->grow(state, nmax, N_COLUMNS, "sph/integrate:state");
-  if (rates) memory->grow(rates, nmax, N_RATES, "sph/integrate:rates");
+  if (rows) memory->grow(rows, nmax, n_columns, "sph/integrate:rows");
   array_atom = state;
-  if (pair) pair->set_active(state, ACTIVE, rates != nullptr);
+  if (pair) pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
 }
 
 void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
   std::copy(state[i], state[i] + N_COLUMNS, state[j]);
-  if (rates) std::copy(rates[i], rates[i] + N_RATES, rates[j]);
+  if (rows) std::copy(rows[i], rows[i] + n_columns, rows[j]);
 }
 
 void FixSPHIntegrate::set_arrays(int i)
 {
   state[i][OWN_STEP] = state[i][LAST_UPDATE] = 0.0;
   state[i][ACTIVE] = 1.0;
-  if (rates) std::fill(rates[i], rates[i] + N_RATES, 0.0);
+  if (rows) set_row(i);
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
   double *end = std::copy(state[i], state[i] + N_COLUMNS, buf);
-  if (rates) end = std::copy(rates[i], rates[i] + N_RATES, end);
+  if (rows) end = std::copy(rows[i], rows[i] + n_columns, end);
   return static_cast<int>(end - buf);
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
   std::copy(buf, buf + N_COLUMNS, state[i]);
-  if (!rates) return N_COLUMNS;
-  std::copy(buf + N_COLUMNS, buf + N_COLUMNS + N_RATES, rates[i]);
-  return N_COLUMNS + N_RATES;
+  if (!rows) return N_COLUMNS;
+  std::copy(buf + N_COLUMNS, buf + N_COLUMNS + n_columns, rows[i]);
+  return N_COLUMNS + n_columns;
 }
 
 // The first value of a record is its length.  Only individual steps have more to say.
 
 int FixSPHIntegrate::pack_restart(int i, double *buf)
 {
-  buf[0] = rates ? 1 + pack_exchange(i, buf + 1) : 1;
+  buf[0] = rows ? 1 + pack_exchange(i, buf + 1) : 1;
   return static_cast<int>(buf[0]);
 }
 
@@ -638,15 +821,16 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
   if (*record == 1.0) return;
-  want_rates();
+  want_rows(static_cast<int>(*record) - 1 - N_COLUMNS);
   std::copy(record + 1, record + 1 + N_COLUMNS, state[i]);
-  std::copy(record + 1 + N_COLUMNS, record + 1 + N_COLUMNS + N_RATES, rates[i]);
+  std::copy(record + 1 + N_COLUMNS, record + 1 + N_COLUMNS + n_columns, rows[i]);
 }
 
 int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
-int FixSPHIntegrate::maxsize_restart() { return rates ? 1 + N_COLUMNS + N_RATES : 1; }
+int FixSPHIntegrate::maxsize_restart() { return rows ? 1 + N_COLUMNS + n_columns : 1; }
 
 double FixSPHIntegrate::memory_usage()
 {
-  return static_cast<double>(sizeof(double)) * (N_COLUMNS + (rates ? N_RATES : 0)) * atom->nmax;
+  return static_cast<double>(sizeof(double)) * (N_COLUMNS + (rows ? n_columns : 0)) * atom->nmax +
+      blocks->bytes();
 }

@@ -12,18 +12,21 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 #include "fix.h"
 
 #include "core/criteria.h"
+#include "core/tait.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 class ArgReader;
+class BlockSteps;
 class FixPBDCloth;
 class PairSPHTait;
 
-enum class SteppingScheme : int { CONSTANT, GLOBAL, INDIVIDUAL };
+enum class SteppingScheme : int { CONSTANT, GLOBAL, INDIVIDUAL, BLOCK };
 
 class FixSPHIntegrate : public Fix {
  public:
@@ -45,6 +48,10 @@ class FixSPHIntegrate : public Fix {
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
   int size_restart(int) override;
@@ -58,7 +65,21 @@ class FixSPHIntegrate : public Fix {
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();
 
+  // What BlockSteps asks.  The step that particle i allows, between floor and ceiling, with the force
+  // of others than the fluid and the speed at which a neighbour comes near, after a step `before`
+  // (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
+  // 0 for what is none.
+  bool wants_approach() const { return lambda.relative > 0.0; }
+  sphcloth::StepLimit bounded_limit(int i, const double *external, double approach,
+                                    double before) const;
+  void set_own_step(int i, double dt);
+  double longest_step() const { return ceiling; }
+  double next_output_time(double dt) const;
+  sphcloth::StepLimit tightest_vertex() const;
+  double vertex_step(int i) const;
+
  private:
+  struct Record;    // in restart files
   enum Column { OWN_STEP, LAST_UPDATE, ACTIVE, N_COLUMNS };
 
   std::string label;
@@ -75,9 +96,12 @@ class FixSPHIntegrate : public Fix {
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
 
-  // per particle with individual steps, of its last update: dv/dt, d rho/dt, its own limit
+  // per particle with steps of its own, null otherwise: BlockSteps::Column, or, of the last update of
+  // individual steps, dv/dt, d rho/dt, its own limit
   enum Rate { ACCEL, DENSITY = 3, BY, N_RATES };
-  double **rates;    // null otherwise
+  double **rows;
+  int n_columns;
+  std::unique_ptr<BlockSteps> blocks;
 
   double previous;      // the last step, before an output time cut it; 0 before the first
   double largest_before;    // compression when that step was chosen
@@ -92,22 +116,30 @@ class FixSPHIntegrate : public Fix {
 
   void read_options(ArgReader &);
   void check_scheme();
-  void want_rates();
-  void forget_rates();
-  void move_all();
+  void want_rows(int columns);
+  void set_row(int i);
+  void forget_rows();
+  int move_all();
   void move_individually();
   void select_active();
+  void select_due();
   void hold(int i, const sphcloth::StepLimit &own);
   void choose_step();
+  void take_block_step();
   sphcloth::StepLimit tightest_anywhere();
   sphcloth::StepLimit tightest_particle();
   void count(const sphcloth::StepLimit &own);
+  void count_blocks();
+  void limit_vertices();
+  template <class Do> void for_vertices(Do something) const;
+  sphcloth::StepLimit limit_of_vertex(int i, const FixPBDCloth &) const;
   void head_for_output(sphcloth::StepLimit &);
   bool at_output_time() const;
   bigint next_thermo() const;
   void announce_thermo();
-  double speed_and_force(int, sphcloth::StepState &) const;
-  sphcloth::StepState particle_state(int) const;
+  double speed_and_force(int, const double *force, sphcloth::StepState &) const;
+  sphcloth::StepState particle_state(int, const double *force) const;
+  static double until_pressed(const sphcloth::Tait &, double rho, double drho);
   sphcloth::StepState vertex_state(int) const;
   void apply(double);
   void reschedule_dumps();

@@ -247,7 +247,14 @@ double FixWallSPH::departure(int i, std::size_t k) const
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
 // in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
 
-void FixWallSPH::push(int i, double pressure_term)
+void FixWallSPH::push(int i, double pressure_term) { push(i, pressure_term, 1.0, true); }
+
+void FixWallSPH::push_more(int i, double pressure_term, double times)
+{
+  push(i, pressure_term, times, false);
+}
+
+void FixWallSPH::push(int i, double pressure_term, double times, bool first)
 {
   if (!look(i)) return;
   const int type = atom->type[i];
@@ -268,13 +275,14 @@ void FixWallSPH::push(int i, double pressure_term)
         nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support);
 
     const double pressure =
-        stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
+        times * stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
-                                     : -friction * (v[d] - wall.velocity[d]);
+                                     : -times * friction * (v[d] - wall.velocity[d]);
       atom->f[i][d] += to_force * accel;
       mine[3 * k + d] -= to_force * accel;
     }
+    if (!first) continue;
     atom->drho[i] += slope(i, k) * departure(i, k);
     if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
     mine.back() += 0.5 * mass * eos.k * strain * strain * force->mvv2e;

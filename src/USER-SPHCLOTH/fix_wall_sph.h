@@ -38,6 +38,7 @@ class FixWallSPH : public Fix, public FluidWall {
   double density(int i) override;
   double density_rate(int i, double back) override;
   void push(int i, double pressure_term) override;
+  void push_more(int i, double pressure_term, double times) override;
 
   // the largest speed at which a wall in reach and a particle come near
   double approach(int i) override;
@@ -86,6 +87,7 @@ class FixWallSPH : public Fix, public FluidWall {
   bool look(int i, double back = 0.0);
   double slope(int, std::size_t) const;
   double departure(int, std::size_t) const;
+  void push(int i, double pressure_term, double times, bool first);
   double output(int);
 };
 

@@ -16,6 +16,9 @@ class FluidWall {
   virtual double density_rate(int i, double back) = 0;
   // the force on it; pressure_term = p/rho^2
   virtual void push(int i, double pressure_term) = 0;
+  // Once more, for a particle with a step of its own: the force of another pressure term and `times`
+  // the rest.  What was pushed before holds for energy, virial and rate.
+  virtual void push_more(int i, double pressure_term, double times) = 0;
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
   virtual double approach(int i) = 0;

@@ -6,6 +6,7 @@
 #include "arg_reader.h"
 #include "atom.h"
 #include "atom_tools.h"
+#include "block_steps.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -30,9 +31,9 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), sheets(nullptr), is_evaluated(false), measure_volume(false),
-    extrapolate(false), any_fluid(true), active(nullptr), active_column(0), elapsed(0.0),
-    stage(Stage::DENSITY)
+    Pair(lmp), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
+    measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
+    elapsed(0.0), stage(Stage::DENSITY)
 {
   restartinfo = 1;
   single_enable = 0;
@@ -117,6 +118,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
+  blocks = nullptr;
   pressures_follow = false;
   comm_forward = diffuses() ? 3 : 2;
 
@@ -249,38 +251,74 @@ void PairSPHTait::compute(int eflag, int vflag)
   }
   const Particles p = particles();
 
+  select(p);
   fluid->place(p, box());
   measure_amounts(p, new_neighbours);
   for (FluidWall *wall : walls) wall->begin();
   for (SheetWalls *mesh : meshes) mesh->begin();
   densities(p);
-  pressures(p);
+  pressures(p, pressures_follow || new_neighbours);
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
   if (extrapolate) boundary_pressures(p);
   fluid->record(p);
 
-  fluid->forces(p);
+  fluid->forces(p, blocks ? On::FLUID : On::ALL);
+  if (blocks) blocks->note_forces();
   for (FluidWall *wall : walls)
-    for_each_fluid(p, [&](int i, const Tait &) { wall->push(i, pressure[i]); });
-  for (SheetWalls *mesh : meshes) {
-    for_each_fluid(p, [&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
-    mesh->end();
-  }
-  if (vflag_either)
-    fluid->virials(
-        p,
-        [](void *self, int i, const Acceleration &a) {
-          auto *pair = static_cast<PairSPHTait *>(self);
-          const double scale = pair->amount[i] * pair->force->mvv2e;
-          for (int m = 0; m < 6; m++) {
-            if (pair->vflag_global) pair->virial[m] += scale * a.virial[m];
-            if (pair->vflag_atom) pair->vatom[i][m] += scale * a.virial[m];
-          }
-        },
-        this);
-  if (eflag_either) tally_energy(p);
+    for_each_fluid([&](int i, const Tait &) { wall->push(i, pressure[i]); });
+  for (SheetWalls *mesh : meshes)
+    for_each_fluid([&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
+  if (vflag_either) tally_virial(p);
+  if (blocks) blocks->hand_out();
+  for (SheetWalls *mesh : meshes) mesh->end();
+  if (eflag_either) tally_energy();
   is_evaluated = true;
+}
+
+// who is updated, and those of the fluid as a list
+
+void PairSPHTait::select(const Particles &p)
+{
+  fluid->select(p);
+  active_fluid.clear();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (materials.is_fluid(t))
+      for (const int slot : fluid->active().of(t)) active_fluid.push_back(fluid->order().at(slot));
+}
+
+void PairSPHTait::push_walls_more(int i, double pressure_term, double times)
+{
+  for (FluidWall *wall : walls) wall->push_more(i, pressure_term, times);
+  for (SheetWalls *mesh : meshes) mesh->push_more(i, pressure_term / mesh->stretch(i), times);
+}
+
+void PairSPHTait::give_impulses(const std::vector<int> &slots, const double *pressure_time,
+                                const double *span)
+{
+  const Particles p = particles();
+  fluid->record_impulses(p, pressure_time, span);
+  fluid->impulses(p, slots);
+}
+
+// of all, also of those who have steps of their own and are not updated now
+
+void PairSPHTait::tally_virial(Particles p)
+{
+  const auto receive = [](void *self, int i, const Acceleration &a) {
+    auto *pair = static_cast<PairSPHTait *>(self);
+    const double scale = pair->amount[i] * pair->force->mvv2e;
+    for (int m = 0; m < 6; m++) {
+      if (pair->vflag_global) pair->virial[m] += scale * a.virial[m];
+      if (pair->vflag_atom) pair->vatom[i][m] += scale * a.virial[m];
+    }
+  };
+  if (!blocks) return fluid->virials(p, receive, this);
+  const Particles updated = p;
+  p.active = nullptr;
+  fluid->select(p);
+  fluid->virials(p, receive, this);
+  fluid->select(updated);
 }
 
 Particles PairSPHTait::particles()
@@ -377,16 +415,12 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
   }
 }
 
-template <class F> void PairSPHTait::for_each_fluid(const Particles &p, F &&act) const
+template <class F> void PairSPHTait::for_each_fluid(F &&act) const
 {
-  const NearLists &order = fluid->order();
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!materials.is_fluid(t)) continue;
     const Tait eos = materials.type(t).eos;
-    for (int slot = order.begin(t); slot < order.begin(t + 1); slot++) {
-      const int i = order.at(slot);
-      if (p.is_active(i)) act(i, eos);
-    }
+    for (const int slot : fluid->active().of(t)) act(fluid->order().at(slot), eos);
   }
 }
 
@@ -395,9 +429,9 @@ void PairSPHTait::densities(const Particles &p)
   if (!options.continuity) {
     fluid->gather(p, true);
     for (FluidWall *wall : walls)
-      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += wall->density(i); });
+      for_each_fluid([&](int i, const Tait &) { p.rho[i] += wall->density(i); });
     for (SheetWalls *mesh : meshes)
-      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] *= mesh->stretch(i); });
+      for_each_fluid([&](int i, const Tait &) { p.rho[i] *= mesh->stretch(i); });
     return;
   }
   check_densities();
@@ -417,18 +451,18 @@ void PairSPHTait::integrate_density(const Particles &p)
     const double back = 0.5 * elapsed;
     density_rates(p, back);
     for (FluidWall *wall : walls)
-      for_each_fluid(p, [&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
+      for_each_fluid([&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
     for (SheetWalls *mesh : meshes)
-      for_each_fluid(p, [&](int i, const Tait &) {
+      for_each_fluid([&](int i, const Tait &) {
         rate[i] = rate[i] * mesh->stretch(i) + mesh->density_rate(i, back);
       });
-    for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
+    for_each_fluid([&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {
       stage = Stage::DENSITY;
       comm->forward_comm(this, 2);
       fluid->smooth_densities(p, rate.data());
-      for_each_fluid(p, [&](int i, const Tait &) { p.rho[i] = rate[i]; });
+      for_each_fluid([&](int i, const Tait &) { p.rho[i] = rate[i]; });
     }
   }
 }
@@ -454,23 +488,26 @@ void PairSPHTait::check_densities() const
                  STYLE, atom->tag[i], atom->rho[i]);
 }
 
-void PairSPHTait::pressures(const Particles &p)
+// Those who are not active keep theirs, but not beyond a list build: then it follows from the density.
+
+void PairSPHTait::pressures(const Particles &p, bool of_all)
 {
   const double least = options.tension ? -std::numeric_limits<double>::max() : 0.0;
-  double *term = pressure.data();
-  for (int i = 0; i < p.n_owned; i++) {
-    if (!is_fluid(p.type[i]) || !(p.is_active(i) || pressures_follow)) continue;
-    const Tait &eos = equation_of_state(p.type[i]);
+  const auto find = [&](int i, const Tait &eos) {
     const double rho = p.rho[i];
-    term[i] = std::max(eos.pressure(rho), least) / (rho * rho);
+    double &term = pressure[i];
+    term = std::max(eos.pressure(rho), least) / (rho * rho);
     // a density that is stretched has a gradient that is
-    for (SheetWalls *mesh : meshes) term[i] *= mesh->stretch(i);
+    for (SheetWalls *mesh : meshes) term *= mesh->stretch(i);
     // neither true of what is not a number
-    if (!(term[i] < std::numeric_limits<double>::max()) || !(rho > 0.0))
+    if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
       error->one(FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
-  }
+  };
+  if (!of_all || !active) return for_each_fluid(find);
+  for (int i = 0; i < p.n_owned; i++)
+    if (is_fluid(p.type[i])) find(i, equation_of_state(p.type[i]));
 }
 
 void PairSPHTait::boundary_pressures(const Particles &p)
@@ -493,13 +530,15 @@ void PairSPHTait::add_virial(int i, const Eigen::Vector3d &apart, const Eigen::V
 
 // internal energy of the fluid: what compression has stored
 
-void PairSPHTait::tally_energy(const Particles &p)
+void PairSPHTait::tally_energy()
 {
-  for_each_fluid(p, [&](int i, const Tait &eos) {
-    const double e = amount[i] * stored_energy(eos, p.rho[i]) * force->mvv2e;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_fluid(atom->type[i])) continue;
+    const double e =
+        amount[i] * stored_energy(equation_of_state(atom->type[i]), atom->rho[i]) * force->mvv2e;
     if (eflag_global) eng_vdwl += e;
     if (eflag_atom) eatom[i] += e;
-  });
+  }
 }
 
 double PairSPHTait::acting_pressure(const Tait &eos, double rho) const
@@ -550,11 +589,10 @@ void PairSPHTait::want_wetting() const
 const std::vector<double> &PairSPHTait::approach_speeds()
 {
   approach.assign(atom->nmax, 0.0);
-  const Particles p = particles();
-  fluid->approach_speeds(p, approach.data());
+  fluid->approach_speeds(approach.data());
   const auto include = [&](auto *wall) {
     for_each_fluid(
-        p, [&](int i, const Tait &) { approach[i] = std::max(approach[i], wall->approach(i)); });
+        [&](int i, const Tait &) { approach[i] = std::max(approach[i], wall->approach(i)); });
   };
   for (FluidWall *wall : walls) include(wall);
   for (SheetWalls *mesh : meshes) include(mesh);

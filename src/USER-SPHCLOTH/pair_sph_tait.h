@@ -22,6 +22,7 @@ PairStyle(sph/tait,PairSPHTait);
 
 namespace LAMMPS_NS {
 
+class BlockSteps;
 class FixClothContact;
 class FluidWall;
 class SheetWalls;
@@ -105,6 +106,19 @@ class PairSPHTait : public Pair {
     return is_fluid(atom->type[i]) ? amount[i] / atom->rho[i] : amount[i];
   }
 
+  // Particles with steps of their own, anew for each run.  Null: forces act for the step of all.
+  void set_blocks(BlockSteps *steps) { blocks = steps; }
+  // What they ask for once the forces on the active fluid are known: to push walls once more, as
+  // FluidWall::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
+  // Fluid::record_impulses() on these owned particles.
+  void push_walls_more(int i, double pressure_term, double times);
+  void push_boundaries() { fluid->forces(particles(), sphcloth::On::BOUNDARIES); }
+  void give_impulses(const std::vector<int> &slots, const double *pressure_time,
+                     const double *span);
+  const sphcloth::NearLists &order() const { return fluid->order(); }
+  // owned fluid particles that are updated in this evaluation
+  const std::vector<int> &active_particles() const { return active_fluid; }
+
   // neighbours of an owned atom inside the support, and some a little outside
   sphcloth::Stretch neighbours(int i, int type) { return fluid->neighbours(i, type); }
 
@@ -143,6 +157,7 @@ class PairSPHTait : public Pair {
   std::vector<FluidWall *> walls;
   std::vector<SheetWalls *> meshes;    // those of them that are meshes
   FixClothContact *sheets;    // that part the fluid; null without
+  BlockSteps *blocks;
   bool is_evaluated;
   bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
   bool any_fluid;    // on any rank, at the last list build
@@ -158,6 +173,7 @@ class PairSPHTait : public Pair {
   std::vector<double> rate;
   std::vector<double> approach;    // empty unless it is asked for
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
+  std::vector<int> active_fluid;    // in the order of the lists
   std::vector<tagint> evaluated_ids;    // of the owned atoms, in the order of the arrays
   Stage stage;
 
@@ -173,14 +189,16 @@ class PairSPHTait : public Pair {
   sphcloth::Fluid::Box box() const;
   void new_lists();
   void measure_amounts(const sphcloth::Particles &, bool);
+  void select(const sphcloth::Particles &);
   void densities(const sphcloth::Particles &);
   void integrate_density(const sphcloth::Particles &);
   void density_rates(const sphcloth::Particles &, double back);
-  void pressures(const sphcloth::Particles &);
+  void pressures(const sphcloth::Particles &, bool of_all);
   void check_densities() const;
   void boundary_pressures(const sphcloth::Particles &);
-  void tally_energy(const sphcloth::Particles &);
-  template <class F> void for_each_fluid(const sphcloth::Particles &, F &&) const;
+  void tally_virial(sphcloth::Particles);
+  void tally_energy();
+  template <class F> void for_each_fluid(F &&) const;
 };
 
 }    // namespace LAMMPS_NS

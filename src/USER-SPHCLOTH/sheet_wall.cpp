@@ -253,7 +253,14 @@ Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
 
 // Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.
 
-void SheetWalls::push(int i, double pressure_term)
+void SheetWalls::push(int i, double pressure_term) { push(i, pressure_term, 1.0, true); }
+
+void SheetWalls::push_more(int i, double pressure_term, double times)
+{
+  push(i, pressure_term, times, false);
+}
+
+void SheetWalls::push(int i, double pressure_term, double times, bool first)
 {
   const int type = atom->type[i];
   const Tait &eos = pair->equation_of_state(type);
@@ -263,12 +270,13 @@ void SheetWalls::push(int i, double pressure_term)
     const double away = velocity.dot(foot.normal);
     const double friction = nu * foot.share * 2.0 * eos.rho0 / atom->rho[i] *
         wall_friction(foot.value, foot.distance / support(i), support(i));
-    const Vec3 accel =
-        -pressure_term * rise(foot) * foot.normal - friction * (velocity - away * foot.normal);
+    const Vec3 accel = -pressure_term * rise(foot) * foot.normal -
+        times * friction * (velocity - away * foot.normal);
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
-    atom->drho[i] += rise(foot) * away;
     sheets[foot.sheet].give(foot, -force_on);
+    if (!first) return;
+    atom->drho[i] += rise(foot) * away;
     pair->add_virial(i, foot.distance * foot.normal, force_on);
     if (wetting_wanted) {
       const double moves = 2.0 * mass * foot.share * foot.value.lambda;

@@ -24,14 +24,14 @@ using namespace LAMMPS_NS;
 
 static const std::string STYLE = "run_style sph/adaptive";
 
-// run_style sph/adaptive constant|global|individual
+// run_style sph/adaptive constant|global|individual|block
 
 SPHAdaptive::SPHAdaptive(LAMMPS *lmp, int narg, char **arg) :
     Verlet(lmp, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
 {
   ArgReader args(lmp, STYLE, narg, arg);
   stepping =
-      static_cast<SteppingScheme>(args.choice("scheme", {"constant", "global", "individual"}));
+      static_cast<SteppingScheme>(args.choice("scheme", {"constant", "global", "individual", "block"}));
   if (args.more()) args.unknown(args.peek(), "no keyword after the scheme");
 }
 

@@ -76,11 +76,12 @@ struct StepState {
   double support;     // H
   double speed_sq;    // |v|^2
   double accel_sq;    // |dv/dt|^2
-  double sound;       // c, 0 for a particle without pressure
+  double sound;       // c
   double nu;          // kinematic viscosity, laminar and artificial together
   double rho;
   double drho;        // d rho / dt
   double approach = 0.0;    // largest speed at which a neighbour comes near
+  double until_pressed = 0.0;    // time after which a particle without pressure has one, 0: it has
 };
 
 struct StepLimit {
@@ -106,8 +107,11 @@ inline StepLimit particle_limit(const StepCoefficients &lambda, const StepState 
     limit.tighten(lambda.velocity * s.support / std::sqrt(s.speed_sq), Limit::VELOCITY);
   if (lambda.force > 0.0 && s.accel_sq > 0.0)
     limit.tighten(lambda.force * std::sqrt(s.support / std::sqrt(s.accel_sq)), Limit::FORCE);
+  // in free flight there is no sound, until the particle is compressed; half of the way to there
+  // leaves time for what the flight does not know
   if (lambda.acoustic > 0.0 && s.sound > 0.0)
-    limit.tighten(lambda.acoustic * smoothing / s.sound, Limit::ACOUSTIC);
+    limit.tighten(std::max(lambda.acoustic * smoothing / s.sound, 0.5 * s.until_pressed),
+                  Limit::ACOUSTIC);
   if (lambda.viscous > 0.0 && s.nu > 0.0)
     limit.tighten(lambda.viscous * smoothing * smoothing / s.nu, Limit::VISCOUS);
   if (lambda.density > 0.0 && s.drho != 0.0)
@@ -141,7 +145,7 @@ struct Compression {
 
 struct FluctuationControl {
   static constexpr double PACE = 0.002, MEAN = 0.5, START = 0.25, LEAST = 0.05;
-  double eta = 0.0;           // 0: off
+  double eta = 0.0;    // 0: off
   double sound_time = 0.0;    // h_s/c0
 
   double step(double previous, const Compression &now, double largest_before) const

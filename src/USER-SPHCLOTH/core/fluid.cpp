@@ -25,6 +25,19 @@ void Fluid::list(const Particles &p, const double *reach)
               model.dimension, p.sides);
 }
 
+void Fluid::select(const Particles &p)
+{
+  selection.slots.clear();
+  selection.first.assign(model.n_types + 2, 0);
+  for (int t = 1; t <= model.n_types; t++) {
+    selection.first[t] = selection.slots.size();
+    const bool all = !p.active || model.role[t] != Role::FLUID;
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++)
+      if (all || p.is_active(lists.at(slot))) selection.slots.push_back(slot);
+  }
+  selection.first[model.n_types + 1] = selection.slots.size();
+}
+
 int Fluid::count_inside(const Particles &p, int owned, int type, int most) const
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;

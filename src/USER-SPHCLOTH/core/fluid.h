@@ -27,6 +27,9 @@ enum class Precision : int { DOUBLE, MIXED };
 
 enum class Friction : int { NONE, ARTIFICIAL, ANY };
 
+// whom forces are for
+enum class On { ALL, FLUID, BOUNDARIES };
+
 // one pair of types
 
 struct PairTerms {
@@ -75,6 +78,20 @@ struct Acceleration {
   double virial[6] = {};    // half of sum r_ij f_ij: xx, yy, zz, xy, xz, yz
 };
 
+// Slots of the lists, in their order, and where those of a type begin
+
+struct Selection {
+  std::vector<int> slots;
+  std::vector<std::size_t> first;    // [n_types + 2]
+
+  struct Range {
+    const int *from, *to;
+    const int *begin() const { return from; }
+    const int *end() const { return to; }
+  };
+  Range of(int t) const { return {slots.data() + first[t], slots.data() + first[t + 1]}; }
+};
+
 class Fluid {
  public:
   static std::unique_ptr<Fluid> create(KernelName, Precision);
@@ -84,6 +101,10 @@ class Fluid {
 
   // new neighbour lists; reach as in NeighbourLists
   void list(const Particles &, const double *reach);
+
+  // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
+  void select(const Particles &);
+  const Selection &active() const { return selection; }
 
   // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
   // in parts of the box lengths, so that periodic images are exact.
@@ -117,11 +138,19 @@ class Fluid {
   virtual void record(const Particles &) = 0;
 
   // (2): adds force and, if wanted, d rho/dt of all active owned particles
-  virtual void forces(const Particles &) = 0;
+  virtual void forces(const Particles &, On) = 0;
+
+  // Impulses of particles that take steps of their own, given to both partners of a pair: instead of
+  // its pressure, every particle has it times the time for which it acts, and `span` is that time,
+  // which friction takes as the mean of two.  Those with a span below 0 are asleep: they have their
+  // plain pressure, and the partner's time counts.  For all, owned and ghost.
+  virtual void record_impulses(const Particles &, const double *pressure_time,
+                               const double *span) = 0;
+  virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;
 
   // The largest speed at which a neighbour comes near, of every active fluid particle; of the last
   // record()
-  virtual void approach_speeds(const Particles &, double *speed) = 0;
+  virtual void approach_speeds(double *speed) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);
@@ -143,6 +172,7 @@ class Fluid {
 
  protected:
   NearLists lists;
+  Selection selection;
 };
 
 }    // namespace sphcloth

@@ -53,8 +53,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
-  void forces(const Particles &) override;
-  void approach_speeds(const Particles &p, double *speed) override { all_approaches(p, speed); }
+  void forces(const Particles &, On) override;
+  void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
+  void impulses(const Particles &, const std::vector<int> &slots) override;
+  void approach_speeds(double *speed) override { all_approaches(speed); }
   void virials(const Particles &, Receiver, void *context) override;
   double lattice_sum(double support, double spacing) const override;
   double bytes() const override;
@@ -75,6 +77,7 @@ template <class K, class P> class FluidLoops : public Fluid {
     alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
     alignas(64) Real own[LANES], u[LANES], v[LANES], w[LANES], pressure[LANES];
     alignas(64) double mass[LANES];
+    alignas(64) Real span[LANES];    // of impulses
     double equal = -1.0;    // the mass that all of mass[] hold
   };
 
@@ -112,6 +115,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
+  std::vector<Real> spans;    // of impulses, empty without them
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
@@ -119,7 +123,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void place_all(const Particles &, const std::array<double, 3> &origin,
                  const std::array<double, 3> &per_quantum);
   void record_all(const Particles &);
-  void all_approaches(const Particles &, double *speed);
+  void all_approaches(double *speed);
   void all_density_gradients(const Particles &, double *gradient);
   template <bool DIFFUSION> void all_density_rates(const Particles &, double back, double *rate);
 
@@ -131,6 +135,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void fill(Columns &, const Stretch &, int from, Coordinate far) const;
   static void fill_up(Columns &, int n, Coordinate far);
   void weigh(Columns &, const Particles &, const int *near, double equal) const;
+  void fill_spans(Columns &, const int *near) const;
   Coordinate beyond(const Site &, Real inv_support) const;
 
   template <bool RATE, bool VIRIAL>
@@ -138,12 +143,15 @@ template <class K, class P> class FluidLoops : public Fluid {
                   Real rate, Real dx, Real dy, Real dz);
   static void apply(const Particles &, int i, bool fluid, const Acceleration &);
   template <Friction F, bool RATE, bool VIRIAL>
-  void all_forces(const Particles &, Receiver, void *);
-  template <bool RATE> void forces_and_rates(const Particles &);
-  template <Friction F, bool RATE, bool VIRIAL>
+  void all_forces(const Particles &, On, Receiver, void *);
+  template <bool RATE> void forces_and_rates(const Particles &, On);
+  template <Friction F> void all_impulses(const Particles &, const std::vector<int> &slots);
+  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+  void all_on(const Particles &, int slot, int t, Columns &, Receiver, void *);
+  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
   void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
                       Columns &, Sums<RATE, VIRIAL> &) const;
-  template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
+  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
   void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
                        Columns &, Sums<RATE, VIRIAL> &) const;
   double approach_sq(int i, const Stretch &, Real inv_support, Columns &) const;
@@ -249,6 +257,12 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, con
   c.equal = equal;
 }
 
+template <class K, class P>
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill_spans(Columns &c, const int *near) const
+{
+  for (int m = 0; m < LANES; m++) c.span[m] = spans[near[m]];
+}
+
 /* ----------------------------------------------------------------------
    neighbours and density (1)
 ------------------------------------------------------------------------- */
@@ -289,9 +303,8 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
   for (int t = 1; t <= n_types; t++) {
     const bool fluid = is_fluid(t);
     const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+    for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      if (fluid && !p.is_active(i)) continue;
       lists.refresh(slot);
       if (!sum || !fluid) continue;
       double rho = p.amount[i] * at_self;
@@ -362,7 +375,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<RATE, VIRIAL> &s, int m, double 
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL>
+template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near, const Terms &t,
                                  double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
@@ -371,10 +384,12 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+  const Real span = IMPULSE ? spans[i] : Real(1);
 
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
     weigh(c, p, near.of + from, equal);
+    if (IMPULSE) fill_spans(c, near.of + from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
@@ -384,12 +399,15 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
       const Real slope = t.f * K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
       const Real v_dot_r = du * dx + dv * dy + dw * dz;
 
-      Real along = motion.pressure + c.pressure[k];
+      const bool asleep = IMPULSE && c.span[k] < Real(0);
+      const Real mean = IMPULSE ? (asleep ? span : Real(0.5) * (span + c.span[k])) : Real(1);
+      Real along = motion.pressure + (asleep ? span : Real(1)) * c.pressure[k];
       Real friction = 0;
       if (F != Friction::NONE) {
         const Real both = site.own + c.own[k];
-        along -= Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
-        if (F == Friction::ANY) friction = slope * t.nu * both / (site.own * c.own[k]);
+        along -=
+            mean * Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+        if (F == Friction::ANY) friction = mean * slope * t.nu * both / (site.own * c.own[k]);
       }
       const Real push = -slope * along;
       add<RATE, VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
@@ -405,7 +423,7 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 // boundary, its neighbours are fluid, the result is a force per volume.
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL, bool ON_BOUNDARY>
+template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near, const Terms &t,
                                   double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
@@ -414,10 +432,12 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
   const Motion motion = motions[i];
   const Coordinate far = beyond(site, t.inv_support);
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+  const Real own_span = IMPULSE && !ON_BOUNDARY ? spans[i] : Real(1);
 
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
     if (ON_BOUNDARY) weigh(c, p, near.of + from, equal);
+    if (IMPULSE && ON_BOUNDARY) fill_spans(c, near.of + from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
@@ -428,11 +448,18 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
       const Real v_dot_r = du * dx + dv * dy + dw * dz;
       const Real rho = ON_BOUNDARY ? c.own[k] : site.own;
 
-      Real along = t.stiffness * (motion.pressure + c.pressure[k]);
+      // the time of the fluid, whose pressure comes with it; that of the boundary does not
+      const Real span = !IMPULSE ? Real(1)
+          : !ON_BOUNDARY         ? own_span
+          : c.span[k] < Real(0)  ? Real(1)
+                                 : c.span[k];
+      Real along = t.stiffness *
+          (ON_BOUNDARY ? span * motion.pressure + c.pressure[k]
+                       : motion.pressure + span * c.pressure[k]);
       Real friction = 0;
       if (F != Friction::NONE) {
-        along -= t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
-        if (F == Friction::ANY) friction = slope * t.nu * Real(2) / rho;
+        along -= span * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+        if (F == Friction::ANY) friction = span * slope * t.nu * Real(2) / rho;
       }
       const Real push = -slope * along;
       const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
@@ -442,39 +469,79 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
   }
 }
 
+// everything that one particle feels
+
+template <class K, class P>
+template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int t, Columns &c,
+                                              Receiver receive, void *context)
+{
+  const int i = lists.at(slot);
+  const bool fluid = is_fluid(t);
+  lists.refresh(slot);
+  Sums<RATE, VIRIAL> sums;
+  int met = 0;
+  for (int other = 1; other <= model.n_types; other++) {
+    const Stretch found = lists(slot, other);
+    if (found.n == 0) continue;
+    met += found.n;
+    const Terms terms(model.pair(t, other));
+    const double equal = model.mass[other];
+    if (fluid && is_fluid(other))
+      fluid_on_fluid<F, RATE, VIRIAL, IMPULSE>(p, i, found, terms, equal, c, sums);
+    else if (fluid)
+      across_boundary<F, RATE, VIRIAL, IMPULSE, false>(p, i, found, terms, equal, c, sums);
+    else
+      across_boundary<F, RATE, VIRIAL, IMPULSE, true>(p, i, found, terms, equal, c, sums);
+  }
+  if (!met) return;
+  const Acceleration a = sums.total();
+  if (VIRIAL)
+    receive(context, i, a);
+  else
+    apply(p, i, fluid, a);
+}
+
 template <class K, class P>
 template <Friction F, bool RATE, bool VIRIAL>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Receiver receive,
-                                                        void *context)
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, On whom,
+                                                        Receiver receive, void *context)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
-    const bool fluid = is_fluid(t);
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
-      const int i = lists.at(slot);
-      if (fluid && !p.is_active(i)) continue;
-      Sums<RATE, VIRIAL> sums;
-      int met = 0;
-      for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = lists(slot, other);
-        if (found.n == 0) continue;
-        met += found.n;
-        const Terms terms(model.pair(t, other));
-        const double equal = model.mass[other];
-        if (fluid && is_fluid(other))
-          fluid_on_fluid<F, RATE, VIRIAL>(p, i, found, terms, equal, c, sums);
-        else if (fluid)
-          across_boundary<F, RATE, VIRIAL, false>(p, i, found, terms, equal, c, sums);
-        else
-          across_boundary<F, RATE, VIRIAL, true>(p, i, found, terms, equal, c, sums);
-      }
-      if (!met) continue;
-      const Acceleration a = sums.total();
-      if (VIRIAL)
-        receive(context, i, a);
-      else
-        apply(p, i, fluid, a);
-    }
+    if (whom == (is_fluid(t) ? On::BOUNDARIES : On::FLUID)) continue;
+    for (const int slot : selection.of(t))
+      all_on<F, RATE, VIRIAL, false>(p, slot, t, c, receive, context);
+  }
+}
+
+template <class K, class P>
+template <Friction F>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_impulses(const Particles &p,
+                                                          const std::vector<int> &slots)
+{
+  Columns c;
+  for (const int slot : slots)
+    all_on<F, false, false, true>(p, slot, p.type[lists.at(slot)], c, nullptr, nullptr);
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::impulses(const Particles &p, const std::vector<int> &slots)
+{
+  if (model.friction == Friction::NONE)
+    all_impulses<Friction::NONE>(p, slots);
+  else
+    all_impulses<Friction::ANY>(p, slots);
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressure_time,
+                                       const double *span)
+{
+  spans.resize(p.n_all);
+  for (int i = 0; i < p.n_all; i++) {
+    motions[i].pressure = static_cast<Real>(pressure_time[i]);
+    spans[i] = static_cast<Real>(span[i]);
   }
 }
 
@@ -489,23 +556,23 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
   if (fluid) p.drho[i] += a.drho;
 }
 
-template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p)
+template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p, On whom)
 {
   if (model.wants_rate)
-    forces_and_rates<true>(p);
+    forces_and_rates<true>(p, whom);
   else
-    forces_and_rates<false>(p);
+    forces_and_rates<false>(p, whom);
 }
 
 template <class K, class P>
 template <bool RATE>
-void FluidLoops<K, P>::forces_and_rates(const Particles &p)
+void FluidLoops<K, P>::forces_and_rates(const Particles &p, On whom)
 {
   switch (model.friction) {
-    case Friction::NONE: return all_forces<Friction::NONE, RATE, false>(p, nullptr, nullptr);
+    case Friction::NONE: return all_forces<Friction::NONE, RATE, false>(p, whom, nullptr, nullptr);
     case Friction::ARTIFICIAL:
-      return all_forces<Friction::ARTIFICIAL, RATE, false>(p, nullptr, nullptr);
-    case Friction::ANY: return all_forces<Friction::ANY, RATE, false>(p, nullptr, nullptr);
+      return all_forces<Friction::ARTIFICIAL, RATE, false>(p, whom, nullptr, nullptr);
+    case Friction::ANY: return all_forces<Friction::ANY, RATE, false>(p, whom, nullptr, nullptr);
   }
 }
 
@@ -538,14 +605,13 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::approach_sq(int i, const Stretch &near,
 }
 
 template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(const Particles &p, double *speed)
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(double *speed)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+    for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      if (!p.is_active(i)) continue;
       double most = 0.0;
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch near = lists(slot, other);
@@ -564,7 +630,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(const Particles &p, 
 template <class K, class P>
 void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
 {
-  all_forces<Friction::ANY, false, true>(p, receive, context);
+  all_forces<Friction::ANY, false, true>(p, On::ALL, receive, context);
 }
 
 /* ----------------------------------------------------------------------
@@ -621,9 +687,8 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
     const Terms terms(model.pair(t, t));
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+    for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      if (!p.is_active(i)) continue;
       const std::array<double, 3> of_i =
           density_differences(p, i, lists(slot, t), terms, model.mass[t], c)
               .gradient(model.dimension);
@@ -694,9 +759,8 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+    for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      if (!p.is_active(i)) continue;
       double sum = 0.0;
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch found = lists(slot, other);
@@ -723,9 +787,8 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
 {
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
-    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
+    for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      if (!p.is_active(i)) continue;
       const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
       double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
@@ -795,7 +858,8 @@ template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
   return lists.bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
       static_cast<double>(motions.capacity()) * sizeof(Motion) +
-      static_cast<double>(gradients.capacity()) * sizeof(Gradient);
+      static_cast<double>(gradients.capacity()) * sizeof(Gradient) +
+      static_cast<double>(spans.capacity()) * sizeof(Real);
 }
 
 template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)

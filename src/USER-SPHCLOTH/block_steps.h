@@ -1,0 +1,146 @@
+// Steps of individual particles in powers of two: run_style sph/adaptive block.
+//
+// A particle's energy, compressed as it is, acts for its own step: density and pressure are found when
+// the step begins, and the impulse of its pressure over that whole step goes to it and to all of its
+// neighbours at once.  A pair so exchanges the impulses of two energies, each at its own pace, and both
+// partners get the same of either: momentum stays.  This splits the Hamiltonian by particles,
+//   H = sum_i m_i v_i^2 / 2 + sum_i m_i e(rho_i),
+// with kicks of m_i e(rho_i) every dt_i, which is the impulse method of Tuckerman, Berne & Martyna,
+// J. Chem. Phys. 97 (1992) 1990, with semi-implicit Euler in place of Verlet.  With equal steps it is
+// the scheme of (2) and lines 30 to 33.  Forces of others act in every step of the scene.
+
+#ifndef SPHCLOTH_BLOCK_STEPS_H
+#define SPHCLOTH_BLOCK_STEPS_H
+
+#include "pointers.h"
+
+#include "core/criteria.h"
+#include "core/time_line.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixSPHIntegrate;
+class PairSPHTait;
+
+class BlockSteps : protected Pointers {
+ public:
+  // What a particle carries along.  LEVEL: of its step; UNTIL: how far its impulses reach, in ticks;
+  // TERM: its pressure in the last of them; AHEAD: how far the one before reached beyond now, and
+  // TAKEN_BACK: pressure times ticks of that; EXTERNAL: force of others than the fluid; BY: the
+  // limit of its step; CALL: why its step ends now.
+  enum Column {
+    LEVEL,
+    UNTIL,
+    TERM,
+    AHEAD,
+    TAKEN_BACK,
+    EXTERNAL,
+    BY = EXTERNAL + 3,
+    CALL,
+    N_COLUMNS
+  };
+
+  // of the user: how many times a neighbour's step somebody's may be, 2 or 4; may it end early?
+  struct Options {
+    int ratio = 2;
+    bool waking = true;
+  } options;
+
+  // rows: [particle][N_COLUMNS], of the fix
+  BlockSteps(LAMMPS *, FixSPHIntegrate *, double **&rows);
+
+  void init(PairSPHTait *);
+  void forget() { at = Place(); }
+  bool begun() const { return at.line.root > 0.0; }
+  void set_new(double *row) const;    // a particle that comes in
+
+  // Time goes on.  Is a particle updated now?
+  void begin_step();
+  bool is_due(int i) const;
+
+  // The pair style tells when it knows the forces of other particles on the active fluid, and when it
+  // knows all that it has.  Steps are chosen then, and impulses take the place of forces: f is what
+  // acts until the next step of the scene begins.
+  void note_forces();
+  void hand_out();
+  // what others have added to that in the meantime
+  void note_external_forces();
+
+  // of the scene, the limit that asks for it, and whether it ends at an output time
+  double next_step() const;
+  sphcloth::Limit limited_by() const { return at.limit; }
+  bool arrives() const { return at.reaches_output && ends_root(); }
+
+  // ghosts
+  int pack_forward(int n, const int *list, double *buf) const;
+  void unpack_forward(int n, int first, const double *buf);
+  int pack_reverse(int n, int first, double *buf) const;
+  void unpack_reverse(int n, const int *list, const double *buf);
+
+  // where time is, plain for the restart file
+  struct Place {
+    sphcloth::TimeLine line;
+    int deepest = 0;    // level of the step of the scene
+    sphcloth::Limit limit = sphcloth::Limit::NONE;
+    bool alike = true;    // everybody takes that step, and took the same before
+    double span_of_all = 1.0;    // for which impulses then act, over that step
+    bool chosen = false;    // steps, at this time, by this evaluation or the same one before
+    bool reaches_output = false;    // does the root step end there?
+    double output_time = 0.0;
+  };
+  const Place &place() const { return at; }
+  void go_to(const Place &place) { at = place; }
+
+  double bytes() const;
+
+ private:
+  enum Stage { LEVELS, IMPULSES };
+  enum Mark { UNTOUCHED = 0, TOUCHED = 1, WAKE = 2 };
+  enum Call { NONE, WOKEN, NEW };
+
+  FixSPHIntegrate *fix;
+  PairSPHTait *pair;
+  double **&rows;
+  Place at;
+  int apart;    // levels that neighbours may be apart
+
+  // by particle, owned and ghost; scratch
+  Stage stage;
+  std::vector<int> level, mark;
+  std::vector<double> span, impulse;    // in steps of the scene: time, and pressure times time
+  std::vector<double> from_particles, handed;    // forces [n][3]
+  std::vector<double> wanted;
+  std::vector<int> marked;    // owned
+  std::vector<int> slots;    // of those who need impulses
+
+  void make_room();
+  bool ends_root() const;
+
+  void choose();
+  void want_steps();
+  void begin_root();
+  void fit_root(double best, double least);
+  void choose_levels();
+  void find_step_of_scene();
+  void respect_neighbours();
+  int vertex_level(int i) const;
+  int level_beside(int i);
+  void book();
+  void begin_own_step(double *row) const;
+  static double half_step(const double *row);
+
+  void measure_impulses();
+  void share_impulses();
+  void share_equally();
+  void prolong(int i, double times);
+  bool look_around(int i);
+  void touch(int j, int mark_of_it);
+  void wake_marked();
+  template <class Do> void for_neighbours(int i, Do something);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

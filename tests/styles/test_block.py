@@ -1,0 +1,204 @@
+"""run_style sph/adaptive block: steps of individual particles in powers of two."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance, last_frame, run, write
+from scenes import DROP, END, MAKE_DROP
+from test_individual import MAKE, fall
+
+# Two drops of different water, fine and coarse, collide in empty space.  Nothing else acts.
+COLLIDE = """
+variable steps index 200
+variable dump index end.txt
+variable newton index on
+newton ${{newton}}
+units si
+atom_style sph
+atom_modify map yes
+comm_modify vel yes
+boundary p p p
+read_data drops.data
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 20 {friction}
+pair_coeff 2 2 fluid 1000 c0 20 support 0.05 {friction}
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+timestep 2e-3
+fix step all sph/integrate global velocity 0 force 0 acoustic 0.5 relative 0.2 {limits}
+run_style sph/adaptive {scheme}
+"""
+MAKE_DROPS = """
+units si
+atom_style sph
+comm_modify vel yes
+region box block -0.6 0.6 -0.5 0.5 -0.5 0.5
+create_box 2 box
+lattice sc 0.05 origin 0.5 0.5 0.5
+region coarse sphere 0.2 0 0 0.16 units box
+create_atoms 1 region coarse
+lattice sc 0.025 origin 0.5 0.5 0.5
+region fine sphere -0.06 0 0 0.09 units box
+create_atoms 2 region fine
+mass 1 0.125
+mass 2 0.015625
+group coarse type 1
+group fine type 2
+displace_atoms coarse random 0.005 0.005 0.005 17 units box
+displace_atoms fine random 0.002 0.002 0.002 18 units box
+set group all sph/rho 1000
+velocity coarse set -1 0.3 0 units box
+velocity fine set 1 0 0 units box
+write_data drops.data
+"""
+
+
+def collide(scheme="block", limits="", friction="alpha 0.1 nu 1e-3"):
+    return COLLIDE.format(scheme=scheme, limits=limits, friction=friction)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_DROPS, "in.drops"))
+    return tmp_path
+
+
+def started(folder, script, monkeypatch):
+    monkeypatch.chdir(folder)
+    lmp = instance()
+    lmp.commands_string(script + "run 0 post no")
+    return lmp
+
+
+def from_restart(script):
+    lines = script.replace("read_data drops.data", "read_restart half.bin").splitlines(True)
+    return "".join(line for line in lines if not line.startswith(("pair_style", "pair_coeff")))
+
+
+def momentum(lmp):
+    mass = np.array([0.0, 0.125, 0.015625])[by_id(lmp, "type")]
+    return mass @ by_id(lmp, "v")
+
+
+def test_all_in_one_bin_is_the_global_scheme(folder):
+    """A ceiling below every limit."""
+    for scheme in ("global", "block"):
+        run(write(folder, fall(scheme, ceiling=2e-4) + END, f"in.{scheme}"), dump=f"{scheme}.txt")
+    assert np.array_equal(last_frame(folder / "global.txt"), last_frame(folder / "block.txt"))
+
+
+@pytest.mark.parametrize("limits", ["", "ratio 4", "waking no"])
+def test_momentum_stays_to_round_off(folder, monkeypatch, limits):
+    lmp = started(folder, collide(limits=limits), monkeypatch)
+    before, active = momentum(lmp), []
+    for _ in range(40):
+        lmp.command("run 10 post no")
+        active.append(lmp.extract_fix("step", 0, 1, 1))
+    assert min(active) < 0.1
+    assert np.abs(momentum(lmp) - before).max() < 1e-13 * np.abs(before).max()
+
+
+def test_energy_stays_better_than_with_one_step_for_all(folder, monkeypatch):
+    """Without friction, up to where the drops have gone through each other's middle."""
+    error, updates = {}, {}
+    for scheme, limits in (("global", ""), ("block", "ratio 2"), ("block", "ratio 4")):
+        name = f"{scheme} {limits}"
+        lmp = started(folder, collide(scheme, limits + " output 0.03", friction=""), monkeypatch)
+        lmp.commands_string("thermo_modify norm no\nvariable t equal time")
+        lmp.command("fix end all halt 1 v_t >= 0.12 error continue")
+        lmp.command("run 0 post no")
+        before = lmp.get_thermo("etotal")
+        lmp.command("run 2000")
+        error[name] = abs(lmp.get_thermo("etotal") / before - 1)
+        updates[name] = lmp.extract_fix("step", 0, 1, 2)
+        lmp.close()
+    for ratio in (2, 4):
+        assert error[f"block ratio {ratio}"] < 0.8 * error["global "] < 0.02
+        assert updates[f"block ratio {ratio}"] < 0.5 * updates["global "]
+
+
+def test_a_steady_state_and_a_moving_frame_take_the_longest_step(tmp_path, monkeypatch):
+    """v = 0 and a = 0 give the ceiling exactly, and so does everything at one velocity."""
+    for velocity in ("0 0 0", "7 3 1"):
+        script = fall("block", ceiling=3e-3, limits="velocity 0 relative 0.1")
+        set_up, rest = script.split("read_data fall.data")
+        loose = MAKE.split("comm_modify vel yes")[1].replace("sc 0.05", "sc 0.06")
+        loose = loose.split("displace_atoms")[0].split("boundary f f f")[1]
+        rest = rest.replace("fix g", "#").replace("fix w", "#")
+        lmp = started(
+            tmp_path, f"{set_up}{loose}mass 1 0.125\nset group all sph/rho 1000{rest}", monkeypatch
+        )
+        lmp.command(f"velocity all set {velocity} units box")
+        lmp.command("run 20 post no")
+        assert lmp.extract_fix("step", 0, 0) == 3e-3
+        lmp.close()
+
+
+@pytest.mark.parametrize("scene", [collide(limits="ratio 4"), collide()])
+@pytest.mark.parametrize(("ranks", "newton"), [(2, "on"), (4, "on"), (2, "off")])
+def test_ranks(folder, scene, ranks, newton):
+    """Active and inactive neighbours on two sides of a border, periodic ones too."""
+    run(write(folder, scene + END), dump="one.txt", steps=120)
+    run(write(folder, scene + END), ranks=ranks, dump="many.txt", steps=120, newton=newton)
+    one, many = last_frame(folder / "one.txt"), last_frame(folder / "many.txt")
+    assert np.abs(one - many).max() < 1e-9
+
+
+def test_restart_and_split_runs_in_the_middle_of_a_hierarchy(folder):
+    begin = collide()
+    write_all = END.replace("run ${steps}", "")
+    half = "run 75\nwrite_restart half.bin\nrun 75\n"
+    run(write(folder, begin + half + write_all, "in.split"), dump="split.txt")
+    run(write(folder, begin + END, "in.whole"), dump="whole.txt", steps=150)
+    after = from_restart(begin)
+    run(write(folder, after + END, "in.again"), dump="again.txt", steps=75)
+    whole, split, again = (last_frame(folder / f"{n}.txt") for n in ("whole", "split", "again"))
+    assert np.array_equal(split, again)
+    assert np.abs(whole - split).max() < 1e-9
+
+
+def test_restart_on_other_ranks(folder):
+    begin = collide()
+    half = "run 75\nwrite_restart half.bin\nrun 75\n"
+    run(write(folder, begin + half + END, "in.split"), steps=0, dump="split.txt")
+    after = from_restart(begin)
+    run(write(folder, after + END, "in.again"), ranks=3, dump="again.txt", steps=75)
+    split, again = last_frame(folder / "split.txt"), last_frame(folder / "again.txt")
+    assert np.abs(split - again).max() < 1e-9
+
+
+def test_another_scheme_before_and_behind(folder, monkeypatch):
+    lmp = started(folder, collide("global"), monkeypatch)
+    before = momentum(lmp)
+    for scheme in ("block", "constant", "block", "global"):
+        lmp.commands_string(f"run_style sph/adaptive {scheme}\ntimestep 2e-4\nrun 13 post no")
+    assert lmp.extract_fix("step", 0, 1, 1) == 1
+    assert np.abs(momentum(lmp) - before).max() < 1e-12
+    for scheme in ("individual", "block"):
+        lmp.command(f"run_style sph/adaptive {scheme}")
+        lmp.command("run 13 post no")
+    assert np.isfinite(by_id(lmp, "x")).all()
+
+
+def test_with_cloth_and_contact_nothing_passes(tmp_path):
+    run(write(tmp_path, MAKE_DROP, "in.make"))
+    script = DROP + "run_style sph/adaptive block\n" + END
+    for ranks in (1, 2):
+        run(write(tmp_path, script), ranks=ranks, dump=f"{ranks}.txt", steps=200)
+    one, two = last_frame(tmp_path / "1.txt"), last_frame(tmp_path / "2.txt")
+    assert np.abs(one - two).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("sph/tait 0.1", "sph/tait 0.1 density continuity"), "need densities by summation"),
+        (("acoustic 0.5", "acoustic 0.5 fluctuation 0.01"), "fluctuation 0.01 is for one step"),
+        (("acoustic 0.5", "acoustic 0.5 ratio 3"), "ratio is '3': steps differ by 2 or 4"),
+        (("acoustic 0.5", "acoustic 0.5 waking maybe"), "waking is 'maybe': use no or yes"),
+        (("acoustic 0.5", "acoustic 0.5 min 1e-3"), r"acoustic limit asks .* for particle \d+"),
+    ],
+)
+def test_errors(folder, monkeypatch, change, message):
+    with pytest.raises(Exception, match=message):
+        started(folder, collide().replace(*change), monkeypatch).command("run 100")

@@ -306,8 +306,10 @@ void BlockSteps::measure_impulses()
   const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
   const double *term = pair->pressure_term();
   for (int i = 0; i < atom->nlocal; i++) {
-    span[i] = impulse[i] = 0.0;
-    level[i] = pair->is_fluid(atom->type[i]) ? static_cast<int>(rows[i][LEVEL]) : 0;
+    const bool fluid = pair->is_fluid(atom->type[i]);
+    span[i] = 0.0;
+    impulse[i] = fluid ? 0.0 : term[i];    // a boundary's pressure acts as long as its fluid's
+    level[i] = fluid ? static_cast<int>(rows[i][LEVEL]) : 0;
   }
   for (const int i : pair->active_particles()) {
     const double half = half_step(rows[i]), ahead = rows[i][AHEAD];

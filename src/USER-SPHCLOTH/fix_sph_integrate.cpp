@@ -233,21 +233,37 @@ void FixSPHIntegrate::initial_integrate(int)
 {
   pair->advance(update->dt);
   switch (scheme) {
-    case SteppingScheme::INDIVIDUAL: move_individually(); return select_active();
-    case SteppingScheme::BLOCK: move_all(); return select_due();
-    default: updates += move_all(); pair->set_active(nullptr, ACTIVE);
+    case SteppingScheme::INDIVIDUAL:
+      move_individually();
+      return select_active();
+    case SteppingScheme::BLOCK:
+      move<false>();
+      return select_due();
+    default: move_active();
   }
 }
 
-// how many
-
-int FixSPHIntegrate::move_all()
+void FixSPHIntegrate::move_active()
 {
-  int moved = 0;
+  const auto [moved, rest] = move<true>();
+  updates += moved;
+  // while nobody rests, the pair style need not ask
+  pair->set_active(rest ? state : nullptr, ACTIVE);
+}
+
+// how many, and how many do not
+
+template <bool ACTIVE_ONLY> std::pair<int, int> FixSPHIntegrate::move()
+{
+  int moved = 0, rest = 0;
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
+    if (ACTIVE_ONLY && state[i][ACTIVE] == 0.0) {
+      rest++;
+      continue;
+    }
     const double kick = dtf / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
@@ -255,7 +271,7 @@ int FixSPHIntegrate::move_all()
     }
     moved++;
   }
-  return moved;
+  return {moved, rest};
 }
 
 void FixSPHIntegrate::select_due()

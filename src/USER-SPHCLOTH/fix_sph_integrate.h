@@ -17,6 +17,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -119,7 +120,8 @@ class FixSPHIntegrate : public Fix {
   void want_rows(int columns);
   void set_row(int i);
   void forget_rows();
-  int move_all();
+  void move_active();
+  template <bool ACTIVE_ONLY> std::pair<int, int> move();
   void move_individually();
   void select_active();
   void select_due();

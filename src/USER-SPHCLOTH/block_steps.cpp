@@ -10,16 +10,17 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 // what a step of the scene costs beside its updates, in updates per particle: drift, ghosts, cloth
-static constexpr double OVERHEAD = 0.05;
+static constexpr double OVERHEAD = 0.1;
 
 BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, double **&rows) :
-    Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), stage(LEVELS)
+    Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), stage(LEVELS)
 {
 }
 
@@ -33,7 +34,7 @@ void BlockSteps::init(PairSPHTait *style)
 void BlockSteps::make_room()
 {
   const std::size_t n = atom->nmax;
-  for (std::vector<int> *list : {&level, &mark}) list->resize(n, 0);
+  for (std::vector<int> *list : {&level, &pace, &mark}) list->resize(n, 0);
   for (std::vector<double> *list : {&span, &impulse, &wanted}) list->resize(n, 0.0);
   for (std::vector<double> *list : {&from_particles, &handed}) list->resize(3 * n, 0.0);
 }
@@ -43,6 +44,7 @@ void BlockSteps::make_room()
 void BlockSteps::set_new(double *row) const
 {
   row[LEVEL] = at.deepest;
+  row[BEFORE] = Pace::FIRST;
   row[CALL] = NEW;
   if (at.chosen) begin_own_step(row);
 }
@@ -55,11 +57,7 @@ void BlockSteps::begin_step()
 {
   at.line.now += TimeLine::ticks(at.deepest);
   at.chosen = false;
-}
-
-bool BlockSteps::is_due(int i) const
-{
-  return rows[i][CALL] != NONE || at.line.begins(static_cast<int>(rows[i][LEVEL]));
+  coarsest = at.line.coarsest();
 }
 
 bool BlockSteps::ends_root() const
@@ -86,6 +84,7 @@ void BlockSteps::choose()
   find_step_of_scene();
   if (!at.alike) respect_neighbours();
   book();
+  if (options.sleep > 0.0) fall_asleep();
   at.chosen = true;
 }
 
@@ -126,15 +125,18 @@ void BlockSteps::fit_root(double best, double least)
   for (const int i : pair->active_particles())
     rows[i][UNTIL] = (rows[i][UNTIL] - TimeLine::ticks(0)) * at.line.root / root;
   at.line = {root, 0};
+  coarsest = 0;
   at.reaches_output = root == remaining;
   at.output_time = output;
 }
 
 void BlockSteps::choose_levels()
 {
-  const int coarsest = at.line.coarsest();
-  for (const int i : pair->active_particles())
-    rows[i][LEVEL] = std::max(coarsest, at.line.level_of(wanted[i]));
+  for (const int i : pair->active_particles()) {
+    double *row = rows[i];
+    row[BEFORE] = row[CALL] == NEW ? Pace::FIRST : row[CALL] == WOKEN ? Pace::BROKEN : row[LEVEL];
+    row[LEVEL] = std::max(coarsest, at.line.level_of(wanted[i]));
+  }
 }
 
 // and whether it is the step of everybody
@@ -144,7 +146,6 @@ void BlockSteps::find_step_of_scene()
   constexpr int LIMITS = 64;
   constexpr double FAR = std::numeric_limits<double>::max();
   static_assert(N_LIMITS < LIMITS);
-  const int coarsest = at.line.coarsest();
   const StepLimit vertices = fix->tightest_vertex();
   int finest =
       LIMITS * std::max(coarsest, at.line.level_of(vertices.dt)) + static_cast<int>(vertices.by);
@@ -163,7 +164,7 @@ void BlockSteps::find_step_of_scene()
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
   at.deepest = static_cast<int>(all[0]) / LIMITS;
   at.limit = static_cast<Limit>(static_cast<int>(all[0]) % LIMITS);
-  at.alike = at.line.now == 0 && -all[1] >= at.deepest && all[3] == -all[2];
+  at.alike = at.line.now == 0 && -all[1] >= at.deepest && all[3] == -all[2] && options.sleep == 0.0;
   // none of a new particle reaches anywhere yet
   at.span_of_all = all[3] == 0.0 ? 1.0
                                  : 0.5 - all[3] / static_cast<double>(TimeLine::ticks(at.deepest));
@@ -177,8 +178,29 @@ void BlockSteps::respect_neighbours()
     level[i] = pair->is_fluid(atom->type[i]) ? static_cast<int>(rows[i][LEVEL]) : vertex_level(i);
   stage = LEVELS;
   comm->forward_comm(fix, 1);
+  NearLists &lists = pair->order();
   for (const int i : pair->active_particles())
-    rows[i][LEVEL] = std::min(at.deepest, std::max(level[i], level_beside(i)));
+    if (lists.greatest(lists.slot(i), level.data()) - apart > level[i])
+      rows[i][LEVEL] = std::min(at.deepest, level_beside(i));
+}
+
+int BlockSteps::level_beside(int i)
+{
+  int own = level[i];
+  for_neighbours(i, [&](int j) {
+    if (level[j] - apart > own && inside_support(i, j)) own = level[j] - apart;
+  });
+  return own;
+}
+
+// Lists hold some who are outside, how many depends on the ranks.
+
+bool BlockSteps::inside_support(int i, int j) const
+{
+  const double *x = atom->x[i], *y = atom->x[j];
+  const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+  const double support = pair->support(atom->type[i], atom->type[j]);
+  return dx * dx + dy * dy + dz * dz < support * support;
 }
 
 // of a vertex of cloth, as for a neighbour whose step may be `ratio` times as long; a wall has none
@@ -187,13 +209,6 @@ int BlockSteps::vertex_level(int i) const
 {
   const double dt = fix->vertex_step(i);
   return dt > 0.0 ? at.line.level_of(dt) + apart : 0;
-}
-
-int BlockSteps::level_beside(int i)
-{
-  int finest = 0;
-  for_neighbours(i, [&](int j) { finest = std::max(finest, level[j]); });
-  return finest - apart;
 }
 
 void BlockSteps::book()
@@ -212,7 +227,8 @@ void BlockSteps::book()
 void BlockSteps::begin_own_step(double *row) const
 {
   const double now = static_cast<double>(at.line.now), half = half_step(row);
-  row[AHEAD] = row[CALL] == NEW ? -half : row[UNTIL] - now;
+  const bool is_new = row[CALL] == NEW;
+  row[AHEAD] = is_new ? -half : row[UNTIL] - now;
   row[TAKEN_BACK] = row[TERM] * std::max(0.0, row[AHEAD]);
   row[UNTIL] = now + half;
   row[CALL] = NONE;
@@ -221,6 +237,87 @@ void BlockSteps::begin_own_step(double *row) const
 double BlockSteps::half_step(const double *row)
 {
   return 0.5 * static_cast<double>(TimeLine::ticks(static_cast<int>(row[LEVEL])));
+}
+
+/* ----------------------------------------------------------------------
+   Sleep: water at rest keeps its place, density and pressure, and is a wall for its neighbours.
+------------------------------------------------------------------------- */
+
+// It rests if it is slow and stays so for PATIENCE times the time that sound needs across the support.
+
+static constexpr double PATIENCE = 20.0;
+
+bool BlockSteps::is_slow(int i) const
+{
+  const double *v = atom->v[i];
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < options.sleep * options.sleep;
+}
+
+bool BlockSteps::rests(int i) const
+{
+  const double *f = atom->f[i], *more = &rows[i][EXTERNAL];
+  double force_sq = 0.0;
+  for (int d = 0; d < 3; d++) force_sq += (f[d] + more[d]) * (f[d] + more[d]);
+  return is_slow(i) && fix->gains_speed(i, std::sqrt(force_sq), PATIENCE) < options.sleep;
+}
+
+bool BlockSteps::rests_among_others(int i)
+{
+  if (!rests(i) || pair->feels_moving_wall(i)) return false;
+  bool others = true;
+  for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !inside_support(i, j)); });
+  return others;
+}
+
+void BlockSteps::fall_asleep()
+{
+  marked.clear();
+  for (const int i : pair->active_particles())
+    if (rests_among_others(i)) marked.push_back(i);
+  for (const int i : marked) {
+    rows[i][LEVEL] = ASLEEP;
+    std::fill_n(atom->f[i], 3, 0.0);
+    std::fill_n(atom->v[i], 3, 0.0);
+  }
+}
+
+// Contact or a command has given it speed, another force acts on it than when it fell asleep, or a
+// wall beside it moves.
+
+void BlockSteps::wake_moved()
+{
+  if (options.sleep == 0.0) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_fluid(atom->type[i]) || !sleeps(i)) continue;
+    double change_sq = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double change = atom->f[i][d] - rows[i][EXTERNAL + d];
+      change_sq += change * change;
+    }
+    if (!is_slow(i) || fix->gains_speed(i, std::sqrt(change_sq), PATIENCE) > options.sleep ||
+        pair->feels_moving_wall(i))
+      wake(i);
+  }
+}
+
+// as a particle that is new
+
+void BlockSteps::wake(int i)
+{
+  if (sleeps(i)) {
+    rows[i][LEVEL] = at.deepest;
+    rows[i][CALL] = NEW;
+  } else
+    rows[i][CALL] = WOKEN;
+}
+
+void BlockSteps::wake_beside_moving_boundaries()
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!pair->is_fluid(atom->type[i]) && !is_slow(i))
+      for_neighbours(i, [&](int j) {
+        if (Pace::before(pace[j]) == Pace::SLEEPER && inside_support(i, j)) touch(j, WAKE);
+      });
 }
 
 /* ----------------------------------------------------------------------
@@ -263,6 +360,7 @@ void BlockSteps::share_impulses()
   marked.clear();
   slots.clear();
   for (const int i : pair->active_particles()) {
+    if (sleeps(i)) continue;
     if (look_around(i)) {
       prolong(i, span[i] - 1.0);
       continue;
@@ -270,6 +368,7 @@ void BlockSteps::share_impulses()
     prolong(i, -1.0);
     slots.push_back(pair->order().slot(i));
   }
+  if (options.sleep > 0.0) wake_beside_moving_boundaries();
   comm->reverse_comm(fix, 1);
   wake_marked();
   pair->give_impulses(slots, impulse.data(), span.data());
@@ -307,14 +406,21 @@ void BlockSteps::measure_impulses()
   const double *term = pair->pressure_term();
   for (int i = 0; i < atom->nlocal; i++) {
     const bool fluid = pair->is_fluid(atom->type[i]);
-    span[i] = 0.0;
-    impulse[i] = fluid ? 0.0 : term[i];    // a boundary's pressure acts as long as its fluid's
-    level[i] = fluid ? static_cast<int>(rows[i][LEVEL]) : 0;
+    const bool asleep = fluid && sleeps(i);
+    // the pressure of a boundary, or of who sleeps, acts as long as its partner's
+    span[i] = asleep ? -1.0 : 0.0;
+    impulse[i] = fluid && !asleep ? 0.0 : term[i];
+    pace[i] = asleep ? Pace::of(0, Pace::SLEEPER)
+        : fluid      ? Pace::of(static_cast<int>(rows[i][LEVEL]), Pace::INACTIVE)
+                     : Pace::BOUNDARY;
   }
   for (const int i : pair->active_particles()) {
-    const double half = half_step(rows[i]), ahead = rows[i][AHEAD];
+    const double *row = rows[i];
+    if (sleeps(i)) continue;
+    const double half = half_step(row), ahead = row[AHEAD];
     span[i] = std::max(0.0, half - ahead) / scene;
-    impulse[i] = ahead > 0.0 ? (half * term[i] - rows[i][TAKEN_BACK]) / scene : span[i] * term[i];
+    impulse[i] = ahead > 0.0 ? (half * term[i] - row[TAKEN_BACK]) / scene : span[i] * term[i];
+    pace[i] = Pace::of(static_cast<int>(row[LEVEL]), static_cast<int>(row[BEFORE]));
   }
 }
 
@@ -326,20 +432,33 @@ template <class Do> void BlockSteps::for_neighbours(int i, Do something)
   }
 }
 
-// Do it and its neighbours begin the same step?  Those who begin none are told that they feel one.
+// Do it and its neighbours have impulses for the same time?  Those who have none are told that they
+// feel one.
 
 bool BlockSteps::look_around(int i)
 {
-  const double *term = pair->pressure_term();
-  bool in_step = impulse[i] == span[i] * term[i];
+  NearLists &lists = pair->order();
+  const int slot = lists.slot(i), own = pace[i];
+  if (Pace::before(own) != Pace::BROKEN && lists.all_have(own, slot, pace.data())) return true;
+  bool in_step = Pace::before(own) != Pace::BROKEN;
   for_neighbours(i, [&](int j) {
-    if (!pair->is_fluid(atom->type[j])) return touch(j, TOUCHED);
-    if (span[j] == span[i] && impulse[j] == span[j] * term[j]) return;
+    if (pace[j] == own) return;
+    if (pace[j] == Pace::BOUNDARY) return touch(j, TOUCHED);
+    if (Pace::before(pace[j]) == Pace::SLEEPER) return disturb(i, j);
     in_step = false;
-    if (span[j] != 0.0 || impulse[j] != 0.0) return;
-    touch(j, options.waking && level[i] - level[j] > apart ? TOUCHED | WAKE : TOUCHED);
+    if (Pace::before(pace[j]) != Pace::INACTIVE) return;
+    const bool slow = Pace::level(own) - Pace::level(pace[j]) > apart;
+    touch(j, options.waking && slow && inside_support(i, j) ? TOUCHED | WAKE : TOUCHED);
   });
   return in_step;
+}
+
+// Who sleeps at the border of water that is awake is asked now and then whether it still rests.
+
+void BlockSteps::disturb(int i, int j)
+{
+  const bool strong = !is_slow(i) || at.line.now == 0;
+  if (options.waking && strong && inside_support(i, j)) touch(j, WAKE);
 }
 
 void BlockSteps::touch(int j, int mark_of_it)
@@ -351,8 +470,8 @@ void BlockSteps::touch(int j, int mark_of_it)
 void BlockSteps::wake_marked()
 {
   for (const int i : marked) {
-    slots.push_back(pair->order().slot(i));
-    if (mark[i] & WAKE) rows[i][WOKEN] = 1.0;
+    if (Pace::before(pace[i]) != Pace::SLEEPER) slots.push_back(pair->order().slot(i));
+    if (mark[i] & WAKE) wake(i);
   }
 }
 
@@ -364,10 +483,14 @@ int BlockSteps::pack_forward(int n, const int *list, double *buf) const
 {
   int m = 0;
   for (int k = 0; k < n; k++) {
-    buf[m++] = level[list[k]];
-    if (stage == LEVELS) continue;
-    buf[m++] = span[list[k]];
-    buf[m++] = impulse[list[k]];
+    const int i = list[k];
+    if (stage == LEVELS) {
+      buf[m++] = level[i];
+      continue;
+    }
+    buf[m++] = pace[i];
+    buf[m++] = span[i];
+    buf[m++] = impulse[i];
   }
   return m;
 }
@@ -375,8 +498,11 @@ int BlockSteps::pack_forward(int n, const int *list, double *buf) const
 void BlockSteps::unpack_forward(int n, int first, const double *buf)
 {
   for (int i = first; i < first + n; i++) {
-    level[i] = static_cast<int>(*buf++);
-    if (stage == LEVELS) continue;
+    if (stage == LEVELS) {
+      level[i] = static_cast<int>(*buf++);
+      continue;
+    }
+    pace[i] = static_cast<int>(*buf++);
     span[i] = *buf++;
     impulse[i] = *buf++;
   }
@@ -397,7 +523,7 @@ void BlockSteps::unpack_reverse(int n, const int *list, const double *buf)
 double BlockSteps::bytes() const
 {
   return static_cast<double>(sizeof(int)) *
-      static_cast<double>(level.capacity() + mark.capacity() + marked.capacity() +
+      static_cast<double>(level.capacity() + pace.capacity() + mark.capacity() + marked.capacity() +
                           slots.capacity()) +
       static_cast<double>(sizeof(double)) *
       static_cast<double>(span.capacity() + impulse.capacity() + wanted.capacity() +

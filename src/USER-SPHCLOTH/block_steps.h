@@ -26,12 +26,13 @@ class PairSPHTait;
 
 class BlockSteps : protected Pointers {
  public:
-  // What a particle carries along.  LEVEL: of its step; UNTIL: how far its impulses reach, in ticks;
-  // TERM: its pressure in the last of them; AHEAD: how far the one before reached beyond now, and
-  // TAKEN_BACK: pressure times ticks of that; EXTERNAL: force of others than the fluid; BY: the
-  // limit of its step; CALL: why its step ends now.
+  // What a particle carries along.  LEVEL: of its step; BEFORE: of the one before; UNTIL: how far
+  // its impulses reach, in ticks; TERM: its pressure in the last of them; AHEAD: how far the one
+  // before reached beyond now, and TAKEN_BACK: pressure times ticks of that; EXTERNAL: force of
+  // others than the fluid; BY: the limit of its step; CALL: why its step ends now.
   enum Column {
     LEVEL,
+    BEFORE,
     UNTIL,
     TERM,
     AHEAD,
@@ -42,10 +43,12 @@ class BlockSteps : protected Pointers {
     N_COLUMNS
   };
 
-  // of the user: how many times a neighbour's step somebody's may be, 2 or 4; may it end early?
+  // of the user: how many times a neighbour's step somebody's may be, 2 or 4; may it end early; the
+  // speed below which water sleeps, 0: never
   struct Options {
     int ratio = 2;
     bool waking = true;
+    double sleep = 0.0;
   } options;
 
   // rows: [particle][N_COLUMNS], of the fix
@@ -56,9 +59,11 @@ class BlockSteps : protected Pointers {
   bool begun() const { return at.line.root > 0.0; }
   void set_new(double *row) const;    // a particle that comes in
 
-  // Time goes on.  Is a particle updated now?
+  // Time goes on.  Is a particle updated now?  Those who sleep stay where they are.
   void begin_step();
-  bool is_due(int i) const;
+  bool is_due(int i) const { return rows[i][LEVEL] >= coarsest || rows[i][CALL] != NONE; }
+  bool sleeps(int i) const { return rows[i][LEVEL] == ASLEEP; }
+  void wake_moved();    // by others than the fluid
 
   // The pair style tells when it knows the forces of other particles on the active fluid, and when it
   // knows all that it has.  Steps are chosen then, and impulses take the place of forces: f is what
@@ -97,18 +102,30 @@ class BlockSteps : protected Pointers {
 
  private:
   enum Stage { LEVELS, IMPULSES };
+
+  // Level and what came before: particles of the same pace begin the same step and have impulses for
+  // the same time.  Of the others, none has another's pace.
+  struct Pace {
+    static constexpr int BEFORES = 64, SLEEPER = 60, FIRST = 61, BROKEN = 62, INACTIVE = 63;
+    static constexpr int BOUNDARY = -1;
+    static int of(int level, int before) { return BEFORES * level + before; }
+    static int level(int pace) { return pace / BEFORES; }
+    static int before(int pace) { return pace % BEFORES; }
+  };
   enum Mark { UNTOUCHED = 0, TOUCHED = 1, WAKE = 2 };
   enum Call { NONE, WOKEN, NEW };
+  static constexpr int ASLEEP = -1;    // as a level
 
   FixSPHIntegrate *fix;
   PairSPHTait *pair;
   double **&rows;
   Place at;
   int apart;    // levels that neighbours may be apart
+  int coarsest;    // level of a step that may begin now
 
   // by particle, owned and ghost; scratch
   Stage stage;
-  std::vector<int> level, mark;
+  std::vector<int> level, pace, mark;
   std::vector<double> span, impulse;    // in steps of the scene: time, and pressure times time
   std::vector<double> from_particles, handed;    // forces [n][3]
   std::vector<double> wanted;
@@ -127,6 +144,11 @@ class BlockSteps : protected Pointers {
   void respect_neighbours();
   int vertex_level(int i) const;
   int level_beside(int i);
+  bool inside_support(int i, int j) const;
+  void fall_asleep();
+  bool rests(int i) const;
+  bool rests_among_others(int i);
+  bool is_slow(int i) const;
   void book();
   void begin_own_step(double *row) const;
   static double half_step(const double *row);
@@ -136,8 +158,11 @@ class BlockSteps : protected Pointers {
   void share_equally();
   void prolong(int i, double times);
   bool look_around(int i);
+  void disturb(int i, int j);
   void touch(int j, int mark_of_it);
   void wake_marked();
+  void wake(int i);
+  void wake_beside_moving_boundaries();
   template <class Do> void for_neighbours(int i, Do something);
 };
 

@@ -19,6 +19,7 @@
 #include "output.h"
 #include "pair_sph_tait.h"
 #include "sph_adaptive.h"
+#include "timer.h"
 #include "update.h"
 #include "variable.h"
 
@@ -41,7 +42,7 @@ static constexpr double SLACK = 1e-6;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
-    ceiling(update->dt), growth(2.0), interval(0.0), ceiling_given(false), clamp_at_floor(false),
+    ceiling(update->dt), growth(2.0), interval(0.0), until(0.0), ceiling_given(false), clamp_at_floor(false),
     state(nullptr), rows(nullptr), n_columns(0),
     blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0), largest_before(0.0),
     uncut(0.0), arrives(false), limited_by(Limit::NONE), updates(0.0), steps_limited{},
@@ -96,11 +97,15 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       control.eta = args.at_least(keyword, 0.0);
     else if (keyword == "output")
       interval = args.at_least(keyword, 0.0);
+    else if (keyword == "until")
+      until = args.positive(keyword);
     else if (keyword == "ratio") {
       blocks->options.ratio = args.integer(keyword, 2, 4);
       if (blocks->options.ratio == 3) args.fail(keyword, "3", "steps differ by 2 or 4");
     } else if (keyword == "waking")
       blocks->options.waking = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "sleep")
+      blocks->options.sleep = args.at_least(keyword, 0.0);
     else if (keyword == "min")
       floor = args.positive(keyword);
     else if (keyword == "max") {
@@ -115,7 +120,7 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     else
       args.unknown(keyword,
                    "velocity, force, acoustic, viscous, density, relative, cloth, fluctuation, "
-                   "output, ratio, waking, min, max, growth, below");
+                   "output, until, ratio, waking, sleep, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
@@ -223,6 +228,7 @@ void FixSPHIntegrate::forget_rows()
 void FixSPHIntegrate::setup(int)
 {
   if (scheme != SteppingScheme::CONSTANT) choose_step();
+  look_for_end();
 }
 
 /* ----------------------------------------------------------------------
@@ -237,7 +243,7 @@ void FixSPHIntegrate::initial_integrate(int)
       move_individually();
       return select_active();
     case SteppingScheme::BLOCK:
-      move<false>();
+      move_but([this](int i) { return blocks->sleeps(i); });
       return select_due();
     default: move_active();
   }
@@ -245,22 +251,22 @@ void FixSPHIntegrate::initial_integrate(int)
 
 void FixSPHIntegrate::move_active()
 {
-  const auto [moved, rest] = move<true>();
+  const auto [moved, rest] = move_but([this](int i) { return state[i][ACTIVE] == 0.0; });
   updates += moved;
   // while nobody rests, the pair style need not ask
   pair->set_active(rest ? state : nullptr, ACTIVE);
 }
 
-// how many, and how many do not
+// how many move, and how many rest
 
-template <bool ACTIVE_ONLY> std::pair<int, int> FixSPHIntegrate::move()
+template <class Rests> std::pair<int, int> FixSPHIntegrate::move_but(Rests rests)
 {
   int moved = 0, rest = 0;
   const double dt = update->dt, dtf = dt * force->ftm2v;
   double **x = atom->x, **v = atom->v, **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (ACTIVE_ONLY && state[i][ACTIVE] == 0.0) {
+    if (rests(i)) {
       rest++;
       continue;
     }
@@ -276,6 +282,7 @@ template <bool ACTIVE_ONLY> std::pair<int, int> FixSPHIntegrate::move()
 
 void FixSPHIntegrate::select_due()
 {
+  blocks->wake_moved();
   blocks->begin_step();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!pair->is_fluid(atom->type[i])) continue;
@@ -336,6 +343,7 @@ void FixSPHIntegrate::finish_step()
     limit_vertices();
   }
   if (scheme != SteppingScheme::CONSTANT) choose_step();
+  look_for_end();
 }
 
 /* ----------------------------------------------------------------------
@@ -357,7 +365,7 @@ void FixSPHIntegrate::choose_step()
         "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
         "to go on with min and count",
         label, limit_name(wanted.by), wanted.dt, floor);
-  if (interval > 0.0) head_for_output(step);
+  if (interval > 0.0 || until > 0.0) head_for_output(step);
   limited_by = step.by;
   if (step.dt != update->dt) apply(step.dt);
   if (arrives) announce_thermo();
@@ -448,6 +456,13 @@ StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double a
         "use 'below clamp' to go on with min and count",
         label, limit_name(wanted.by), wanted.dt, atom->tag[i], floor);
   return step;
+}
+
+double FixSPHIntegrate::gains_speed(int i, double by, double times) const
+{
+  const int type = atom->type[i];
+  const double sound = pair->equation_of_state(type).sound_speed();
+  return by * force->ftm2v / atom_mass(atom, i) * times * pair->support(type) / sound;
 }
 
 void FixSPHIntegrate::set_own_step(int i, double dt)
@@ -591,9 +606,12 @@ void FixSPHIntegrate::reschedule_dumps()
 
 double FixSPHIntegrate::next_output_time(double dt) const
 {
-  if (interval == 0.0) return std::numeric_limits<double>::infinity();
-  return output_time(output_times_until(physical_time(update), interval, SLACK * dt) + 1.0,
-                     interval);
+  const double now = physical_time(update), slack = SLACK * dt;
+  double next = std::numeric_limits<double>::infinity();
+  if (interval > 0.0)
+    next = output_time(output_times_until(now, interval, slack) + 1.0, interval);
+  if (now + slack < until) next = std::min(next, output_time(1.0, until));
+  return next;
 }
 
 void FixSPHIntegrate::head_for_output(StepLimit &step)
@@ -636,12 +654,27 @@ void FixSPHIntegrate::announce_thermo()
   output->next = std::min(output->next, next);
 }
 
+// A run that has arrived ends as by the command timer, its last step with thermodynamic output.
+
+void FixSPHIntegrate::look_for_end()
+{
+  if (until == 0.0) return;
+  const double now = physical_time(update), slack = SLACK * update->dt;
+  if (now + slack >= until) return timer->force_timeout();
+  const bigint next = update->ntimestep + 1;
+  if (now + update->dt + slack < until || output->next_thermo == next) return;
+  modify->addstep_compute_all(next);
+  output->next_thermo = next;
+  output->next = std::min(output->next, next);
+}
+
 /* ----------------------------------------------------------------------
    output
 ------------------------------------------------------------------------- */
 
 void FixSPHIntegrate::post_run()
 {
+  if (until > 0.0) timer->reset_timeout();
   if (comm->me || scheme == SteppingScheme::CONSTANT) return;
   std::string line;
   for (int k = 1; k < N_LIMITS; k++)

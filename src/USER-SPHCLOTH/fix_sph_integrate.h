@@ -74,6 +74,8 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit bounded_limit(int i, const double *external, double approach,
                                     double before) const;
   void set_own_step(int i, double dt);
+  // what a force changes in `times` the time that sound needs across the support
+  double gains_speed(int i, double force, double times) const;
   double longest_step() const { return ceiling; }
   double next_output_time(double dt) const;
   sphcloth::StepLimit tightest_vertex() const;
@@ -92,6 +94,7 @@ class FixSPHIntegrate : public Fix {
   sphcloth::FluctuationControl control;
   double floor, ceiling, growth;
   double interval;    // of output times, 0: none
+  double until;       // physical time at which a run ends, 0: never
   bool ceiling_given, clamp_at_floor;
 
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
@@ -121,7 +124,7 @@ class FixSPHIntegrate : public Fix {
   void set_row(int i);
   void forget_rows();
   void move_active();
-  template <bool ACTIVE_ONLY> std::pair<int, int> move();
+  template <class Rests> std::pair<int, int> move_but(Rests rests);
   void move_individually();
   void select_active();
   void select_due();
@@ -139,6 +142,7 @@ class FixSPHIntegrate : public Fix {
   bool at_output_time() const;
   bigint next_thermo() const;
   void announce_thermo();
+  void look_for_end();
   double speed_and_force(int, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int, const double *force) const;
   static double until_pressed(const sphcloth::Tait &, double rho, double drho);

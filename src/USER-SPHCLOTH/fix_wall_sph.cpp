@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -167,10 +168,29 @@ void FixWallSPH::begin()
   if (any_variable) modify->clearstep_compute();
   for (Wall &wall : walls) locate(wall, elapsed);
   if (any_variable) modify->addstep_compute(update->ntimestep + 1);
+  find_open_space();
   last_time = now;
   std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
   summed = false;
+}
+
+// where nobody can be in reach of a wall, so that most particles are not asked about each
+
+void FixWallSPH::find_open_space()
+{
+  double longest = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (pair->is_fluid(t)) longest = std::max(longest, pair->support(t));
+  open_low.fill(-std::numeric_limits<double>::max());
+  open_high.fill(std::numeric_limits<double>::max());
+  for (const Wall &wall : walls) {
+    double &low = open_low[wall.axis()], &high = open_high[wall.axis()];
+    if (wall.face % 2 == 0)
+      low = std::max(low, wall.position + longest);
+    else
+      high = std::min(high, wall.position - longest);
+  }
 }
 
 // A moving plane has the velocity of its last step.
@@ -198,10 +218,15 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
 bool FixWallSPH::look(int i, double back)
 {
   if (!(atom->mask[i] & groupbit)) return false;
+  const double *x = atom->x[i];
+  bool open = back == 0.0;
+  for (int d = 0; d < 3; d++) open = open && x[d] > open_low[d] && x[d] < open_high[d];
+  if (open) return false;
+
   const double support = pair->support(atom->type[i]);
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); k++) {
-    const double delta = (walls[k].distance(atom->x[i]) - back * departure(i, k)) / support;
+    const double delta = (walls[k].distance(x) - back * departure(i, k)) / support;
     if (delta < -1.0)
       error->one(FLERR,
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
@@ -297,6 +322,16 @@ double FixWallSPH::approach(int i)
   for (std::size_t k = 0; k < walls.size(); k++)
     if (walls[k].distance(atom->x[i]) < support) fastest = std::max(fastest, -departure(i, k));
   return fastest;
+}
+
+bool FixWallSPH::moves_beside(int i)
+{
+  if (!look(i)) return false;
+  return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
+    const double *u = wall.velocity;
+    const bool moves = u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0;
+    return moves && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
+  });
 }
 
 void FixWallSPH::add_to(Crowd &crowd, int i)

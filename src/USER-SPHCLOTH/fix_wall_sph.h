@@ -42,6 +42,7 @@ class FixWallSPH : public Fix, public FluidWall {
 
   // the largest speed at which a wall in reach and a particle come near
   double approach(int i) override;
+  bool moves_beside(int i) override;
 
   // What the walls, where they were then, add to the surroundings of a fluid particle
   void add_to(sphcloth::Crowd &, int i);
@@ -72,6 +73,7 @@ class FixWallSPH : public Fix, public FluidWall {
   std::vector<Wall> walls;
   bool slip, any_variable;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
+  std::array<double, 3> open_low, open_high;    // out of reach of all walls
   double last_time;    // of the positions, < 0: none yet
   sphcloth::WallTable table;
 
@@ -84,6 +86,7 @@ class FixWallSPH : public Fix, public FluidWall {
   void read_velocity(ArgReader &);
   void check_face(const Wall &) const;
   void locate(Wall &, double);
+  void find_open_space();
   bool look(int i, double back = 0.0);
   double slope(int, std::size_t) const;
   double departure(int, std::size_t) const;

@@ -22,6 +22,8 @@ class FluidWall {
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
   virtual double approach(int i) = 0;
+  // does a part of it move that is within reach of the particle?
+  virtual bool moves_beside(int i) = 0;
 
  protected:
   ~FluidWall() noexcept(false) = default;

@@ -293,6 +293,15 @@ void PairSPHTait::push_walls_more(int i, double pressure_term, double times)
   for (SheetWalls *mesh : meshes) mesh->push_more(i, pressure_term / mesh->stretch(i), times);
 }
 
+bool PairSPHTait::feels_moving_wall(int i) const
+{
+  for (FluidWall *wall : walls)
+    if (wall->moves_beside(i)) return true;
+  for (SheetWalls *mesh : meshes)
+    if (mesh->is_beside(i)) return true;
+  return false;
+}
+
 void PairSPHTait::give_impulses(const std::vector<int> &slots, const double *pressure_time,
                                 const double *span)
 {

@@ -115,7 +115,8 @@ class PairSPHTait : public Pair {
   void push_boundaries() { fluid->forces(particles(), sphcloth::On::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);
-  const sphcloth::NearLists &order() const { return fluid->order(); }
+  sphcloth::NearLists &order() { return fluid->order(); }
+  bool feels_moving_wall(int i) const;
   // owned fluid particles that are updated in this evaluation
   const std::vector<int> &active_particles() const { return active_fluid; }
 

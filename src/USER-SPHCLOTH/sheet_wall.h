@@ -110,6 +110,8 @@ class SheetWalls : protected Pointers {
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
   double approach(int i);
+  // is a mesh within reach?  All of them may move.
+  bool is_beside(int i) const { return first[i] >= 0; }
 
   // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
   void want_wetting() { wetting_wanted = true; }

@@ -105,7 +105,7 @@ def test_momentum_of_a_free_sheet_and_its_water(wall):
     scene = scene.replace("sph/integrate global", "sph/integrate global relative 0.3 velocity 0")
     if wall:
         scene = scene.replace("3 3 boundary", "3 3 none").replace(
-            "cloth/contact 0.03", "cloth/contact 0.03 wall yes\ncomm_modify cutoff 0.3"
+            "cloth/contact 0.03", "cloth/contact 0.03 wall yes\ncomm_modify cutoff 0.4"
         )
     lmp = instance()
     lmp.commands_string(scene + "run_style sph/adaptive block\nrun 1")

@@ -161,6 +161,7 @@ class Fluid {
   virtual double bytes() const = 0;
 
   const NearLists &order() const { return lists; }
+  NearLists &order() { return lists; }
   // neighbours of one type inside the support, and some a little outside it
   Stretch neighbours(int owned, int type)
   {

@@ -62,6 +62,23 @@ class NearLists {
     for (int t = 1; t <= types; t++) move_to_front(slot, t, supports[t]);
   }
 
+  // Of a value of each particle: the greatest among all neighbours of one, and whether all of them
+  // have the same.
+  int greatest(int slot, const int *value)
+  {
+    refresh(slot);
+    int most = std::numeric_limits<int>::min();
+    for (int t = 1; t <= types; t++) most = std::max(most, greatest((*this)(slot, t), value));
+    return most;
+  }
+  bool all_have(int same, int slot, const int *value)
+  {
+    refresh(slot);
+    for (int t = 1; t <= types; t++)
+      if (differing((*this)(slot, t), value, same)) return false;
+    return true;
+  }
+
   // owned particles by type and in space, see NeighbourLists
   int begin(int t) const { return outer.begin(t); }
   int slots() const { return outer.slots(); }
@@ -183,6 +200,24 @@ class NearLists {
     const double far = support + skin + rounding;
     front[of(slot, t)] = partition(key.data(), outer.open(slot, t), list.n,
                                    static_cast<float>(far * far), spare.data());
+  }
+
+  SPHCLOTH_MULTIVERSION int greatest(const Stretch &near, const int *value) const
+  {
+    const int *of = near.of;
+    int most = std::numeric_limits<int>::min();
+#pragma omp simd reduction(max : most)
+    for (int k = 0; k < near.n; k++) most = std::max(most, value[of[k]]);
+    return most;
+  }
+
+  SPHCLOTH_MULTIVERSION int differing(const Stretch &near, const int *value, int same) const
+  {
+    const int *of = near.of;
+    int bits = 0;
+#pragma omp simd reduction(| : bits)
+    for (int k = 0; k < near.n; k++) bits |= value[of[k]] ^ same;
+    return bits;
   }
 
   int type_of(int slot) const

@@ -243,9 +243,10 @@ double BlockSteps::half_step(const double *row)
    Sleep: water at rest keeps its place, density and pressure, and is a wall for its neighbours.
 ------------------------------------------------------------------------- */
 
-// It rests if it is slow and stays so for PATIENCE times the time that sound needs across the support.
+// How long it is slow before it sleeps, and sleeps beside water that is awake before it is asked again
+// whether it rests: times that sound needs across the support.
 
-static constexpr double PATIENCE = 20.0;
+static constexpr double PATIENCE = 20.0, NAP = 100.0;
 
 bool BlockSteps::is_slow(int i) const
 {
@@ -253,17 +254,12 @@ bool BlockSteps::is_slow(int i) const
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < options.sleep * options.sleep;
 }
 
-bool BlockSteps::rests(int i) const
-{
-  const double *f = atom->f[i], *more = &rows[i][EXTERNAL];
-  double force_sq = 0.0;
-  for (int d = 0; d < 3; d++) force_sq += (f[d] + more[d]) * (f[d] + more[d]);
-  return is_slow(i) && fix->gains_speed(i, std::sqrt(force_sq), PATIENCE) < options.sleep;
-}
-
 bool BlockSteps::rests_among_others(int i)
 {
-  if (!rests(i) || pair->feels_moving_wall(i)) return false;
+  const double now = physical_time(update);
+  if (!is_slow(i)) rows[i][SINCE] = now;
+  if (now - rows[i][SINCE] < PATIENCE * fix->sound_time(i) || pair->feels_moving_wall(i))
+    return false;
   bool others = true;
   for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !inside_support(i, j)); });
   return others;
@@ -276,6 +272,7 @@ void BlockSteps::fall_asleep()
     if (rests_among_others(i)) marked.push_back(i);
   for (const int i : marked) {
     rows[i][LEVEL] = ASLEEP;
+    rows[i][SINCE] = physical_time(update);
     std::fill_n(atom->f[i], 3, 0.0);
     std::fill_n(atom->v[i], 3, 0.0);
   }
@@ -294,9 +291,8 @@ void BlockSteps::wake_moved()
       const double change = atom->f[i][d] - rows[i][EXTERNAL + d];
       change_sq += change * change;
     }
-    if (!is_slow(i) || fix->gains_speed(i, std::sqrt(change_sq), PATIENCE) > options.sleep ||
-        pair->feels_moving_wall(i))
-      wake(i);
+    const double gain = PATIENCE * fix->sound_time(i) * fix->acceleration(i, std::sqrt(change_sq));
+    if (!is_slow(i) || gain > options.sleep || pair->feels_moving_wall(i)) wake(i);
   }
 }
 
@@ -307,6 +303,7 @@ void BlockSteps::wake(int i)
   if (sleeps(i)) {
     rows[i][LEVEL] = at.deepest;
     rows[i][CALL] = NEW;
+    rows[i][SINCE] = physical_time(update);
   } else
     rows[i][CALL] = WOKEN;
 }
@@ -453,12 +450,10 @@ bool BlockSteps::look_around(int i)
   return in_step;
 }
 
-// Who sleeps at the border of water that is awake is asked now and then whether it still rests.
-
 void BlockSteps::disturb(int i, int j)
 {
-  const bool strong = !is_slow(i) || at.line.now == 0;
-  if (options.waking && strong && inside_support(i, j)) touch(j, WAKE);
+  if (!options.waking || !inside_support(i, j)) return;
+  touch(j, is_slow(i) ? TOUCHED : WAKE);
 }
 
 void BlockSteps::touch(int j, int mark_of_it)
@@ -469,9 +464,12 @@ void BlockSteps::touch(int j, int mark_of_it)
 
 void BlockSteps::wake_marked()
 {
+  const double now = physical_time(update);
   for (const int i : marked) {
-    if (Pace::before(pace[i]) != Pace::SLEEPER) slots.push_back(pair->order().slot(i));
-    if (mark[i] & WAKE) wake(i);
+    const bool asleep = Pace::before(pace[i]) == Pace::SLEEPER;
+    if (!asleep) slots.push_back(pair->order().slot(i));
+    const bool napped = asleep && now - rows[i][SINCE] > NAP * fix->sound_time(i);
+    if (mark[i] & WAKE || napped) wake(i);
   }
 }
 

@@ -29,7 +29,8 @@ class BlockSteps : protected Pointers {
   // What a particle carries along.  LEVEL: of its step; BEFORE: of the one before; UNTIL: how far
   // its impulses reach, in ticks; TERM: its pressure in the last of them; AHEAD: how far the one
   // before reached beyond now, and TAKEN_BACK: pressure times ticks of that; EXTERNAL: force of
-  // others than the fluid; BY: the limit of its step; CALL: why its step ends now.
+  // others than the fluid; BY: the limit of its step; CALL: why its step ends now; SINCE: when it was
+  // fast for the last time, or fell asleep.
   enum Column {
     LEVEL,
     BEFORE,
@@ -40,6 +41,7 @@ class BlockSteps : protected Pointers {
     EXTERNAL,
     BY = EXTERNAL + 3,
     CALL,
+    SINCE,
     N_COLUMNS
   };
 
@@ -146,7 +148,6 @@ class BlockSteps : protected Pointers {
   int level_beside(int i);
   bool inside_support(int i, int j) const;
   void fall_asleep();
-  bool rests(int i) const;
   bool rests_among_others(int i);
   bool is_slow(int i) const;
   void book();

@@ -458,11 +458,15 @@ StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double a
   return step;
 }
 
-double FixSPHIntegrate::gains_speed(int i, double by, double times) const
+double FixSPHIntegrate::sound_time(int i) const
 {
   const int type = atom->type[i];
-  const double sound = pair->equation_of_state(type).sound_speed();
-  return by * force->ftm2v / atom_mass(atom, i) * times * pair->support(type) / sound;
+  return pair->support(type) / pair->equation_of_state(type).sound_speed();
+}
+
+double FixSPHIntegrate::acceleration(int i, double by) const
+{
+  return by * force->ftm2v / atom_mass(atom, i);
 }
 
 void FixSPHIntegrate::set_own_step(int i, double dt)

@@ -74,8 +74,9 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit bounded_limit(int i, const double *external, double approach,
                                     double before) const;
   void set_own_step(int i, double dt);
-  // what a force changes in `times` the time that sound needs across the support
-  double gains_speed(int i, double force, double times) const;
+  // that sound needs across the support; by a force
+  double sound_time(int i) const;
+  double acceleration(int i, double by) const;
   double longest_step() const { return ceiling; }
   double next_output_time(double dt) const;
   sphcloth::StepLimit tightest_vertex() const;

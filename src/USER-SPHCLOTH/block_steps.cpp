@@ -20,7 +20,8 @@ using namespace sphcloth;
 static constexpr double OVERHEAD = 0.1;
 
 BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, double **&rows) :
-    Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), stage(LEVELS)
+    Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), finest_vertex(0),
+    stage(LEVELS)
 {
 }
 
@@ -146,9 +147,9 @@ void BlockSteps::find_step_of_scene()
   constexpr int LIMITS = 64;
   constexpr double FAR = std::numeric_limits<double>::max();
   static_assert(N_LIMITS < LIMITS);
-  const StepLimit vertices = fix->tightest_vertex();
-  int finest =
-      LIMITS * std::max(coarsest, at.line.level_of(vertices.dt)) + static_cast<int>(vertices.by);
+  const StepLimit vertex = fix->tightest_vertex();
+  const int of_vertices = std::max(coarsest, at.line.level_of(vertex.dt));
+  int finest = LIMITS * of_vertices + static_cast<int>(vertex.by);
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
   for (const int i : pair->active_particles()) {
@@ -158,24 +159,28 @@ void BlockSteps::find_step_of_scene()
     until[0] = std::max(until[0], -rows[i][UNTIL]);
     until[1] = std::max(until[1], rows[i][UNTIL]);
   }
-  const double mine[4] = {static_cast<double>(finest), -static_cast<double>(slowest), until[0],
-                          until[1]};
-  double all[4];
-  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
+  const double mine[5] = {static_cast<double>(finest), -static_cast<double>(slowest), until[0],
+                          until[1], static_cast<double>(of_vertices)};
+  double all[5];
+  MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_MAX, world);
   at.deepest = static_cast<int>(all[0]) / LIMITS;
   at.limit = static_cast<Limit>(static_cast<int>(all[0]) % LIMITS);
+  finest_vertex = static_cast<int>(all[4]);
   at.alike = at.line.now == 0 && -all[1] >= at.deepest && all[3] == -all[2] && options.sleep == 0.0;
   // none of a new particle reaches anywhere yet
   at.span_of_all = all[3] == 0.0 ? 1.0
                                  : 0.5 - all[3] / static_cast<double>(TimeLine::ticks(at.deepest));
 }
 
-// Nobody's step is longer than `ratio` times a neighbour's, or than that of a vertex that it wets.
+// Nobody's step is longer than `ratio` times a neighbour's, or than that of a vertex that it wets;
+// who is beside a mesh takes the vertex with the shortest step for all.
 
 void BlockSteps::respect_neighbours()
 {
   for (int i = 0; i < atom->nlocal; i++)
     level[i] = pair->is_fluid(atom->type[i]) ? static_cast<int>(rows[i][LEVEL]) : vertex_level(i);
+  for (const int i : pair->active_particles())
+    if (pair->is_beside_mesh(i)) rows[i][LEVEL] = level[i] = std::max(level[i], finest_vertex);
   stage = LEVELS;
   comm->forward_comm(fix, 1);
   NearLists &lists = pair->order();
@@ -331,17 +336,20 @@ void BlockSteps::note_forces()
 void BlockSteps::hand_out()
 {
   if (!at.chosen) choose();
-  measure_impulses();
   if (at.alike)
     share_equally();
   else
     share_impulses();
+  if (!needs_external()) return;
   for (const int i : pair->active_particles())
     std::copy(atom->f[i], atom->f[i] + 3, &handed[3 * i]);
 }
 
+bool BlockSteps::needs_external() const { return fix->wants_force() || options.sleep > 0.0; }
+
 void BlockSteps::note_external_forces()
 {
+  if (!needs_external()) return;
   for (const int i : pair->active_particles())
     for (int d = 0; d < 3; d++) rows[i][EXTERNAL + d] = atom->f[i][d] - handed[3 * i + d];
 }
@@ -351,6 +359,7 @@ void BlockSteps::note_external_forces()
 
 void BlockSteps::share_impulses()
 {
+  measure_impulses();
   stage = IMPULSES;
   comm->forward_comm(fix, 3);
   std::fill_n(mark.begin(), atom->nlocal + atom->nghost, UNTOUCHED);
@@ -371,16 +380,16 @@ void BlockSteps::share_impulses()
   pair->give_impulses(slots, impulse.data(), span.data());
 }
 
-// Nobody has a neighbour with another step.
+// Everybody takes the same step: forces are impulses, but for a step that differs from the last one.
 
 void BlockSteps::share_equally()
 {
   pair->push_boundaries();
-  if (at.span_of_all != 1.0)
-    for (int i = 0; i < atom->nlocal; i++)
-      if (!pair->is_fluid(atom->type[i]))
-        for (int d = 0; d < 3; d++) atom->f[i][d] *= at.span_of_all;
-  for (const int i : pair->active_particles()) prolong(i, span[i] - 1.0);
+  const double times = at.span_of_all;
+  if (times == 1.0) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
+  pair->prolong_walls(times);
 }
 
 // the force of other particles, `times` more of it, and what walls do beside it

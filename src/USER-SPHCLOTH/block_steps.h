@@ -124,6 +124,7 @@ class BlockSteps : protected Pointers {
   Place at;
   int apart;    // levels that neighbours may be apart
   int coarsest;    // level of a step that may begin now
+  int finest_vertex;    // level of the shortest step of a vertex
 
   // by particle, owned and ghost; scratch
   Stage stage;
@@ -154,6 +155,7 @@ class BlockSteps : protected Pointers {
   void begin_own_step(double *row) const;
   static double half_step(const double *row);
 
+  bool needs_external() const;
   void measure_impulses();
   void share_impulses();
   void share_equally();

@@ -42,8 +42,8 @@ static constexpr double SLACK = 1e-6;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
-    ceiling(update->dt), growth(2.0), interval(0.0), until(0.0), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr), rows(nullptr), n_columns(0),
+    ceiling(update->dt), growth(2.0), interval(0.0), until(0.0), ceiling_given(false),
+    clamp_at_floor(false), state(nullptr), rows(nullptr), n_columns(0),
     blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0), largest_before(0.0),
     uncut(0.0), arrives(false), limited_by(Limit::NONE), updates(0.0), steps_limited{},
     particles_limited{}
@@ -239,9 +239,7 @@ void FixSPHIntegrate::initial_integrate(int)
 {
   pair->advance(update->dt);
   switch (scheme) {
-    case SteppingScheme::INDIVIDUAL:
-      move_individually();
-      return select_active();
+    case SteppingScheme::INDIVIDUAL: move_individually(); return select_active();
     case SteppingScheme::BLOCK:
       move_but([this](int i) { return blocks->sleeps(i); });
       return select_due();
@@ -612,8 +610,7 @@ double FixSPHIntegrate::next_output_time(double dt) const
 {
   const double now = physical_time(update), slack = SLACK * dt;
   double next = std::numeric_limits<double>::infinity();
-  if (interval > 0.0)
-    next = output_time(output_times_until(now, interval, slack) + 1.0, interval);
+  if (interval > 0.0) next = output_time(output_times_until(now, interval, slack) + 1.0, interval);
   if (now + slack < until) next = std::min(next, output_time(1.0, until));
   return next;
 }

@@ -71,6 +71,7 @@ class FixSPHIntegrate : public Fix {
   // (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
   // 0 for what is none.
   bool wants_approach() const { return lambda.relative > 0.0; }
+  bool wants_force() const { return lambda.force > 0.0; }
   sphcloth::StepLimit bounded_limit(int i, const double *external, double approach,
                                     double before) const;
   void set_own_step(int i, double dt);

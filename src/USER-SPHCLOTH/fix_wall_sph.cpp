@@ -279,6 +279,11 @@ void FixWallSPH::push_more(int i, double pressure_term, double times)
   push(i, pressure_term, times, false);
 }
 
+void FixWallSPH::prolong(double times)
+{
+  for (std::size_t k = 0; k + 1 < mine.size(); k++) mine[k] *= times;    // the energy stays
+}
+
 void FixWallSPH::push(int i, double pressure_term, double times, bool first)
 {
   if (!look(i)) return;

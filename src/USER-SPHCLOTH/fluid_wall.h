@@ -19,6 +19,8 @@ class FluidWall {
   // Once more, for a particle with a step of its own: the force of another pressure term and `times`
   // the rest.  What was pushed before holds for energy, virial and rate.
   virtual void push_more(int i, double pressure_term, double times) = 0;
+  // all that was pushed acts so many times as long; the forces on particles are seen to
+  virtual void prolong(double times) = 0;
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
   virtual double approach(int i) = 0;

@@ -293,13 +293,23 @@ void PairSPHTait::push_walls_more(int i, double pressure_term, double times)
   for (SheetWalls *mesh : meshes) mesh->push_more(i, pressure_term / mesh->stretch(i), times);
 }
 
+void PairSPHTait::prolong_walls(double times)
+{
+  for (FluidWall *wall : walls) wall->prolong(times);
+  for (SheetWalls *mesh : meshes) mesh->prolong(times);
+}
+
 bool PairSPHTait::feels_moving_wall(int i) const
 {
   for (FluidWall *wall : walls)
     if (wall->moves_beside(i)) return true;
-  for (SheetWalls *mesh : meshes)
-    if (mesh->is_beside(i)) return true;
-  return false;
+  return is_beside_mesh(i);
+}
+
+bool PairSPHTait::is_beside_mesh(int i) const
+{
+  return std::any_of(meshes.begin(), meshes.end(),
+                     [&](const SheetWalls *mesh) { return mesh->is_beside(i); });
 }
 
 void PairSPHTait::give_impulses(const std::vector<int> &slots, const double *pressure_time,

@@ -112,11 +112,13 @@ class PairSPHTait : public Pair {
   // FluidWall::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
   // Fluid::record_impulses() on these owned particles.
   void push_walls_more(int i, double pressure_term, double times);
+  void prolong_walls(double times);
   void push_boundaries() { fluid->forces(particles(), sphcloth::On::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);
   sphcloth::NearLists &order() { return fluid->order(); }
   bool feels_moving_wall(int i) const;
+  bool is_beside_mesh(int i) const;
   // owned fluid particles that are updated in this evaluation
   const std::vector<int> &active_particles() const { return active_fluid; }
 

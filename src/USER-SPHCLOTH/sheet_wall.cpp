@@ -195,6 +195,7 @@ void SheetWalls::look()
 
 void SheetWalls::begin()
 {
+  lasts = 1.0;
   feet.clear();
   for (std::size_t k = 0; k < sheets.size(); k++) sheets[k].find_feet(static_cast<int>(k), feet);
   if (sheets.size() > 1)
@@ -299,7 +300,7 @@ void SheetWalls::end()
   if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
   for (SheetWall &sheet : sheets) {
     sheet.hand_over([this](int i, const Vec3 &on) {
-      for (int d = 0; d < 3; d++) atom->f[i][d] += on[d];
+      for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
     });
     if (wetting_wanted)
       sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });

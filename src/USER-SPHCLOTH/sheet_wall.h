@@ -100,12 +100,13 @@ class SheetWalls : protected Pointers {
   // What pair_style sph/tait asks for while it evaluates, in this order: where everybody is now; by
   // what the density of an owned fluid particle is stretched, 1/gamma; what is added to the rate of its
   // density, where it was a time `back` ago; the force on it and on the meshes, with p/rho^2, and what
-  // FluidWall::push_more() says; and that all are pushed.
+  // FluidWall says of more; and that all are pushed.
   void begin();
   double stretch(int i);
   double density_rate(int i, double back);
   void push(int i, double pressure_term);
   void push_more(int i, double pressure_term, double times);
+  void prolong(double times) { lasts = times; }
   void end();
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
@@ -127,6 +128,7 @@ class SheetWalls : protected Pointers {
   std::vector<Foot> feet;    // of one particle together, the nearest first
   std::vector<int> first;    // of an owned particle, -1: none
   bool wetting_wanted = false;
+  double lasts = 1.0;    // how many times as long as the step what was pushed acts
   std::vector<Vec3> wetting;    // by owned atom
 
   template <class Do> void for_feet(int i, Do something);

@@ -30,8 +30,8 @@ SPHAdaptive::SPHAdaptive(LAMMPS *lmp, int narg, char **arg) :
     Verlet(lmp, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
 {
   ArgReader args(lmp, STYLE, narg, arg);
-  stepping =
-      static_cast<SteppingScheme>(args.choice("scheme", {"constant", "global", "individual", "block"}));
+  stepping = static_cast<SteppingScheme>(
+      args.choice("scheme", {"constant", "global", "individual", "block"}));
   if (args.more()) args.unknown(args.peek(), "no keyword after the scheme");
 }
 

@@ -37,8 +37,9 @@ class TimeLine {
   int level_of(double dt) const
   {
     constexpr double ROUNDING = 1e-12;
+    const double most = (1.0 + ROUNDING) * dt;
     int level = 0;
-    while (level < DEEPEST && step(level) > (1.0 + ROUNDING) * dt) level++;
+    for (double step = root; level < DEEPEST && step > most; step *= 0.5) level++;
     return level;
   }
 };
@@ -56,8 +57,8 @@ class WantedSteps {
 
   void add(double dt, double least)
   {
-    constexpr double ROUNDING = 1e-9;
-    const double octaves = std::log2(dt / least);
+    constexpr float ROUNDING = 1e-4F;
+    const float octaves = std::log2(static_cast<float>(dt / least));
     count[std::clamp(static_cast<int>(PARTS * octaves + ROUNDING), 0, N - 1)]++;
   }
 

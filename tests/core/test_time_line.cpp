@@ -1,0 +1,69 @@
+#include "check.h"
+#include "core/time_line.h"
+
+using namespace sphcloth;
+
+CASE("time line: steps begin at multiples of their length")
+{
+  TimeLine line{1.0, 0};
+  CHECK(line.coarsest() == 0);
+  line.now = TimeLine::ticks(3);
+  CHECK(line.coarsest() == 3);
+  CHECK(line.begins(3) && line.begins(4) && !line.begins(2));
+  line.now += TimeLine::ticks(3);
+  CHECK(line.coarsest() == 2);
+  line.now = TimeLine::ticks(0);
+  CHECK(line.ended() && line.coarsest() == 0);
+}
+
+CASE("time line: the longest step that is not above what is wanted")
+{
+  const TimeLine line{1.0, 0};
+  CHECK(line.level_of(2.0) == 0 && line.level_of(1.0) == 0);
+  CHECK(line.level_of(0.99) == 1 && line.level_of(0.5) == 1 && line.level_of(0.3) == 2);
+  CHECK(line.level_of(0.5 * (1.0 - 1e-14)) == 1);    // rounding
+  for (double dt = 1.0; dt > 1e-6; dt *= 0.77) {
+    const double taken = line.step(line.level_of(dt));
+    CHECK(taken <= dt * (1.0 + 1e-12) && taken > 0.5 * dt);
+  }
+}
+
+// updates per time when every wanted step is rounded down to root / 2^k
+
+static double cost(const std::vector<double> &wanted, double root)
+{
+  double sum = 0.0;
+  const TimeLine line{root, 0};
+  for (const double dt : wanted) sum += 1.0 / line.step(line.level_of(dt));
+  return sum;
+}
+
+CASE("wanted steps: one for all is taken as it is, two populations each nearly so")
+{
+  WantedSteps one;
+  for (int k = 0; k < 100; k++) one.add(0.3, 0.3);
+  CHECK_NEAR(one.best_root(0.3, 0.1), 0.3, 1e-15);
+
+  // few with 0.3, many with 1.1: steps of 0.3 and 0.6 waste, 0.275 and 1.1 do not
+  std::vector<double> wanted(10, 0.3);
+  wanted.resize(1000, 1.1);
+  WantedSteps two;
+  for (const double dt : wanted) two.add(dt, 0.3);
+  const double root = two.best_root(0.3, 0.0);
+  double ideal = 0.0;
+  for (const double dt : wanted) ideal += 1.0 / dt;
+  CHECK(cost(wanted, root) < 1.05 * ideal);
+  CHECK(cost(wanted, 4.0 * 0.3) > 1.5 * ideal);
+  CHECK(root <= 1.1 && root > 1.05);
+}
+
+CASE("wanted steps: nobody gets more than wanted, whatever the root")
+{
+  std::vector<double> wanted;
+  for (int k = 0; k < 300; k++) wanted.push_back(1e-4 * std::pow(1.03, k % 170));
+  WantedSteps all;
+  for (const double dt : wanted) all.add(dt, 1e-4);
+  const TimeLine line{all.best_root(1e-4, 0.1), 0};
+  CHECK(line.root > 5e-5);
+  for (const double dt : wanted) CHECK(line.step(line.level_of(dt)) <= dt * (1.0 + 1e-12));
+}

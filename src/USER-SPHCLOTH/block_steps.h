@@ -48,7 +48,7 @@ class BlockSteps : protected Pointers {
   // of the user: how many times a neighbour's step somebody's may be, 2 or 4; may it end early; the
   // speed below which water sleeps, 0: never
   struct Options {
-    int ratio = 2;
+    int ratio = 4;
     bool waking = true;
     double sleep = 0.0;
   } options;

@@ -87,7 +87,7 @@ def test_all_in_one_bin_is_the_global_scheme(folder):
     assert np.array_equal(last_frame(folder / "global.txt"), last_frame(folder / "block.txt"))
 
 
-@pytest.mark.parametrize("limits", ["", "ratio 4", "waking no"])
+@pytest.mark.parametrize("limits", ["", "ratio 2", "waking no"])
 def test_momentum_stays_to_round_off(folder, monkeypatch, limits):
     lmp = started(folder, collide(limits=limits), monkeypatch)
     before, active = momentum(lmp), []
@@ -159,7 +159,7 @@ def test_a_steady_state_and_a_moving_frame_take_the_longest_step(tmp_path, monke
         lmp.close()
 
 
-@pytest.mark.parametrize("scene", [collide(limits="ratio 4"), collide()])
+@pytest.mark.parametrize("scene", [collide(limits="ratio 2"), collide()])
 @pytest.mark.parametrize(("ranks", "newton"), [(2, "on"), (4, "on"), (2, "off")])
 def test_ranks(folder, scene, ranks, newton):
     """Active and inactive neighbours on two sides of a border, periodic ones too."""

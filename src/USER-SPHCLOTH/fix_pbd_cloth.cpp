@@ -46,10 +46,10 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
-    iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
-    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), lent(nullptr), mesh(lmp, label),
-    constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0), remembered(true),
-    last_residual(0.0), last_energy(0.0), started(false), stiff_dt(0.0)
+    iterations(10), there_and_back(false), from_start(true), tolerance(0.0), pinbit(0),
+    pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr),
+    lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0),
+    remembered(true), last_residual(0.0), last_energy(0.0), started(false), stiff_dt(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -93,7 +93,9 @@ void FixPBDCloth::read_options(ArgReader &args)
     else if (keyword == "solver") {
       solver = static_cast<Solver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
       solver_given = true;
-    } else if (keyword == "direction")
+    } else if (keyword == "order")
+      there_and_back = args.choice(keyword, {"forward", "symmetric"});
+    else if (keyword == "direction")
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
       tolerance = args.positive(keyword);
@@ -110,7 +112,7 @@ void FixPBDCloth::read_options(ArgReader &args)
     else
       args.unknown(
           keyword,
-          "iterations, solver, direction, tolerance, pin, velocity, attach, damping, rest");
+          "iterations, solver, order, direction, tolerance, pin, velocity, attach, damping, rest");
   }
   if (pin_motion && !pinbit)
     error->all(FLERR, "{}: velocity is that of pins: name their group with 'pin'", label);
@@ -121,6 +123,8 @@ void FixPBDCloth::read_options(ArgReader &args)
   if (attachbit && solver == Solver::SUBSTEPS)
     args.fail("solver", "substeps",
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
+  if (there_and_back && solver == Solver::JACOBI)
+    args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
   if (attachbit) want_holding_forces();
   if (substeps() > 1) {
     memory->create(lent, atom->nmax, 3, "pbd/cloth:lent");
@@ -209,7 +213,7 @@ void FixPBDCloth::init()
                label, group->names[igroup]);
   check_styles();
   constraints.measure_rest(groupbit, rest_x);
-  constraints.colour(iterations, solver == Solver::JACOBI);
+  constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
 }
 
 void FixPBDCloth::check_overlap()
@@ -468,15 +472,27 @@ void FixPBDCloth::project_all(double dt)
   }
 }
 
+// One after the other in a fixed order, a sweep pulls harder one way than the other: what it does to a
+// sheet is no force with an energy.  There and back it is.
+
 void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
-  for (int c = 0; c < constraints.distance.colours(); c++) {
+  const int n = constraints.distance.colours() + constraints.bending.colours();
+  for (int c = 0; c < n; c++) project_colour(c, state);
+  for (int c = n - 1; there_and_back && c >= 0; c--) project_colour(c, state);
+}
+
+// edges first, then hinges
+
+void FixPBDCloth::project_colour(int c, const ClothState &state)
+{
+  const int hinge = c - constraints.distance.colours();
+  if (hinge < 0) {
     project(constraints.distance, c, state);
     halo.forward(constraints.channel_of_edge_colour(c), way.data(), false);
-  }
-  for (int c = 0; c < constraints.bending.colours(); c++) {
-    project(constraints.bending, c, state);
-    halo.forward(constraints.channel_of_hinge_colour(c), way.data(), false);
+  } else {
+    project(constraints.bending, hinge, state);
+    halo.forward(constraints.channel_of_hinge_colour(hinge), way.data(), false);
   }
 }
 

@@ -91,6 +91,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   std::string label;
   Solver solver;
   int iterations;
+  bool there_and_back;    // a sweep goes through the constraints and back
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
   int pinbit;    // 0: nothing is pinned
@@ -138,6 +139,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void damp();
   void project_all(double dt);
   void gauss_seidel(const sphcloth::ClothState &);
+  void project_colour(int colour, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   void store();
   void lend();

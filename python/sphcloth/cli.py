@@ -254,20 +254,23 @@ def mesh(
 
 @app.command()
 def bench(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth, coupling.")
+    ],
     rounds: Annotated[int, typer.Option(min=1, help="How often everything is measured.")] = 5,
     across: Annotated[
         int | None,
         typer.Option(
             min=8,
             max=400,
-            help="Particles along an edge of the block (pair), vertices along a side (cloth).",
-            show_default="48 or 160",
+            help="Particles along an edge of the water (pair, coupling), vertices along a side "
+            "(cloth).",
+            show_default="48, 160 or 40",
         ),
     ] = None,
     steps: Annotated[
         int | None,
-        typer.Option(min=5, help="Length of a timed run.", show_default="30 or 40"),
+        typer.Option(min=5, help="Length of a timed run.", show_default="30, 40 or 60"),
     ] = None,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write the figures here.")
@@ -277,9 +280,14 @@ def bench(
     import json
 
     from sphcloth.bench.cloth import bench_cloth
+    from sphcloth.bench.coupling import bench_coupling
     from sphcloth.bench.pair import bench_pair
 
-    known = {"pair": (bench_pair, 48, 30), "cloth": (bench_cloth, 160, 40)}
+    known = {
+        "pair": (bench_pair, 48, 30),
+        "cloth": (bench_cloth, 160, 40),
+        "coupling": (bench_coupling, 40, 60),
+    }
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")
     measure, usual_across, usual_steps = known[name]

@@ -119,9 +119,10 @@ void ContactSurface::find_near()
   const Box &cloth_box = grid.bounds();
   found_at.resize(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
+    const double *x = atom->x[i];
+    found_at[i] = Vec3(x[0], x[1], x[2]);
     if (!may_move(i)) continue;
     const Sweep particle = sweep_of(i);
-    found_at[i] = particle.end;
     Box box(particle.start);
     box.extend(particle.end);
     box.min().array() -= skin;
@@ -159,13 +160,26 @@ bool ContactSurface::near_holds()
     box.max() += reach;
     holds = holds && boxes[t].contains(box);
   }
-  const double skin_sq = rules->thickness * rules->thickness;
-  for (int i = 0; i < atom->nlocal && holds; i++) {
-    if (!may_move(i)) continue;
-    const double *x = atom->x[i];
-    holds = (Vec3(x[0], x[1], x[2]) - found_at[i]).squaredNorm() <= skin_sq;
+  return holds && !(farthest_sq() > rules->thickness * rules->thickness);
+}
+
+// Of the ways of all who meet this mesh since they were looked for, squared.  Every particle, twice in each
+// step: one loop without branches.
+
+double ContactSurface::farthest_sq() const
+{
+  const int n = atom->nlocal, *const mask = atom->mask;
+  if (n == 0) return 0.0;
+  const double *const x = atom->x[0], *const then = found_at[0].data();
+  double farthest = 0.0;
+#pragma omp simd reduction(max : farthest)
+  for (int i = 0; i < n; i++) {
+    const double dx = x[3 * i] - then[3 * i], dy = x[3 * i + 1] - then[3 * i + 1],
+                 dz = x[3 * i + 2] - then[3 * i + 2];
+    const double way_sq = mask[i] & meets ? dx * dx + dy * dy + dz * dz : 0.0;
+    farthest = std::max(farthest, way_sq);
   }
-  return holds;
+  return farthest;
 }
 
 // those of the near ones whose ways overlap in this step
@@ -619,9 +633,10 @@ void ContactSurface::remember(int i, int triangle, const Touch &touched)
 
 void ContactSurface::forget_pairs()
 {
+  for (const Particle &p : particles) entry[p.atom] = -1;
   particles.clear();
   pairs.clear();
-  entry.assign(atom->nlocal, -1);
+  entry.resize(atom->nlocal, -1);
 }
 
 bigint ContactSurface::count_too_near(tagint &one)

@@ -200,6 +200,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
   void find_near();
   bool near_holds();
+  double farthest_sq() const;
   void bound();
   template <class Visit> void for_overlapping(Visit visit);
   void set_boxes(double margin);

@@ -22,10 +22,6 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-// columns of `places`: where an atom was at the end of the last step, and what contact has left it of
-// velocity beyond the way that it went
-static constexpr int BEYOND = 3, PLACES = 6;
-
 // of the looks at all surfaces behind the solver: what one of them puts back another may mind
 static constexpr int MOST_ROUNDS = 10;
 
@@ -35,7 +31,7 @@ static constexpr int MOST_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    pushes(nullptr), linking(nullptr), sight(0.0), density_follows_velocity(false), vertex_bits(0)
+    pushes(nullptr), beyond(nullptr), linking(nullptr), sight(0.0), vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -87,6 +83,7 @@ FixClothContact::~FixClothContact()
   if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
   memory->destroy(places);
   memory->destroy(pushes);
+  memory->destroy(beyond);
 }
 
 int FixClothContact::setmask()
@@ -127,7 +124,11 @@ void FixClothContact::init()
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
   auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  density_follows_velocity = fluid && fluid->integrates_density();
+  memory->destroy(beyond);
+  if (fluid && fluid->integrates_density()) {
+    memory->create(beyond, atom->nmax, 3, "cloth/contact:beyond");
+    std::fill_n(beyond[0], 3 * atom->nmax, 0.0);
+  }
   if (!walls) return;
   walls->init(fluid);
   for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], surfaces[k].get());
@@ -251,7 +252,7 @@ void FixClothContact::post_integrate()
     for_all_surfaces([&any](ContactSurface &surface) { any = surface.settle() || any; });
     if (!any || surfaces.size() + hard.size() == 1) break;
   }
-  if (density_follows_velocity) show_way();
+  if (beyond) show_way();
   keep_places();
 }
 
@@ -270,23 +271,23 @@ void FixClothContact::show_way()
 
 void FixClothContact::show_way_of(int i)
 {
-  double *v = atom->v[i], *place = places[i], way[3];
-  for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - place[d];
+  double *v = atom->v[i], way[3];
+  for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - places[i][d];
   domain->minimum_image(FLERR, way);
   for (int d = 0; d < 3; d++) {
-    const double beyond = v[d] - way[d] / update->dt;
-    place[BEYOND + d] += beyond;
-    v[d] -= beyond;
+    const double more = v[d] - way[d] / update->dt;
+    beyond[i][d] += more;
+    v[d] -= more;
   }
 }
 
 void FixClothContact::post_force(int)
 {
-  if (!density_follows_velocity) return;
+  if (!beyond) return;
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < 3; d++) {
-      atom->v[i][d] += places[i][BEYOND + d];
-      places[i][BEYOND + d] = 0.0;
+      atom->v[i][d] += beyond[i][d];
+      beyond[i][d] = 0.0;
     }
 }
 
@@ -310,7 +311,7 @@ int FixClothContact::side_of(int i) const
 
 void FixClothContact::keep_places()
 {
-  for (int i = 0; i < atom->nlocal; i++) std::copy_n(atom->x[i], 3, places[i]);
+  if (atom->nlocal > 0) std::copy_n(atom->x[0], 3 * atom->nlocal, places[0]);
 }
 
 /* ----------------------------------------------------------------------
@@ -350,7 +351,8 @@ void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 
 void FixClothContact::grow_arrays(int nmax)
 {
-  memory->grow(places, nmax, PLACES, "cloth/contact:places");
+  memory->grow(places, nmax, 3, "cloth/contact:places");
+  if (beyond) memory->grow(beyond, nmax, 3, "cloth/contact:beyond");
   if (!obstacle_groups.empty()) memory->grow(pushes, nmax, 3, "cloth/contact:pushes");
   for (auto &obstacle : obstacles) obstacle->set_pushes(pushes);
   for_all_surfaces([this](ContactSurface &surface) { surface.set_last_places(places); });
@@ -358,29 +360,34 @@ void FixClothContact::grow_arrays(int nmax)
 
 void FixClothContact::copy_arrays(int i, int j, int)
 {
-  std::copy_n(places[i], PLACES, places[j]);
-  if (pushes) std::copy(pushes[i], pushes[i] + 3, pushes[j]);
+  for (double **each : {places, pushes, beyond})
+    if (each) std::copy_n(each[i], 3, each[j]);
 }
 
 void FixClothContact::set_arrays(int i)
 {
   std::copy_n(atom->x[i], 3, places[i]);
-  std::fill_n(places[i] + BEYOND, 3, 0.0);
-  if (pushes) std::fill(pushes[i], pushes[i] + 3, 0.0);
+  for (double **each : {pushes, beyond})
+    if (each) std::fill_n(each[i], 3, 0.0);
 }
 
 int FixClothContact::pack_exchange(int i, double *buf)
 {
-  std::copy_n(places[i], PLACES, buf);
-  if (pushes) std::copy_n(pushes[i], 3, buf + PLACES);
-  return PLACES + (pushes ? 3 : 0);
+  double *end = buf;
+  for (double **each : {places, pushes, beyond})
+    if (each) end = std::copy_n(each[i], 3, end);
+  return static_cast<int>(end - buf);
 }
 
 int FixClothContact::unpack_exchange(int i, double *buf)
 {
-  std::copy_n(buf, PLACES, places[i]);
-  if (pushes) std::copy_n(buf + PLACES, 3, pushes[i]);
-  return PLACES + (pushes ? 3 : 0);
+  const double *from = buf;
+  for (double **each : {places, pushes, beyond})
+    if (each) {
+      std::copy_n(from, 3, each[i]);
+      from += 3;
+    }
+  return static_cast<int>(from - buf);
 }
 
 // only what obstacles feel; the first value of a restart record is its length
@@ -404,7 +411,9 @@ int FixClothContact::maxsize_restart() { return 4; }
 
 double FixClothContact::memory_usage()
 {
-  double bytes = (PLACES + (pushes ? 3.0 : 0.0)) * sizeof(double) * atom->nmax;
+  double bytes = 0.0;
+  for (double **each : {places, pushes, beyond})
+    if (each) bytes += 3.0 * sizeof(double) * atom->nmax;
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   return bytes;
 }

@@ -64,8 +64,10 @@ class FixClothContact : public Fix {
   std::string label;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
-  double **places;         // of all atoms at the end of the last step, and BEYOND
+  double **places;         // of all atoms at the end of the last step
   double **pushes;    // on obstacles in this step, mass times velocity; null: there are none
+  double *
+      *beyond;    // velocity that contact has left beyond the way; null: densities do not follow it
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
@@ -75,7 +77,6 @@ class FixClothContact : public Fix {
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;
-  bool density_follows_velocity;
   int vertex_bits;    // groups of the cloths
 
   void keep_places();

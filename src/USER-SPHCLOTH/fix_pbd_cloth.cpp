@@ -33,6 +33,10 @@ static constexpr int GAP = 3, HOLD = 6;
 // body and what holds it within a few steps, whatever their masses; with 1 it would go on for ever.
 static constexpr double CLOSED = 0.25;
 
+// Part of it by which the step that stiffness belongs to gets shorter in each step.  A pull runs through
+// a sheet in a few steps, so what is stored is gone long before.
+static constexpr double STIFFENS = 0.01;
+
 // impulse before the first step
 static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
@@ -42,10 +46,10 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
-    iterations(10), from_start(true), tolerance(0.0), pinbit(0), pin_motion(lmp, label),
-    attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr), lent(nullptr), mesh(lmp, label),
-    constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0), remembered(true),
-    last_residual(0.0), last_energy(0.0), started(false)
+    iterations(10), there_and_back(false), from_start(true), tolerance(0.0), pinbit(0),
+    pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr),
+    lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0),
+    remembered(true), last_residual(0.0), last_energy(0.0), started(false), stiff_dt(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -89,7 +93,9 @@ void FixPBDCloth::read_options(ArgReader &args)
     else if (keyword == "solver") {
       solver = static_cast<Solver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
       solver_given = true;
-    } else if (keyword == "direction")
+    } else if (keyword == "order")
+      there_and_back = args.choice(keyword, {"forward", "symmetric"});
+    else if (keyword == "direction")
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
       tolerance = args.positive(keyword);
@@ -106,7 +112,7 @@ void FixPBDCloth::read_options(ArgReader &args)
     else
       args.unknown(
           keyword,
-          "iterations, solver, direction, tolerance, pin, velocity, attach, damping, rest");
+          "iterations, solver, order, direction, tolerance, pin, velocity, attach, damping, rest");
   }
   if (pin_motion && !pinbit)
     error->all(FLERR, "{}: velocity is that of pins: name their group with 'pin'", label);
@@ -117,6 +123,8 @@ void FixPBDCloth::read_options(ArgReader &args)
   if (attachbit && solver == Solver::SUBSTEPS)
     args.fail("solver", "substeps",
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
+  if (there_and_back && solver == Solver::JACOBI)
+    args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
   if (attachbit) want_holding_forces();
   if (substeps() > 1) {
     memory->create(lent, atom->nmax, 3, "pbd/cloth:lent");
@@ -205,7 +213,7 @@ void FixPBDCloth::init()
                label, group->names[igroup]);
   check_styles();
   constraints.measure_rest(groupbit, rest_x);
-  constraints.colour(iterations, solver == Solver::JACOBI);
+  constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
 }
 
 void FixPBDCloth::check_overlap()
@@ -297,6 +305,7 @@ void FixPBDCloth::post_integrate()
 {
   if (pin_motion) move_pins();
   if (lent) lend();
+  stiffen();
   load();
   if (hold) start_pulls();
   begin_guests();
@@ -367,6 +376,20 @@ Vertex FixPBDCloth::velocity_of_attached(int s) const
   return {u[0] + by * gap[0], u[1] + by * gap[1], u[2] + by * gap[2], p[s].w};
 }
 
+// What has no compliance is met to an error in a substep, and is as stiff as the substep is short, by its
+// square.  If steps got shorter at once, what a stretched sheet stores in its errors would grow as much:
+// energy from nothing.  So stiffness follows by and by, while the errors go.
+
+void FixPBDCloth::stiffen() { stiff_dt = std::max(update->dt, (1.0 - STIFFENS) * stiff_dt); }
+
+// whole steps have sweeps enough to leave no errors of that size
+
+double FixPBDCloth::share() const
+{
+  const double shorter = update->dt / stiff_dt;
+  return solver == Solver::SUBSTEPS ? shorter * shorter : 1.0;
+}
+
 void FixPBDCloth::substep(int n)
 {
   const double dt = update->dt / substeps();
@@ -431,8 +454,8 @@ void FixPBDCloth::damp()
 
 void FixPBDCloth::project_all(double dt)
 {
-  const ClothState state{start.data(), way.data(), from_start,
-                         solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
+  Vertex *const apart = solver == Solver::JACOBI ? change.data() : nullptr;
+  const ClothState state{start.data(), way.data(), from_start, apart, 1.0 / (dt * dt), share()};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = iterations / substeps();
@@ -449,15 +472,27 @@ void FixPBDCloth::project_all(double dt)
   }
 }
 
+// One after the other in a fixed order, a sweep pulls harder one way than the other: what it does to a
+// sheet is no force with an energy.  There and back it is.
+
 void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
-  for (int c = 0; c < constraints.distance.colours(); c++) {
+  const int n = constraints.distance.colours() + constraints.bending.colours();
+  for (int c = 0; c < n; c++) project_colour(c, state);
+  for (int c = n - 1; there_and_back && c >= 0; c--) project_colour(c, state);
+}
+
+// edges first, then hinges
+
+void FixPBDCloth::project_colour(int c, const ClothState &state)
+{
+  const int hinge = c - constraints.distance.colours();
+  if (hinge < 0) {
     project(constraints.distance, c, state);
     halo.forward(constraints.channel_of_edge_colour(c), way.data(), false);
-  }
-  for (int c = 0; c < constraints.bending.colours(); c++) {
-    project(constraints.bending, c, state);
-    halo.forward(constraints.channel_of_hinge_colour(c), way.data(), false);
+  } else {
+    project(constraints.bending, hinge, state);
+    halo.forward(constraints.channel_of_hinge_colour(hinge), way.data(), false);
   }
 }
 
@@ -769,12 +804,18 @@ int FixPBDCloth::maxsize_restart() { return 4 + (hold ? HOLD : 0) + (lent ? 3 : 
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const int bytes = sizeof(int), value = started;
+  const double values[] = {started ? 1.0 : 0.0, stiff_dt};
+  const int bytes = sizeof(values);
   fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(&value, sizeof(int), 1, fp);
+  fwrite(values, bytes, 1, fp);
 }
 
-void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(buf); }
+void FixPBDCloth::restart(char *buf)
+{
+  const auto *values = reinterpret_cast<const double *>(buf);
+  started = values[0] != 0.0;
+  stiff_dt = values[1];
+}
 
 double FixPBDCloth::memory_usage()
 {

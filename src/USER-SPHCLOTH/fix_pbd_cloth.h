@@ -91,6 +91,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   std::string label;
   Solver solver;
   int iterations;
+  bool there_and_back;    // a sweep goes through the constraints and back
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
   int pinbit;    // 0: nothing is pinned
@@ -115,6 +116,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double last_residual, last_energy;
   std::vector<ClothGuest *> guests, present;    // those that are near in this step
   bool started;    // velocities are those of half a step ago, see direction start
+  double stiff_dt;    // step to which the stiffness belongs, see stiffen()
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
@@ -130,11 +132,14 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void load();
   void load_attached(int slot);
   sphcloth::Vertex velocity_of_attached(int slot) const;
+  void stiffen();
+  double share() const;
   void substep(int n);
   void go();
   void damp();
   void project_all(double dt);
   void gauss_seidel(const sphcloth::ClothState &);
+  void project_colour(int colour, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   void store();
   void lend();

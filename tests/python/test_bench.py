@@ -1,5 +1,6 @@
 """sphcloth bench: what it reads and what it reports."""
 
+import io
 import json
 import subprocess
 import sys
@@ -7,7 +8,9 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
+from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.timing import Spread, read_timing
 from sphcloth.errors import UserError
 
@@ -63,7 +66,7 @@ def test_an_unknown_benchmark_is_named() -> None:
     command = [Path(sys.executable).parent / "sphcloth", "bench", "sail"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "no benchmark 'sail': use pair, cloth" in done.stderr
+    assert "no benchmark 'sail': use pair, cloth, coupling" in done.stderr
 
 
 def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
@@ -85,3 +88,15 @@ def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
     else:
         assert "pip install 'sphcloth[bench]'" in done.stdout
         assert set(figures["codes"]) == {"sphcloth"}
+
+
+def test_a_sheet_out_of_reach_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_coupling(1, 10, 5, Console(file=said, width=200), size="tiny")
+    assert result["particles"] == 1000
+    assert set(result["step_ns"]) == {"water", "sheet", "contact"}
+    for scene in ("sheet", "contact"):
+        # so small a block says nothing of the cost
+        assert 0.1 < result["ratios"][scene]["value"] < 10
+    assert 0 < result["pour"]["contact_share"] < 0.5
+    assert "share of contact in pour, size tiny" in said.getvalue()

@@ -140,6 +140,11 @@ CASES = [
         SHEET + "fix s cloth pbd/cloth tolerance 0.1 solver substeps",
         r"tolerance is '0.1.*one sweep each.*solver gs",
     ),
+    case(
+        "cloth: order of jacobi",
+        SHEET + "fix s cloth pbd/cloth order symmetric solver jacobi",
+        r"order is 'symmetric'.*have no order",
+    ),
     case("cloth: damping", SHEET + "fix s cloth pbd/cloth damping -1", r"damping rate is '-1'"),
     case(
         "cloth: no pin group", SHEET + "fix s cloth pbd/cloth pin who", r"pin group is 'who'.*group"

@@ -50,6 +50,7 @@ PARAMETERS = (
     Parameter("thickness", 0.2, "spacing", "gap that contact keeps", 0.01, 0.5),
     Parameter("iterations", 10, "1", "sweeps, or substeps, in a step", 1, 100_000),
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
+    Parameter("order", "forward", "1", "of a sweep", choices=("forward", "symmetric")),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     Parameter("refined", 1.0, "1", "all time steps over what they would be", 1e-3, 1.0),
     *(

@@ -21,7 +21,7 @@ from sphcloth.tradeoff.command import all_scenes, find_scene, parse_quantity, pa
 from sphcloth.tradeoff.front import Point, cheapest, choices, pareto
 from sphcloth.tradeoff.report import show, write_all
 from sphcloth.tradeoff.runs import count_updates
-from sphcloth.tradeoff.scene import AS_WRITTEN, Clock, History, Quantity, Scene, column
+from sphcloth.tradeoff.scene import AS_WRITTEN, SCHEMES, Clock, History, Quantity, Scene, column
 from sphcloth.tradeoff.study import Plan, Study, all_settings, combinations, study, variations
 
 # one mass on a spring: x = cos t, exact to second order in dt; unstable above dt = 2
@@ -195,8 +195,10 @@ def test_the_same_coefficient_is_the_step_of_constant_and_the_limit_of_global(na
 @pytest.mark.parametrize("name", sorted(all_scenes()))
 def test_every_scene_knows_its_names(name: str) -> None:
     scene = all_scenes()[name]
-    for names in (scene.variables, scene.quick, scene.reference, *scene.variations.values()):
-        scene.check_names("test", names)
+    for names in (scene.variables, scene.quick, *scene.variations.values()):
+        scene.check_names("--set", names)
+    scene.check_names("--reference", scene.reference)
+    assert tuple(scene.variations) == SCHEMES
     assert scene.script.is_file() and scene.reference["scheme"] == "constant"
     finest = float(scene.reference["acoustic"])
     assert all(float(each) > finest for each in scene.variations["constant"]["acoustic"])
@@ -359,6 +361,11 @@ def test_the_last_run_alone(spring: Path, tmp_path: Path, quiet: Console) -> Non
         (["dam-break", "--vary", "none=1"], "--vary none: no such variable in in.dam-break"),
         (["dam-break", "--set", "none=1"], "--set none: no such variable"),
         (["dam-break", "--reference", "none=1"], "--reference none: no such variable"),
+        (["dam-break", "--set", "limits=max 1"], "--set limits: no such variable"),
+        (["dam-break", "--vary", "scheme=global"], "schemes are chosen with --scheme"),
+        (["dam-break", "--vary", "acoustic=much"], "acoustic is much: it must be a number above 0"),
+        (["dam-break", "--vary", "ceiling=0"], "ceiling is 0: it must be a number above 0"),
+        (["dam-break", "--set", "across=-4"], "dam-break: no time step follows from across -4"),
         (["dam-break", "--scheme", "best"], "--scheme best: choose from"),
         (["dam-break", "--quantity", "front:mean"], "no norm 'mean'"),
         (["SPRING"], "give --quantity"),

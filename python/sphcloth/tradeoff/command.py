@@ -63,7 +63,7 @@ def find_schemes(scene: Scene, text: str | None) -> tuple[str, ...]:
     """Return the schemes to run; UserError for one that is unknown or that nothing chooses."""
     if text is None:
         if scene.clock is not None:
-            return tuple(scheme for scheme in USUAL_SCHEMES if scheme in scene.variations)
+            return USUAL_SCHEMES
         return (AS_WRITTEN,)
     found = tuple(word.strip() for word in text.split(","))
     for scheme in found:
@@ -109,8 +109,8 @@ def show_scenes(console: Console) -> None:
             table.add_column(head)
         for quantity in scene.quantities:
             table.add_row("quantity", quantity.name, f"{quantity.description} ({quantity.norm})")
-        for scheme, varied in scene.variations.items():
-            table.add_row("varied", scheme, _listed(varied))
+        for scheme in find_schemes(scene, None):
+            table.add_row("varied", scheme, _listed(scene.variations[scheme]))
         table.add_row("reference", scene.reference["scheme"], _reference(scene))
         console.print(table, "", highlight=False)
 

@@ -37,7 +37,9 @@ LIMITS = (
     "sleep",
 )
 # ceiling of chosen steps over h_s / c_0, in packaged scenes: --vary ceiling=2,8
-CEILING = 4.0
+CEILING = "4"
+# variables of a packaged scene's script that follow from the scheme and its settings
+DERIVED = ("limits", "every", "steps")
 # share of the interval by which a whole number of constant steps may miss it
 SLACK = 1e-9
 
@@ -145,7 +147,8 @@ class Scene:
         summary: what happens in it, in one line.
         script: the LAMMPS input script.
         quantities: what is of interest; the first one ranks the settings.
-        variables: script variables of all runs that differ from the script's defaults.
+        variables: script variables of all runs that differ from the script's defaults, and the
+            ceiling if it does.
         quick: those of the smaller variant.
         variations: scheme -> name -> the values to try; all combinations are run.
         reference: scheme and settings of the reference run.
@@ -179,13 +182,15 @@ class Scene:
         return {name: value.strip("\"'") for name, value in found}
 
     def check_names(self, option: str, names: Mapping[str, object]) -> None:
-        """Make sure that all names mean something here; UserError with those that do."""
-        known = dict.fromkeys(self.defaults)
+        """Make sure that all names may be set here; UserError with those that may."""
+        known = list(self.defaults)
         if "limits" in known:
-            known |= dict.fromkeys(LIMITS)
+            known += LIMITS
         if self.clock is not None:
-            known["ceiling"] = None
+            known = [*(name for name in known if name not in DERIVED), "ceiling"]
         for name in names:
+            if name == "scheme" and option != "--reference":
+                raise UserError(f"{option} scheme: schemes are chosen with --scheme")
             if name not in known:
                 raise UserError(
                     f"{option} {name}: no such variable in {self.script.name}: choose from "
@@ -214,26 +219,33 @@ class Scene:
         variables = {**self.variables, **(self.quick if quick else {}), **own}
         if scheme != AS_WRITTEN:
             variables["scheme"] = scheme
-        if self.clock is None:
-            return variables | ({"limits": _joined(limits)} if limits else {})
-        ceiling = float(variables.pop("ceiling", CEILING))
-        numbers = {name: _number(value) for name, value in (self.defaults | variables).items()}
-        clock = self.clock(numbers)
-        if scheme == "constant":
-            return variables | _constant_steps(clock, limits, own)
-        longest = repr(ceiling * clock.sound_time)
-        limits = {"max": longest, "output": repr(clock.interval)} | limits
-        return variables | {"limits": _joined(limits), "every": "v_next", "dt": longest}
+        if self.clock is not None:
+            return self._with_steps(variables, limits)
+        return variables | ({"limits": _joined(limits)} if limits else {})
 
     def _is_limit(self, name: str) -> bool:
         return name in LIMITS and name not in self.defaults
 
+    def _with_steps(self, variables: Values, limits: Values) -> dict[str, str]:
+        """Return the variables of a packaged scene with those that set steps and rows of the log.
 
-def _constant_steps(clock: Clock, limits: Values, own: Values) -> dict[str, str]:
-    """Return the variables that set the constant step, and the log's rows at whole intervals."""
-    wanted = float(own["dt"]) if "dt" in own else float(limits["acoustic"]) * clock.sound_time
-    dt, steps = clock.constant_step(wanted)
-    return {"dt": repr(dt), "every": "v_later", "steps": str(steps), "limits": ""}
+        Raises:
+            UserError: a setting that is not the number that it has to be.
+        """
+        others = {name: value for name, value in variables.items() if name != "ceiling"}
+        numbers = {name: _number(value) for name, value in (self.defaults | others).items()}
+        clock = self.clock(numbers)
+        if not (clock.sound_time > 0 and clock.interval > 0):
+            raise UserError(f"{self.name}: no time step follows from {_joined(others)}")
+        if others["scheme"] == "constant":
+            # without both, what fix sph/integrate takes by itself
+            wanted = _positive("acoustic", limits.get("acoustic", "0.5")) * clock.sound_time
+            dt, steps = clock.constant_step(_positive("dt", others.get("dt", repr(wanted))))
+            return others | {"dt": repr(dt), "every": "v_later", "steps": str(steps), "limits": ""}
+        ceiling = _positive("ceiling", variables.get("ceiling", CEILING))
+        longest = repr(ceiling * clock.sound_time)
+        words = {"max": longest, "output": repr(clock.interval)} | limits
+        return others | {"limits": _joined(words), "every": "v_next", "dt": longest}
 
 
 def _joined(limits: Values) -> str:
@@ -246,3 +258,10 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
+
+
+def _positive(name: str, text: str) -> float:
+    value = _number(text)
+    if not value > 0:
+        raise UserError(f"{name} is {text}: it must be a number above 0")
+    return value

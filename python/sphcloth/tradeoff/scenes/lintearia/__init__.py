@@ -9,10 +9,10 @@ from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
 from sphcloth.validation.cases import lintearia
 
 SAMPLES = 25
-STEPS = ("0.1", "0.15", "0.2", "0.25", "0.3")
+STEPS = ("0.1", "0.2", "0.25", "0.3")
 SUBSTEPS = ("4", "16")
 # the sheet is light: its vertices, not the water, limit the step of schemes that choose it
-CHOSEN = {"acoustic": ("0.8", "1.6", "3.2"), "ceiling": ("0.15", "0.25"), "iterations": SUBSTEPS}
+CHOSEN = {"acoustic": ("1.6",), "force": ("0.1", "0.2", "0.4"), "iterations": SUBSTEPS}
 
 
 def clock(values: Mapping[str, float]) -> Clock:
@@ -34,10 +34,11 @@ SCENE = Scene(
         "constant": {"acoustic": STEPS, "iterations": SUBSTEPS},
         "global": CHOSEN,
         "individual": CHOSEN,
+        "block": CHOSEN,
     },
     reference={"scheme": "constant", "acoustic": "0.05", "iterations": "32"},
     # forces of the last step: averages over steps would depend on how long these are
-    variables={"across": "40", "t_end": "1.0", "average": "1", "frames": "1"},
+    variables={"across": "40", "t_end": "1.0", "average": "1", "frames": "1", "ceiling": "0.25"},
     quick={"across": "25", "layers": "4", "t_end": "0.5"},
     clock=clock,
 )

@@ -32,6 +32,7 @@ SCENE = Scene(
         "constant": {"acoustic": STEPS},
         "global": {"acoustic": STEPS},
         "individual": {"acoustic": STEPS},
+        "block": {"acoustic": STEPS},
     },
     reference={"scheme": "constant", "acoustic": "0.1"},
     variables=POUR.sizes()["medium"] | {"t_end": "2.0", "frames": "1"},

@@ -11,6 +11,8 @@ from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
 INTERVAL = 0.02
 COEFFICIENTS = ("0.2", "0.4", "0.8", "1.2", "1.4", "1.6", "1.8", "2.0", "2.2")
 FORCE = ("0.05", "0.2")
+# for schemes in which particles have steps of their own
+UNEQUAL = {"acoustic": COEFFICIENTS[1:6:2], "ceiling": ("1.0", "2.0", "4.0")}
 
 
 def clock(values: Mapping[str, float]) -> Clock:
@@ -30,7 +32,8 @@ SCENE = Scene(
     variations={
         "constant": {"acoustic": COEFFICIENTS},
         "global": {"acoustic": COEFFICIENTS[1:6], "force": FORCE},
-        "individual": {"acoustic": COEFFICIENTS[1:6:2], "ceiling": ("1.0", "2.0", "4.0")},
+        "individual": UNEQUAL,
+        "block": UNEQUAL,
     },
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={"calm": str(INTERVAL), "frames": "1"},

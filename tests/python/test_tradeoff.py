@@ -265,6 +265,21 @@ def test_values_that_are_no_numbers_are_a_failure(
     well, wrong = study(scene, wish, tmp_path / "out", quiet).points
     assert well.failure is None
     assert wrong.failure == "v_bad is not a number at time 0"
+    with pytest.raises(UserError, match="the reference run is no good: v_bad"):
+        study(scene, plan(vary={"dt": ("0.1",)}, reference={"dt": "0.3"}), tmp_path, quiet)
+
+
+def test_values_too_large_to_be_squared_are_a_failure(
+    spring: Path, tmp_path: Path, quiet: Console
+) -> None:
+    large = "variable large equal v_x*exp(500*(v_dt>0.2))\n"
+    text = SPRING.replace("v_x\nthermo_modify", "v_large\nthermo_modify")
+    spring.write_text(text.replace("timestep", large + "timestep", 1))
+    scene = find_scene(str(spring), ["v_large"], last_run=False)
+    wish = plan(vary={"dt": ("0.1", "0.3")}, reference={"dt": "0.01"})
+    found = study(scene, wish, tmp_path / "out", quiet)
+    assert [each.failure for each in found.points] == [None, "values too large for an error"]
+    write_all(found, tmp_path)
 
 
 @pytest.fixture

@@ -108,7 +108,9 @@ class Quantity:
         covered = (reference.times >= run.times[0]) & (reference.times <= run.times[-1])
         here = np.interp(reference.times[covered], run.times, run.values)
         difference = here - reference.values[covered]
-        return NORMS[self.norm](difference) / self._size(reference.values)
+        # what has blown up may overflow: the caller sees that the error is not finite
+        with np.errstate(over="ignore", invalid="ignore"):
+            return NORMS[self.norm](difference) / self._size(reference.values)
 
     def _size(self, values: NDArray) -> float:
         size = float(np.ptp(values) if self.by_range else np.max(np.abs(values)))

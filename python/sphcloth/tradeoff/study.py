@@ -163,6 +163,8 @@ def study(
     # a column that is missing is missed here, before all the other runs
     table = workshop.thermo(reference)
     exact = {each.name: each.history(table) for each in scene.quantities}
+    if (wrong := _not_a_number(exact)) is not None:
+        raise UserError(f"the reference run is no good: {wrong}")
     patience = PATIENCE * jobs * first.elapsed_s + GRACE_SECONDS
     records = workshop.run(settings, repeat, patience)
     points = [
@@ -239,6 +241,8 @@ def _point(
     errors = {
         each.name: each.error(histories[each.name], exact[each.name]) for each in scene.quantities
     }
+    if not np.all(np.isfinite(list(errors.values()))):
+        return Point(*named, {}, "values too large for an error")
     return Point(*named, errors, None, record.updates, record.steps, record.wall_s)
 
 

@@ -66,8 +66,9 @@ def _draw_panel(axes: Axes, study: Study, quantity: str, cost: str) -> list[Arti
         What the legend of the figure explains; the panel has one of its own.
     """
     axes.set(xscale="log", yscale="log")
-    axes.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
-    axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9, 9)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9, 9)))
     axes.grid(which="major", alpha=0.3)
     front = _visible(pareto(study.points, quantity, cost), quantity)
     axes.plot(*_curve(front, quantity, cost), color="0.8", lw=7, zorder=1, label="Pareto front")

@@ -9,10 +9,10 @@ from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.01
-COEFFICIENTS = ("0.2", "0.4", "0.8", "1.2", "1.4", "1.6", "1.8", "2.0", "2.2")
+COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
 FORCE = ("0.05", "0.2")
 # for schemes in which particles have steps of their own
-UNEQUAL = {"acoustic": COEFFICIENTS[1:6:2], "ceiling": ("1.0", "2.0", "4.0")}
+UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": ("1.0", "2.0", "4.0")}
 
 
 def clock(values: Mapping[str, float]) -> Clock:
@@ -30,7 +30,7 @@ SCENE = Scene(
     ),
     variations={
         "constant": {"acoustic": COEFFICIENTS},
-        "global": {"acoustic": COEFFICIENTS[1:6], "force": FORCE},
+        "global": {"acoustic": COEFFICIENTS[1::2], "force": FORCE},
         "individual": UNEQUAL,
         "block": UNEQUAL,
     },

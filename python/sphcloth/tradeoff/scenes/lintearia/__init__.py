@@ -26,8 +26,8 @@ SCENE = Scene(
     summary="a pool of water comes to rest in a sheet between two pins",
     script=Path(lintearia.__file__).parent / "in.lintearia",
     quantities=(
-        Quantity("sag", "height of the lowest vertex", column("v_lowest"), by_range=True),
         Quantity("speed", "rms speed of the water", column("v_speed")),
+        Quantity("sag", "depth of the lowest vertex below the pins", column("v_sag")),
         Quantity("lift", "vertical force of a pin", column("v_pull_z"), norm="end"),
     ),
     variations={

@@ -19,14 +19,17 @@ def clock(values: Mapping[str, float]) -> Clock:
 
 
 POUR = find_example("pour")
+# hinges with a stiffness k depend on the step by their nature; and while there is no water yet,
+# nothing but the ceiling keeps the schemes from folding the sheet with steps of their own
+SHARED = {"bend": "0.0", "ceiling": "1", "frames": "1"}
 
 SCENE = Scene(
     name="pour",
     summary="water poured on a sheet in a frame",
     script=POUR.script,
     quantities=(
-        Quantity("sag", "height of the lowest vertex", column("v_lowest"), by_range=True),
         Quantity("kinetic", "kinetic energy of water and sheet", column("v_kinetic")),
+        Quantity("sheet", "mean height of the sheet", column("v_hang"), by_range=True),
     ),
     variations={
         "constant": {"acoustic": STEPS},
@@ -35,7 +38,7 @@ SCENE = Scene(
         "block": {"acoustic": STEPS},
     },
     reference={"scheme": "constant", "acoustic": "0.1"},
-    variables=POUR.sizes()["medium"] | {"t_end": "2.0", "frames": "1"},
-    quick=POUR.sizes()["tiny"] | {"t_end": "1.0", "frames": "1"},
+    variables=POUR.sizes()["medium"] | SHARED | {"t_end": "2.0"},
+    quick=POUR.sizes()["tiny"] | SHARED | {"t_end": "1.0"},
     clock=clock,
 )

@@ -65,12 +65,12 @@ def find_example(name: str) -> Example:
     return Example(name, folder / name)
 
 
-def parse_settings(settings: Sequence[str]) -> dict[str, str]:
-    """Turn ``name=value`` texts into a dictionary; UserError for any other form."""
+def parse_settings(settings: Sequence[str], option: str = "--set") -> dict[str, str]:
+    """Turn the ``name=value`` texts of an option into a dictionary; UserError for other forms."""
     pairs = [setting.partition("=") for setting in settings]
     for setting, (name, equals, value) in zip(settings, pairs, strict=True):
         if not (name.isidentifier() and equals and value.strip()):
-            raise UserError(f"--set {setting}: expected name=value")
+            raise UserError(f"{option} {setting}: expected name=value")
     return {name: value.strip() for name, _, value in pairs}
 
 

@@ -31,11 +31,15 @@ class ThermoTable:
     loop_seconds: float
 
     @classmethod
-    def read(cls, path: str | Path) -> ThermoTable:
+    def read(cls, path: str | Path, last_run: bool = False) -> ThermoTable:
         """Read a log written with ``thermo_modify line yaml``.
 
         A log that ends in the middle of a run, or of a row, gives its complete rows. The first
         row of a follow-up run, which repeats the last one of the run before, is dropped.
+
+        Args:
+            path: the log.
+            last_run: leave out what was before the last ``run`` command.
 
         Raises:
             UserError: no such file, or no thermo output in it.
@@ -50,7 +54,10 @@ class ThermoTable:
                 f"{path} holds no thermo output: the script needs 'thermo_modify line yaml' "
                 "and a run that got as far as its first row"
             )
-        return cls(_concatenate(runs), _loop_seconds(text))
+        loops = _loop_seconds(text)
+        if last_run:
+            runs, loops = runs[-1:], loops[-1:]
+        return cls(_concatenate(runs), sum(loops))
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns
@@ -121,6 +128,6 @@ def _concatenate(runs: Runs) -> dict[str, NDArray[np.float64]]:
     return {name: np.concatenate(columns) for name, columns in parts.items()}
 
 
-def _loop_seconds(text: str) -> float:
-    """Add up the wall times of the ``Loop time of 1.5 on 4 procs`` lines."""
-    return sum(float(time) for time in re.findall(r"^Loop time of (\S+) on", text, re.MULTILINE))
+def _loop_seconds(text: str) -> list[float]:
+    """Return the wall times of the ``Loop time of 1.5 on 4 procs`` lines."""
+    return [float(time) for time in re.findall(r"^Loop time of (\S+) on", text, re.MULTILINE)]

@@ -121,14 +121,32 @@ def run_lammps(command: list[str], out: Path, t_end: float, console: Console) ->
 
 @contextmanager
 def _started(command: list[str], out: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """Start LAMMPS in a session of its own: a Ctrl-C reaches it through us alone, and once.
+    """Start LAMMPS and make sure that it has ended when the block is left."""
+    with endings_interrupt():
+        process = start_lammps(command, out)
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                kill(process)
 
-    Whatever else asks us to end must count as a Ctrl-C then: LAMMPS would run on unseen.
-    """
+
+@contextmanager
+def endings_interrupt() -> Iterator[None]:
+    """Let whatever else asks us to end count as a Ctrl-C: LAMMPS would run on unseen."""
     endings = (signal.SIGTERM, signal.SIGHUP)
     handlers = {ending: signal.signal(ending, signal.default_int_handler) for ending in endings}
+    try:
+        yield
+    finally:
+        for ending, handler in handlers.items():
+            signal.signal(ending, handler)
+
+
+def start_lammps(command: list[str], out: Path) -> subprocess.Popen[bytes]:
+    """Start LAMMPS in a session of its own: a Ctrl-C reaches it through us alone, and once."""
     with (out / SCREEN).open("wb") as screen:
-        process = subprocess.Popen(
+        return subprocess.Popen(
             command,
             cwd=out,
             stdin=subprocess.DEVNULL,
@@ -136,13 +154,6 @@ def _started(command: list[str], out: Path) -> Iterator[subprocess.Popen[bytes]]
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
-        try:
-            yield process
-        finally:
-            if process.poll() is None:
-                _kill(process)
-            for ending, handler in handlers.items():
-                signal.signal(ending, handler)
 
 
 def _follow(log: Path, process: subprocess.Popen[bytes]) -> Iterator[dict[str, float]]:
@@ -192,19 +203,24 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     try:
         process.wait(GRACE_SECONDS)
     except (subprocess.TimeoutExpired, KeyboardInterrupt):
-        _kill(process)
+        kill(process)
 
 
-def _kill(process: subprocess.Popen[bytes]) -> None:
+def kill(process: subprocess.Popen[bytes]) -> None:
     """Kill the launcher and all that it started."""
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
 
 
+def last_words(out: Path) -> list[str]:
+    """Return what LAMMPS, or else the launcher, said last in a folder."""
+    screen = (out / SCREEN).read_text(errors="replace").splitlines()
+    return error_lines(out / LOG) or screen[-5:]
+
+
 def _show_failure(out: Path, status: int, console: Console) -> None:
-    """Print what LAMMPS, or else the launcher, said last."""
-    said = error_lines(out / LOG) or (out / SCREEN).read_text(errors="replace").splitlines()[-5:]
+    """Print what LAMMPS said last."""
     console.print(f"[red]LAMMPS ended with status {status}[/]")
-    for line in said:
+    for line in last_words(out):
         console.print(f"  {line}", markup=False, soft_wrap=True)
     console.print(f"  log: {out / LOG}", markup=False, soft_wrap=True)

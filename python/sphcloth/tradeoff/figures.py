@@ -1,0 +1,113 @@
+"""Error against cost, as a figure for print and for the screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+
+from sphcloth.tradeoff.front import COSTS, Point, choices, pareto
+from sphcloth.tradeoff.scene import AS_WRITTEN, Quantity
+from sphcloth.tradeoff.study import Study
+
+# colours that stay apart for all readers, and in grey (Okabe and Ito 2008); one mark each
+STYLES = {
+    "constant": ("#0072B2", "o"),
+    "global": ("#E69F00", "s"),
+    "individual": ("#CC79A7", "^"),
+    "block": ("#009E73", "D"),
+    AS_WRITTEN: ("#0072B2", "o"),
+}
+# text in an SVG stays text
+SETTINGS = {"svg.fonttype": "none", "font.size": 9, "legend.fontsize": 8}
+# errors above are off the scale: how wrong a run is that is all wrong does not matter
+WORST = 1.0
+
+
+def draw(study: Study, out: Path) -> list[Path]:
+    """Write one figure for each quantity, as PNG and as SVG; returns all files."""
+    written = []
+    with mpl.rc_context(SETTINGS):
+        for quantity in study.scene.quantities:
+            figure = _figure(study, quantity)
+            for form in ("png", "svg"):
+                written.append(out / f"{study.scene.name}-{quantity.name}.{form}")
+                figure.savefig(written[-1], dpi=160)
+    return written
+
+
+def _figure(study: Study, quantity: Quantity) -> Figure:
+    """Return error over particle updates and over wall time, side by side."""
+    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, (cost, label) in zip(panels, COSTS.items(), strict=True):
+        handles = _draw_panel(axes, study, quantity.name, cost)
+        axes.set_xlabel(label)
+    if study.side_by_side:
+        panels[1].set_xlabel(f"{COSTS['wall_s']}, measured side by side")
+    panels[0].set_ylabel(f"{quantity.description}: relative error ({quantity.norm})")
+    title = f"{study.scene.name}: {study.scene.summary}"
+    above = {"loc": "outside upper center", "ncols": 3, "frameon": False, "title_fontsize": 10}
+    figure.legend(handles=handles, title=title, **above)
+    return figure
+
+
+def _draw_panel(axes: Axes, study: Study, quantity: str, cost: str) -> list[Artist]:
+    """Draw all settings, the front of each scheme as a thin line, and that of all as a band.
+
+    Returns:
+        What the legend of the figure explains; the panel has one of its own.
+    """
+    axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9, 9)))
+    axes.grid(which="major", alpha=0.3)
+    front = _visible(pareto(study.points, quantity, cost), quantity)
+    axes.plot(*_curve(front, quantity, cost), color="0.8", lw=7, zorder=1, label="Pareto front")
+    for scheme in dict.fromkeys(point.scheme for point in study.points):
+        _draw_scheme(axes, study, scheme, quantity, cost)
+    error = study.plan.error
+    axes.axhline(error, color="0.4", ls=":", lw=1, label=f"error {error:g}")
+    explained, _ = axes.get_legend_handles_labels()
+    found = choices(study.points, quantity, cost, error)
+    rings = [_ring(axes, choice.point, quantity, cost) for choice in found.values()]
+    below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "frameon": False}
+    axes.legend(handles=rings, title=f"cheapest within {error:g}" if rings else None, **below)
+    return explained
+
+
+def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str) -> None:
+    colour, mark = STYLES[scheme]
+    mine = [point for point in study.points if point.scheme == scheme]
+    finished = [point for point in mine if point.failure is None]
+    well = _visible(finished, quantity)
+    off = sum(point.errors[quantity] > WORST for point in finished)
+    notes = {"unstable": len(mine) - len(finished), "off the scale": off}
+    said = ", ".join(f"{count} {note}" for note, count in notes.items() if count)
+    label = f"{scheme} ({said})" if said else scheme
+    axes.plot(*_curve(well, quantity, cost), mark, color=colour, ms=5, label=label)
+    axes.plot(*_curve(pareto(well, quantity, cost), quantity, cost), "-", color=colour, lw=1)
+
+
+def _ring(axes: Axes, point: Point, quantity: str, cost: str) -> Line2D:
+    """Put a ring around the cheapest point of a scheme within the error."""
+    ring = {"marker": "o", "ms": 11, "mfc": "none", "mec": STYLES[point.scheme][0], "ls": ""}
+    label = f"{point.scheme}: {point.label}"
+    return axes.plot(point.cost(cost), point.errors[quantity], **ring, label=label)[0]
+
+
+def _visible(points: list[Point], quantity: str) -> list[Point]:
+    """Leave out errors off the scale, and those of 0, which a logarithmic axis cannot show."""
+    return [point for point in points if 0 < point.errors[quantity] <= WORST]
+
+
+def _curve(points: list[Point], quantity: str, cost: str) -> tuple[list[float], list[float]]:
+    return [point.cost(cost) for point in points], [point.errors[quantity] for point in points]

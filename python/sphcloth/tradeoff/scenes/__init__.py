@@ -1,0 +1,1 @@
+"""The packaged scenes: a package each, with ``SCENE``."""

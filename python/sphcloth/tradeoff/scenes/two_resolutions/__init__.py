@@ -1,0 +1,42 @@
+"""Water swings in a tank past a sheet: it is fine at the sheet and coarse beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+
+# of the log, s; the settling time is a multiple
+INTERVAL = 0.01
+COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
+FORCE = ("0.05", "0.2")
+# for schemes in which particles have steps of their own
+UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": ("1.0", "2.0", "4.0")}
+
+
+def clock(values: Mapping[str, float]) -> Clock:
+    """Return the times of the motion, by the fine water."""
+    return Clock(0.5 * values["support"] * values["spacing"] / values["sound"], INTERVAL)
+
+
+SCENE = Scene(
+    name="two-resolutions",
+    summary="water swings past a sheet, fine at the sheet and coarse beyond",
+    script=Path(__file__).parent / "in.two-resolutions",
+    quantities=(
+        Quantity("kinetic", "kinetic energy of water and sheet", column("v_kinetic")),
+        Quantity("billow", "mean deflection of the sheet", column("v_billow")),
+    ),
+    variations={
+        "constant": {"acoustic": COEFFICIENTS},
+        "global": {"acoustic": COEFFICIENTS[1::2], "force": FORCE},
+        "individual": UNEQUAL,
+        "block": UNEQUAL,
+    },
+    reference={"scheme": "constant", "acoustic": "0.1"},
+    variables={"calm": str(INTERVAL), "frames": "1"},
+    quick={"across": "16", "layers": "18", "hole": "2", "below": "10"},
+    clock=clock,
+    last_run=True,
+)

@@ -97,6 +97,9 @@ class Summary:
             ("particle updates", _text(self.particle_updates, "{:.3e}")),
             ("particle updates per second", _text(self.updates_per_second, "{:.3e}")),
         ]
+        if self.crossed is None:
+            # a scene of cloth alone: what is not there says nothing
+            rows = [row for row in rows if "n/a" not in row[1]]
         if self.crossing_steps:
             rows.append(("crossings seen at steps", ", ".join(map(str, self.crossing_steps[:8]))))
         rows += [("", picture) for picture in self.pictures[:2]]

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from sphcloth import cli
 from sphcloth.errors import UserError
 from sphcloth.plots import contact_sheet
-from sphcloth.rendering import command, movie
+from sphcloth.rendering import command, light, movie, scene, shading
 from sphcloth.rendering.camera import Camera, ParallelView
 from sphcloth.rendering.cast import Cast, Choice
 from sphcloth.rendering.light import Balls, Light
@@ -31,6 +31,14 @@ from sphcloth.trajectory import Frame
 
 MESH, SHEET = square_sheet(6)
 SIZE = (96, 72)
+
+
+@pytest.fixture(autouse=True)
+def draw_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Spend no time on what a small picture does not show."""
+    monkeypatch.setattr(scene, "FINE_TRIANGLES", 5000)
+    monkeypatch.setattr(shading, "SHADOW_TEXELS", 60)
+    monkeypatch.setattr(light, "SUN_PIXELS", 200)
 
 
 def block(
@@ -188,15 +196,15 @@ def test_things_cast_shadows(as_ball: bool) -> None:
     fine = Refinement.of(MESH.triangles, len(SHEET), 100_000)
     sheet = Surface.of(fine.weights @ SHEET + [0, 0, 1], fine.triangles)
     ball = Balls(np.array([[0.5, 0.5, 1.0]]), np.array([0.5]), np.ones((1, 3)))
-    light = lit([], [ball]) if as_ball else lit([sheet], [])
+    lamp = lit([], [ball]) if as_ball else lit([sheet], [])
     points = np.array([[0.5, 0.5, 0], [2.0, 0.5, 0]])
     up = np.tile([0.0, 0.0, 1.0], (2, 1))
-    np.testing.assert_allclose(light.sunshine(points, up), [0, 1])
+    np.testing.assert_allclose(lamp.sunshine(points, up), [0, 1])
     if not as_ball:
-        dark, bright = light.skylight(points, up)
+        dark, bright = lamp.skylight(points, up)
         assert dark < 0.8 < bright
     # beyond the map there is nothing in the way
-    assert light.sunshine(np.array([[90.0, 0, 0]]), up[:1]) == 1
+    assert lamp.sunshine(np.array([[90.0, 0, 0]]), up[:1]) == 1
 
 
 def test_a_parallel_view_keeps_distances() -> None:
@@ -244,8 +252,8 @@ def scene_of(
     return Scene.of(shown, cast, SIZE, **options)
 
 
-def picture(scene: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
-    artist = scene.artist()
+def picture(stage: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
+    artist = stage.artist()
     return artist.picture(artist.stand_up(frame), angle)
 
 
@@ -260,17 +268,17 @@ BLUE, SAND, RUST = 0.53, 0.1, 0.04
 
 @pytest.mark.parametrize("as_balls", [False, True])
 def test_cloth_and_water_are_in_the_picture(as_balls: bool) -> None:
-    scene = scene_of(frames(), as_balls=as_balls)
-    dry, wet = (picture(scene, frame) for frame in frames())
+    stage = scene_of(frames(), as_balls=as_balls)
+    dry, wet = (picture(stage, frame) for frame in frames())
     assert dry.shape == wet.shape == (*SIZE[::-1], 3)
     assert share_of(dry, SAND, 0.05) > 0.1
     assert share_of(wet, BLUE, 0.35) > share_of(dry, BLUE, 0.35) + 0.01
 
 
 def test_the_two_sides_of_cloth_differ() -> None:
-    scene = scene_of(frames())
-    above = picture(scene, frames()[0])
-    low = scene.look_from(np.array([0.5, 0.4, -0.09]), np.array([0.5, 0.5, 0.0]))
+    stage = scene_of(frames())
+    above = picture(stage, frames()[0])
+    low = stage.look_from(np.array([0.5, 0.4, -0.09]), np.array([0.5, 0.5, 0.0]))
     assert share_of(picture(low, frames()[0]), RUST, 0.5) > 0.3 > share_of(above, RUST, 0.5)
 
 
@@ -300,18 +308,18 @@ def test_particles_that_never_move_are_walls() -> None:
     second = make_frame(1, block(3, 0.1) + 0.01, wall)
     cast = Cast.of([first, second], Roles(), Choice())
     assert (cast.fluid, cast.walls) == (frozenset({1}), frozenset({2}))
-    scene = Scene.of([first, second], cast, SIZE)
-    artist = scene.artist()
+    stage = Scene.of([first, second], cast, SIZE)
+    artist = stage.artist()
     assert len(artist.stand_up(first).walls.triangles)
-    assert picture(scene, first).shape
+    assert picture(stage, first).shape
 
 
 def test_a_scene_of_two_dimensions_stands_upright() -> None:
     x, y = np.meshgrid(np.arange(8) * 0.1, np.arange(4) * 0.1)
     flat = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-    scene = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
-    assert scene.cast.is_flat
-    water = scene.artist().stand_up(make_frame(0, flat, np.zeros((0, 3)))).water
+    stage = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
+    assert stage.cast.is_flat
+    water = stage.artist().stand_up(make_frame(0, flat, np.zeros((0, 3)))).water
     low, high = water.points.min(axis=0), water.points.max(axis=0)
     np.testing.assert_allclose(high[2] - low[2], 0.4, atol=0.04)
     np.testing.assert_allclose(high[0] - low[0], 0.8, atol=0.04)
@@ -323,8 +331,8 @@ def test_water_goes_on_across_a_periodic_boundary() -> None:
     layer = layer[layer[:, 2] < 3]
     frame = make_frame(0, layer, np.zeros((0, 3)))
     frame = replace(frame, box=np.array([[0.0] * 3, [6.0] * 3]), periodic=(True, True, False))
-    scene = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
-    water = scene.artist().stand_up(frame).water
+    stage = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
+    water = stage.artist().stand_up(frame).water
     np.testing.assert_allclose(water.points[:, 0].min(), 0, atol=0.1)
     near_the_end = abs(water.points[:, 0] - 0.6) < 0.2
     inner = near_the_end & (abs(water.points[:, 1] - 3) < 2) & (water.points[:, 2] > 1.5)
@@ -335,10 +343,10 @@ def test_colours_show_a_quantity_with_a_scale() -> None:
     frame = frames()[1]
     speed = dict(zip(("vx", "vy", "vz"), np.tile(frame.positions[:, 0], (3, 1)), strict=True))
     fast = replace(frame, columns=frame.columns | speed)
-    scene = scene_of([fast], Choice(colour_by="speed"))
-    assert scene.scale is not None
-    assert scene.scale.low == 0 < scene.scale.high
-    green = [share_of(picture(one, fast), 0.3, 0.3) for one in (scene, scene_of([fast]))]
+    stage = scene_of([fast], Choice(colour_by="speed"))
+    assert stage.scale is not None
+    assert stage.scale.low == 0 < stage.scale.high
+    green = [share_of(picture(one, fast), 0.3, 0.3) for one in (stage, scene_of([fast]))]
     assert green[0] > 0.002 > green[1]
     with pytest.raises(UserError, match="no column vx vy vz"):
         scene_of(frames(), Choice(colour_by="speed"))
@@ -349,8 +357,8 @@ def test_a_lost_drop_changes_nothing() -> None:
     lost, kept = (
         replace(make_frame(1, part, SHEET), periodic=(False,) * 3) for part in (water, water[:-1])
     )
-    scene = scene_of([frames()[0], lost])
-    np.testing.assert_array_equal(picture(scene, lost), picture(scene, kept))
+    stage = scene_of([frames()[0], lost])
+    np.testing.assert_array_equal(picture(stage, lost), picture(stage, kept))
 
 
 @pytest.mark.parametrize("fluid", [[[np.nan, 0, 0]], [[0, np.inf, 0]]])

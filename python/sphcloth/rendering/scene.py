@@ -31,6 +31,8 @@ PIN_RADIUS = 0.006  # of the scene
 VIEW, FLAT_VIEW = np.array([1.0, -1.8, 0.95]), np.array([0.25, -1.0, 0.22])
 # towards the sun from the camera: aside, upwards, back; and how high it stands at least
 SUN, LEAST_SUN_HEIGHT = np.array([-0.5, 0.8, 0.3]), 1.05
+# quantiles of the coordinates of water between which it is to be seen
+MOST_WATER = (0.1, 0.9)
 # triangles of cloth, after they have been made smooth by subdivision
 FINE_TRIANGLES = 100_000
 # how far around what is to be seen water is drawn, and light is followed, in radii of the stage
@@ -215,10 +217,11 @@ def _framed(frames: Sequence[Frame], cast: Cast) -> tuple[NDArray[np.float64], f
     radius = cast.largest_spacing / 2
     if len(cloth):
         low, high = cloth.min(axis=0), cloth.max(axis=0)
-        # drops that miss the sheet may leave the picture: they would shrink all the rest
-        over = np.all(wet >= low, axis=1) & np.all(wet[:, :2] <= high[:2], axis=1)
-        floor = low[2] - 0.1 * float((high - low).max())
-        points = np.concatenate([cloth, wet[over], [[*(low + high)[:2] / 2, floor]]])
+        extent = float((high - low).max())
+        floor = low[2] - 0.1 * extent
+        points = np.concatenate([cloth, [[*(low + high)[:2] / 2, floor]]])
+        if len(wet):
+            points = np.concatenate([points, _most_of(wet, low - extent, high + extent)])
     elif len(wet):
         points, floor = _corners(*np.quantile(wet, [0.005, 0.995], axis=0), radius), np.inf
     elif len(walls):
@@ -229,6 +232,14 @@ def _framed(frames: Sequence[Frame], cast: Cast) -> tuple[NDArray[np.float64], f
     if not len(cloth) and len(walls):
         floor = min(floor, walls[:, 2].min())
     return points, float(floor) - radius
+
+
+def _most_of(water: NDArray, low: NDArray, high: NDArray) -> NDArray[np.float64]:
+    """Return the corners of a box with most of some water, cut off at low and high, shape (8, 3).
+
+    Drops that are far from a sheet may leave the picture: they would shrink all the rest.
+    """
+    return _corners(*np.clip(np.quantile(water, MOST_WATER, axis=0), low, high), 0.0)
 
 
 def _corners(low: NDArray, high: NDArray, margin: float) -> NDArray[np.float64]:

@@ -47,11 +47,12 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner hammock curtain)
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain)
 pictures: $(EXAMPLE_PICTURES)
 
 $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed
 	mkdir -p $(@D)
 	$(BIN)/sphcloth run $* --ranks $(RANKS) --out build/$*
 	$(BIN)/python -c "from PIL import Image; \
-	  Image.open('build/$*/contact_sheet.png').convert('RGB').resize((1296, 684)).quantize(256).save('$@', optimize=True)"
+	  picture = Image.open('build/$*/contact_sheet.png').convert('RGB').resize((1296, 684)); \
+	  picture.quantize(palette=picture.quantize(256)).save('$@', optimize=True)"

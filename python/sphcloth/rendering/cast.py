@@ -17,6 +17,8 @@ from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame
 
 QUANTITIES = {"speed": ("vx", "vy", "vz"), "pressure": ("pressure",), "density": ("rho",)}
+# beyond this a coordinate is a mistake: its square loses what a scene is made of
+LARGEST = 1e12
 # layers of copies that give a two-dimensional scene a depth
 LAYERS = np.arange(-2, 3)
 
@@ -67,6 +69,8 @@ class Cast:
         Raises:
             UserError: a type that is not in the dump, or cloth that is not in the data file.
         """
+        for frame in frames:
+            check_positions(frame.positions, frame)
         present = frozenset(np.unique(np.concatenate([frame.types for frame in frames])).tolist())
         corners = _corner_types(frames[0], roles.mesh)
         vertices = frozenset(np.unique(corners).tolist())
@@ -121,8 +125,7 @@ class Cast:
         chosen = np.flatnonzero(np.isin(frame.types, list(kinds)))
         spacing = np.array([self.spacing[kind] for kind in frame.types[chosen]], dtype=float)
         drops = Drops(frame.positions[chosen], spacing, None if values is None else values[chosen])
-        if not np.isfinite(drops.positions).all():
-            raise UserError(f"the dump has positions that are not finite at step {frame.step}")
+        check_positions(drops.positions, frame)
         drops = _with_images(drops, frame, axes=2 if self.is_flat else 3)
         if self.is_flat:
             drops = _with_depth(drops)
@@ -131,6 +134,12 @@ class Cast:
             positions=self.upright(drops.positions),
             room=np.sort(self.upright(drops.room), axis=0),
         )
+
+
+def check_positions(positions: NDArray, frame: Frame) -> None:
+    """Raise UserError for a position, shape (N, 3), that is no number, or too large for one."""
+    if not np.all(np.abs(positions) < LARGEST):
+        raise UserError(f"the dump has positions that are not finite at step {frame.step}")
 
 
 def _corner_types(frame: Frame, mesh: ClothMesh | None) -> NDArray[np.int64]:

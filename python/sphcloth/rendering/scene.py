@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from sphcloth.errors import UserError
 from sphcloth.meshing.sequence import Unwrapper
 from sphcloth.rendering.camera import Camera
-from sphcloth.rendering.cast import Cast
+from sphcloth.rendering.cast import Cast, check_positions
 from sphcloth.rendering.legend import Scale, add_scale
 from sphcloth.rendering.light import Balls, Light
 from sphcloth.rendering.shading import Props, Solid, Stage, draw
@@ -158,8 +158,7 @@ class Artist:
         if self._unwrap is None:
             return []
         points = self._scene.cast.upright(self._unwrap(frame))
-        if not np.isfinite(points).all():
-            raise UserError(f"the dump has positions that are not finite at step {frame.step}")
+        check_positions(points, frame)
         return [
             Solid(Surface.of(fine.weights @ points, fine.triangles), front, back)
             for fine, front, back in self._parts

@@ -7,7 +7,7 @@ RANKS  ?= 2
 SIZE   ?= small
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
-.PHONY: demo test validate lint clean
+.PHONY: demo test validate lint pictures clean
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -46,8 +46,13 @@ build/core/test_core: $(VENV)/installed $(wildcard tests/core/*)
 clean:
 	rm -rf build dist demo $(VENV)
 
-# the picture of the README, from the demo's
-docs/pictures/pour.png: demo
+# the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain)
+pictures: $(EXAMPLE_PICTURES)
+
+$(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed
 	mkdir -p $(@D)
+	$(BIN)/sphcloth run $* --ranks $(RANKS) --out build/$*
 	$(BIN)/python -c "from PIL import Image; \
-	  Image.open('demo/contact_sheet.png').convert('RGB').resize((1296, 684)).quantize(256, dither=0).save('$@', optimize=True)"
+	  picture = Image.open('build/$*/contact_sheet.png').convert('RGB').resize((1296, 684)); \
+	  picture.quantize(palette=picture.quantize(256)).save('$@', optimize=True)"

@@ -36,6 +36,19 @@ sphcloth tradeoff my.in --vary dt=1e-3,5e-4 --reference dt=1e-5 --quantity KinEn
 """
 
 
+RENDER_EXAMPLES = """
+Examples:
+
+sphcloth render pour.lammpstrj --frames 12 --out pictures
+
+sphcloth render pour.lammpstrj --time 0.5:2 --format mp4 --size 1920x1080
+
+sphcloth render pour.lammpstrj --frames 1 --turntable --format gif --size 640x480
+
+sphcloth render run.dump --data run.data --fluid 1,3 --colour-by speed --camera 4,-6,3
+"""
+
+
 @app.callback()
 def sphcloth() -> None:
     """Keep the names of the commands, however few there are."""
@@ -260,6 +273,79 @@ def mesh(
         data, molecule, groups, json_file, atom_style, margin, box, per_atom_mass, rest
     )
     command.make_cloth(files, recipe, output, console)
+
+
+@app.command(epilog=RENDER_EXAMPLES)
+def render(
+    dump: Annotated[Path, typer.Argument(metavar="DUMP", help="Text dump by 'dump custom'.")],
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            help="Data file: triangles of the cloth, and which types are water.",
+            show_default="DUMP with .data, if there is one",
+        ),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder.", show_default="DUMP-pictures")] = None,
+    frames: Annotated[
+        int | None, typer.Option(min=1, help="Draw so many frames.", show_default="all")
+    ] = None,
+    every: Annotated[int | None, typer.Option(min=1, help="Draw every so many frames.")] = None,
+    time: Annotated[
+        str | None, typer.Option(metavar="FROM:TO", help="Draw the frames between two times.")
+    ] = None,
+    log: Annotated[
+        Path | None,
+        typer.Option(help="Log with the times.", show_default="log.lammps beside DUMP"),
+    ] = None,
+    spheres: Annotated[bool, typer.Option("--spheres", help="Draw water as balls.")] = False,
+    camera: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="Where the camera stands.")
+    ] = None,
+    target: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="What it looks at.")] = None,
+    turntable: Annotated[
+        bool, typer.Option("--turntable", help="Walk around the scene once.")
+    ] = False,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of a picture.")] = "1280x960",
+    form: Annotated[str, typer.Option("--format", help="png, gif or mp4.")] = "png",
+    spacing: Annotated[
+        float | None,
+        typer.Option(help="Of the particles.", show_default="from the data file, or found out"),
+    ] = None,
+    colour_by: Annotated[
+        str, typer.Option(help="speed, pressure, density or none: water's own colour.")
+    ] = "none",
+    fluid: Annotated[
+        str | None,
+        typer.Option(metavar="TYPES", help="Types of water.", show_default="from the data file"),
+    ] = None,
+    cloth: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TYPES",
+            help="Types of the vertices of cloth; other triangles are obstacles.",
+            show_default="all triangles that ever move",
+        ),
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write what was drawn here.")
+    ] = None,
+) -> None:
+    """Draw a dump: water as a surface, cloth, walls; pictures or a film."""
+    from sphcloth.rendering import command
+
+    report = command.render(
+        dump,
+        out or Path(f"{dump.stem}-pictures"),
+        data=data,
+        log=log,
+        frames=command.Frames(frames, every, time),
+        choice=command.make_choice(fluid, cloth, spacing, colour_by),
+        view=command.View(camera, target, turntable, size, spheres),
+        form=form,
+        console=Console(),
+    )
+    if json_file is not None:
+        command.write_report(report, json_file)
 
 
 @app.command()

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from MDAnalysis.topology.LAMMPSParser import DATAParser
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from sphcloth.errors import UserError
 from sphcloth.trajectory import Frame
@@ -25,13 +28,22 @@ class _Parser(DATAParser):
         return itertools.takewhile(lambda line: line != MASS_SECTION, super().iterdata())
 
 
-def _sections(data: Path) -> dict[str, list[str]]:
-    """Return the lines of each section of a data file; none if it is not one."""
+def read_sections(data: Path) -> dict[str, list[str]]:
+    """Return the lines of each section of a data file.
+
+    Raises:
+        UserError: no such file, or a file of another form.
+    """
+    if not data.is_file():
+        raise UserError(f"no data file {data}")
     try:
         with _Parser(data) as parser:
-            return parser.grab_datafile()[1]
+            sections = parser.grab_datafile()[1]
     except (ValueError, IndexError):
-        return {}
+        sections = {}
+    if "Atoms" not in sections:
+        raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
+    return sections
 
 
 @dataclass(frozen=True)
@@ -61,22 +73,35 @@ class ClothMesh:
             UserError: no such file, a file of another form, or no triangle in it.
         """
         data = Path(data)
-        if not data.is_file():
-            raise UserError(f"no data file {data}")
-        sections = _sections(data)
-        if "Atoms" not in sections:
-            raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
+        sections = read_sections(data)
         if not sections.get("Angles"):
             raise UserError(f"{data} holds no cloth: its triangles are LAMMPS angles, it has none")
+        return cls.of_angles(sections["Angles"], data)
+
+    @classmethod
+    def of_angles(cls, lines: Sequence[str], data: Path) -> ClothMesh:
+        """Make the mesh of the lines of the section Angles of a data file.
+
+        Raises:
+            UserError: a line that does not name three atoms.
+        """
         # MDAnalysis' own angles are turned around where the first atom is the larger one
         try:
-            atoms = np.array([line.split()[2:5] for line in sections["Angles"]], dtype=np.int64)
+            atoms = np.array([line.split()[2:5] for line in lines], dtype=np.int64)
             ids, triangles = np.unique(atoms.reshape(-1, 3), return_inverse=True)
         except ValueError as error:
             raise UserError(
                 f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
             ) from error
         return cls(ids, triangles.reshape(-1, 3))
+
+    @cached_property
+    def pieces(self) -> NDArray[np.int64]:
+        """Number of the connected piece of each vertex, in the order of their ids, shape (V,)."""
+        a, b, c = self.triangles.T
+        links = (np.ones(2 * len(a)), (np.concatenate([a, b]), np.concatenate([b, c])))
+        graph = coo_array(links, shape=(len(self.ids),) * 2)
+        return connected_components(graph, directed=False)[1]
 
     def positions(self, frame: Frame) -> NDArray[np.float64]:
         """Return the vertices' positions in a frame, shape (V, 3).

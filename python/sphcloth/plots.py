@@ -1,9 +1,11 @@
-"""Plots of a run's history from its thermo output."""
+"""Plots of a run's history from its thermo output, and its pictures side by side."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from matplotlib import image
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -22,10 +24,13 @@ def plot_history(table: ThermoTable, path: Path) -> None:
 
 
 def draw_time_step(axes: Axes, table: ThermoTable) -> None:
-    """Draw the time step over time."""
-    axes.semilogy(table["Time"], table["Dt"], color="tab:blue")
+    """Draw the time step over time; a note where none was logged."""
     axes.set_ylabel("time step")
     axes.grid(which="both", alpha=0.3)
+    if "Dt" in table:
+        axes.semilogy(table["Time"], table["Dt"], color="tab:blue")
+    else:
+        axes.text(0.5, 0.5, "no column Dt", ha="center", transform=axes.transAxes)
 
 
 def draw_density_deviation(axes: Axes, table: ThermoTable) -> None:
@@ -36,3 +41,17 @@ def draw_density_deviation(axes: Axes, table: ThermoTable) -> None:
         axes.plot(table["Time"], 100 * table["v_deviation"], color="tab:red")
     else:
         axes.text(0.5, 0.5, "no column v_deviation", ha="center", transform=axes.transAxes)
+
+
+def contact_sheet(pictures: Sequence[Path], captions: Sequence[str], path: Path) -> None:
+    """Put pictures with captions side by side, three in a row, on one PNG."""
+    columns = min(3, len(pictures))
+    rows = -(-len(pictures) // columns)
+    figure = Figure(figsize=(4.8 * columns, 3.8 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, squeeze=False)
+    for axes in grid.flat:
+        axes.axis("off")
+    for axes, picture, caption in zip(grid.flat, pictures, captions, strict=False):
+        axes.imshow(image.imread(picture))
+        axes.set_title(caption, fontsize=11)
+    FigureCanvasAgg(figure).print_figure(path, dpi=120)

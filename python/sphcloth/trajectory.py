@@ -118,6 +118,7 @@ class _Entry:
     size: int
     line: int
     step: int
+    natoms: int
     box: NDArray[np.float64]
     columns: list[str]
     periodic: tuple[bool, ...]
@@ -147,6 +148,7 @@ class Trajectory(Sequence[Frame]):
         if not self._entries:
             raise UserError(f"{self.path} holds no complete frame")
         self.steps = np.array([entry.step for entry in self._entries])
+        self.counts = np.array([entry.natoms for entry in self._entries])
         self.times = np.full(len(self.steps), np.nan)
         if log is not None:
             self.times = ThermoTable.read(log).time_at(self.steps)
@@ -178,7 +180,7 @@ def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
         periodic = tuple(flags == "pp" for flags in about_box[-3:])
         tilt = tuple(bounds[:, 2]) if "xy" in about_box else (0.0, 0.0, 0.0)
         size, box = end - offset, bounds[:, :2].T
-        yield _Entry(offset, size, line, int(header[1]), box, columns, periodic, tilt)
+        yield _Entry(offset, size, line, int(header[1]), natoms, box, columns, periodic, tilt)
         line, offset = line + _HEADER_LINES + natoms, end
 
 

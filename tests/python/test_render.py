@@ -1,79 +1,521 @@
-"""Pictures show cloth and water, whichever program draws them."""
+"""Pictures: what is in front, which side of the cloth one sees, where the water ends."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import make_frame, square_sheet
-from matplotlib import colors, image
+from conftest import dump_frame, make_frame, square_sheet
+from matplotlib import colors
+from PIL import Image
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from sphcloth import render
+from sphcloth import cli
 from sphcloth.errors import UserError
+from sphcloth.plots import contact_sheet
+from sphcloth.rendering import command, light, movie, scene, shading
+from sphcloth.rendering.camera import Camera, ParallelView
+from sphcloth.rendering.cast import Cast, Choice
+from sphcloth.rendering.light import Balls, Light
+from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
+from sphcloth.rendering.scene import Scene
+from sphcloth.rendering.subdivision import Refinement
+from sphcloth.rendering.surface import Drops, Surface, water_surface
+from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame
 
 MESH, SHEET = square_sheet(6)
+SIZE = (96, 72)
+
+
+@pytest.fixture(autouse=True)
+def draw_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Spend no time on what a small picture does not show."""
+    monkeypatch.setattr(scene, "FINE_TRIANGLES", 5000)
+    monkeypatch.setattr(shading, "SHADOW_TEXELS", 60)
+    monkeypatch.setattr(light, "SUN_PIXELS", 200)
+
+
+def block(
+    n: int, spacing: float = 1.0, corner: tuple[float, float, float] = (0, 0, 0)
+) -> np.ndarray:
+    """Return a cube of particles, shape (n**3, 3); its water is ``n * spacing`` long."""
+    line = (np.arange(n) + 0.5) * spacing
+    return np.stack(np.meshgrid(line, line, line, indexing="ij"), -1).reshape(-1, 3) + corner
+
+
+def surface_of(positions: np.ndarray, spacing: float = 1.0) -> Surface:
+    positions = np.asarray(positions, float)
+    return water_surface(Drops(positions, np.full(len(positions), spacing)))
+
+
+def volume(surface: Surface) -> float:
+    a, b, c = surface.points[surface.triangles.T]
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def bodies(surface: Surface) -> int:
+    """Return the number of connected parts of a surface."""
+    a, b, c = surface.triangles.T
+    links = (np.ones(2 * len(a)), (np.r_[a, b], np.r_[b, c]))
+    return connected_components(coo_array(links, shape=(len(surface.points),) * 2))[0]
+
+
+# the surface
+
+
+def test_water_has_the_volume_of_its_particles() -> None:
+    # less what the round edges lack
+    assert 920 < volume(surface_of(block(10))) < 1000
+
+
+def test_a_drop_has_about_its_volume() -> None:
+    # on a grid of four nodes a spacing the ball loses a little by smoothing
+    assert 0.7 < volume(surface_of([[0.3, 0.1, 0.2]])) < 1.1
+
+
+def test_still_water_is_flat_and_ends_half_a_spacing_over_the_last_particles() -> None:
+    surface = surface_of(block(12))
+    middle = np.all(abs(surface.points[:, :2] - 6) < 3, axis=1)
+    top = surface.points[middle & (surface.points[:, 2] > 6)]
+    np.testing.assert_allclose(top[:, 2], 12, atol=0.1)
+    assert np.std(top[:, 2]) < 0.02
+
+
+def test_normals_point_out_of_the_water() -> None:
+    surface = surface_of([[0.0, 0, 0]])
+    assert np.all(np.einsum("ij,ij->i", surface.points, surface.normals) > 0)
+
+
+@pytest.mark.parametrize(("gap", "parts"), [(0.0, 1), (2.0, 2)])
+def test_bodies_of_water_that_are_apart_stay_so(gap: float, parts: int) -> None:
+    positions = np.concatenate([block(6), block(6, corner=(6 + gap, 0, 0))])
+    assert bodies(surface_of(positions)) == parts
+
+
+def test_water_of_two_resolutions_is_one_body() -> None:
+    coarse, fine = block(6), block(12, 0.5, (6, 0, 0))
+    spacing = np.repeat([1.0, 0.5], [len(coarse), len(fine)])
+    surface = water_surface(Drops(np.concatenate([coarse, fine]), spacing))
+    assert bodies(surface) == 1
+    assert volume(surface) == pytest.approx(432, rel=0.08)
+
+
+def test_values_are_carried_to_the_surface() -> None:
+    positions = block(8)
+    surface = water_surface(Drops(positions, np.ones(512), positions[:, 0]))
+    x = surface.points[:, 0]
+    inner = abs(x - 4) < 2
+    np.testing.assert_allclose(surface.values[inner], x[inner], atol=0.3)
+
+
+def test_no_particles_no_surface() -> None:
+    assert len(surface_of(np.zeros((0, 3))).triangles) == 0
+
+
+# triangles and balls to pixels
+
+
+def test_pixels_belong_to_the_triangle_that_holds_their_middle() -> None:
+    shape, rng = (20, 30), np.random.default_rng(1)
+    places = rng.uniform(-8, 36, (40, 3, 2))
+    near = rng.uniform(1, 2, (40, 3))
+    visible = nearest(triangle_fragments(places, near, shape), 600)
+    rows, columns = np.divmod(np.arange(600), 30)
+    middles = np.stack([columns + 0.5, rows + 0.5], 1)
+    best = np.full(600, -np.inf)
+    for corners, values in zip(places, near, strict=True):
+        shares = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), np.c_[middles, np.ones(600)].T)
+        best = np.where((shares >= 0).all(0), np.maximum(best, values @ shares), best)
+    np.testing.assert_allclose(visible.nearness, best)
+
+
+def test_neighbours_leave_no_gap_and_no_overlap() -> None:
+    sheet = SHEET[:, :2] @ [[17.0, 4.0], [-5.0, 13.0]] + [9.0, 2.0]
+    places = sheet[MESH.triangles]
+    parts = triangle_fragments(places, np.ones(places.shape[:2]), (24, 32))
+    counts = np.bincount(np.concatenate([part.pixel for part in parts]))
+    assert set(counts.tolist()) == {0, 1}
+    assert counts.sum() == pytest.approx(17 * 13 + 4 * 5, abs=4)
+
+
+def test_triangles_behind_the_camera_are_left_out() -> None:
+    places = np.array([[[0, 0], [np.nan, np.nan], [9, 9]]], float)
+    assert not list(triangle_fragments(places, np.ones((1, 3)), (9, 9)))
+
+
+def test_balls_are_round_and_bulge() -> None:
+    (disc,) = disc_fragments(np.array([[10.0, 12.0]]), np.array([6.0]), (24, 20))
+    assert len(disc.pixel) == pytest.approx(np.pi * 36, abs=4)
+    assert disc.bulge.max() == pytest.approx(1, abs=0.01)
+
+
+# camera and light
+
+
+def test_rays_lead_back_to_the_points() -> None:
+    camera = Camera(np.array([3.0, -4, 2]), np.array([0.0, 1, 0]), (400, 300))
+    points = np.random.default_rng(2).uniform(-0.5, 0.5, (50, 3))
+    places, near = camera.project(points)
+    column, row = np.floor(places).astype(int).T
+    found = camera.position + camera.rays(row * 400 + column) / near[:, None]
+    np.testing.assert_allclose(found, points, atol=2 / camera.focal / near.min())
+
+
+def test_what_is_behind_the_camera_has_no_place() -> None:
+    camera = Camera(np.array([0.0, -4, 0]), np.zeros(3), SIZE)
+    assert np.isnan(camera.project(np.array([[0.0, -5, 0]]))[1]).all()
+
+
+@pytest.mark.parametrize("direction", [[1.0, -1.8, 0.9], [0.0, 0.0, 1.0]])
+def test_a_camera_takes_in_all_points(direction: list[float]) -> None:
+    points = np.random.default_rng(3).normal(size=(40, 3))
+    places, _ = Camera.framing(points, np.array(direction), SIZE).project(points)
+    assert np.all((places > 0) & (places < SIZE))
+
+
+def test_a_turned_camera_keeps_its_distance_and_height() -> None:
+    camera = Camera(np.array([3.0, -4, 2]), np.array([0.0, 1, 0]), SIZE)
+    turned = camera.turned(np.pi)
+    assert turned.distance == pytest.approx(camera.distance)
+    np.testing.assert_allclose(turned.position, [-3, 6, 2])
+
+
+def lit(solids: list[Surface], balls: list[Balls]) -> Light:
+    sun = np.array([0.0, 0.0, 1.0])
+    return Light.on(solids, Surface.empty(), balls, sun, (np.array([0.5, 0.5, 0]), 3.0))
+
+
+@pytest.mark.parametrize("as_ball", [False, True])
+def test_things_cast_shadows(as_ball: bool) -> None:
+    fine = Refinement.of(MESH.triangles, len(SHEET), 100_000)
+    sheet = Surface.of(fine.weights @ SHEET + [0, 0, 1], fine.triangles)
+    ball = Balls(np.array([[0.5, 0.5, 1.0]]), np.array([0.5]), np.ones((1, 3)))
+    lamp = lit([], [ball]) if as_ball else lit([sheet], [])
+    points = np.array([[0.5, 0.5, 0], [2.0, 0.5, 0]])
+    up = np.tile([0.0, 0.0, 1.0], (2, 1))
+    np.testing.assert_allclose(lamp.sunshine(points, up), [0, 1])
+    if not as_ball:
+        dark, bright = lamp.skylight(points, up)
+        assert dark < 0.8 < bright
+    # beyond the map there is nothing in the way
+    assert lamp.sunshine(np.array([[90.0, 0, 0]]), up[:1]) == 1
+
+
+def test_a_parallel_view_keeps_distances() -> None:
+    view = ParallelView(np.array([0.6, 0.0, 0.8]), np.zeros(3), 2.0, 100)
+    places, near = view.project(np.array([[0.6, 0, 0.8], [0.0, 1, 0]]))
+    np.testing.assert_allclose(near, [1, 0], atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(places - 50, axis=1), [0, 25], atol=1e-9)
+
+
+# scenes
+
+
+def test_subdivision_keeps_planes_borders_and_winding() -> None:
+    fine = Refinement.of(MESH.triangles, len(SHEET), 5000)
+    points = fine.weights @ SHEET
+    a, b, c = points[fine.triangles.T]
+    assert len(fine.triangles) == 64 * len(MESH.triangles)
+    assert np.all(np.cross(b - a, c - a)[:, 2] > 0)
+    np.testing.assert_allclose(np.cross(b - a, c - a)[:, 2].sum() / 2, 1)
+
+
+def test_subdivision_rounds_a_ridge_off() -> None:
+    ridge = SHEET * [1, 1, 0] + np.array([0, 0, 1]) * np.minimum(SHEET[:, :1], 1 - SHEET[:, :1])
+    fine = Refinement.of(MESH.triangles, len(SHEET), 5000)
+    inner = fine.weights @ ridge
+    assert 0.4 < inner[abs(inner[:, 1] - 0.5) < 0.2, 2].max() < 0.49
+
+
+def test_three_triangles_at_an_edge_are_no_obstacle_to_subdivision() -> None:
+    triangles = np.array([[0, 1, 2], [1, 0, 3], [0, 1, 4]])
+    assert len(Refinement.of(triangles, 5, 12).triangles) == 12
 
 
 def frames() -> list[Frame]:
     """Return two frames: a heap of water above a sheet that sags except at its corner."""
-    heap = np.stack(np.meshgrid(*[np.linspace(0.4, 0.6, 4)] * 3), -1).reshape(-1, 3)
+    heap = block(4, 0.06, (0.4, 0.4, -0.1))
     sag = SHEET - [0, 0, 0.2] * np.sin(np.pi * SHEET[:, :1])
-    return [make_frame(0, [], SHEET), make_frame(1, heap - [0, 0, 0.3], sag)]
+    return [make_frame(0, [], SHEET), make_frame(1, heap, sag)]
 
 
-def share_of_blue(picture: np.ndarray) -> float:
-    hue, saturation, _ = np.moveaxis(colors.rgb_to_hsv(picture[..., :3]), -1, 0)
-    return float(np.mean((abs(hue - 0.58) < 0.06) & (saturation > 0.5)))
+def scene_of(
+    shown: list[Frame], choice: Choice | None = None, mesh: object = MESH, **options: object
+) -> Scene:
+    cast = Cast.of(shown, Roles(mesh=mesh), choice or Choice())
+    return Scene.of(shown, cast, SIZE, **options)
 
 
-def share_of_orange(picture: np.ndarray) -> float:
-    hue, saturation, _ = np.moveaxis(colors.rgb_to_hsv(picture[..., :3]), -1, 0)
-    return float(np.mean((abs(hue - 0.1) < 0.06) & (saturation > 0.4)))
+def picture(stage: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
+    artist = stage.artist()
+    return artist.picture(artist.stand_up(frame), angle)
 
 
-@pytest.mark.parametrize("with_vtk", [True, False])
-def test_cloth_and_water_are_in_the_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, with_vtk: bool
-) -> None:
-    if with_vtk and not render.can_use_pyvista():
-        pytest.skip("VTK cannot draw on this machine")
-    monkeypatch.setattr(render, "can_use_pyvista", lambda: with_vtk)
-    dry, wet = (image.imread(path) for path in render.render_frames(frames(), MESH, tmp_path))
-    assert dry.shape[:2] == wet.shape[:2] == render.PICTURE_SIZE[::-1]
-    assert share_of_orange(dry) > 0.1
-    assert share_of_blue(dry) < 1e-3
-    assert share_of_blue(wet) > 0.01
+def share_of(image: np.ndarray, hue: float, least_saturation: float = 0.25) -> float:
+    """Return the share of the pixels of about some hue."""
+    hues, saturation, _ = np.moveaxis(colors.rgb_to_hsv(image / 255), -1, 0)
+    return float(np.mean((abs(hues - hue) < 0.05) & (saturation > least_saturation)))
 
 
-def test_one_camera_takes_in_all_of_the_cloth() -> None:
-    scene = render.Scene.of(frames(), MESH, 1)
-    for frame in frames():
-        places, depth = scene.camera.project(MESH.positions(frame))
-        assert np.all(depth > 0)
-        assert np.all(np.abs(places) < render.HALF_EXTENT)
+BLUE, SAND, RUST = 0.53, 0.1, 0.04
+
+
+@pytest.mark.parametrize("as_balls", [False, True])
+def test_cloth_and_water_are_in_the_picture(as_balls: bool) -> None:
+    stage = scene_of(frames(), as_balls=as_balls)
+    dry, wet = (picture(stage, frame) for frame in frames())
+    assert dry.shape == wet.shape == (*SIZE[::-1], 3)
+    assert share_of(dry, SAND, 0.05) > 0.1
+    assert share_of(wet, BLUE, 0.35) > share_of(dry, BLUE, 0.35) + 0.01
+
+
+def test_the_two_sides_of_cloth_differ() -> None:
+    stage = scene_of(frames())
+    above = picture(stage, frames()[0])
+    low = stage.look_from(np.array([0.5, 0.4, -0.09]), np.array([0.5, 0.5, 0.0]))
+    assert share_of(picture(low, frames()[0]), RUST, 0.5) > 0.3 > share_of(above, RUST, 0.5)
 
 
 def test_pins_are_the_vertices_that_never_move() -> None:
     on_the_axis = np.flatnonzero(np.sin(np.pi * SHEET[:, 0]) == 0)
-    assert render.Scene.of(frames(), MESH, 1).pinned.tolist() == on_the_axis.tolist()
+    assert scene_of(frames()).pinned.tolist() == on_the_axis.tolist()
+
+
+def test_water_ends_at_the_sheet() -> None:
+    flat = make_frame(0, block(5, 0.08, (0.3, 0.3, 0.0)), SHEET)
+    surface = scene_of([flat]).artist().stand_up(flat).water
+    # nodes of the grid are a quarter of the spacing apart, and the last smoothing moves them
+    assert surface.points[:, 2].min() > -0.005
+    assert surface.points[:, 2].max() > 0.38
+
+
+def test_a_piece_that_rests_is_an_obstacle_unless_it_is_said_to_be_cloth() -> None:
+    still = [replace(frames()[0], step=step) for step in (0, 1)]
+    cast = Cast.of(still, Roles(mesh=MESH), Choice(fluid=frozenset({2})))
+    assert not cast.cloth.any()
+    assert scene_of(frames()).cast.cloth.all()
+
+
+def test_particles_that_never_move_are_walls() -> None:
+    wall = np.stack([np.linspace(0, 1, 12), np.zeros(12), np.zeros(12)], axis=1)
+    first = make_frame(0, block(3, 0.1), wall)
+    second = make_frame(1, block(3, 0.1) + 0.01, wall)
+    cast = Cast.of([first, second], Roles(), Choice())
+    assert (cast.fluid, cast.walls) == (frozenset({1}), frozenset({2}))
+    stage = Scene.of([first, second], cast, SIZE)
+    artist = stage.artist()
+    assert len(artist.stand_up(first).walls.triangles)
+    assert picture(stage, first).shape
+
+
+def test_a_scene_of_two_dimensions_stands_upright() -> None:
+    x, y = np.meshgrid(np.arange(8) * 0.1, np.arange(4) * 0.1)
+    flat = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    stage = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
+    assert stage.cast.is_flat
+    water = stage.artist().stand_up(make_frame(0, flat, np.zeros((0, 3)))).water
+    low, high = water.points.min(axis=0), water.points.max(axis=0)
+    np.testing.assert_allclose(high[2] - low[2], 0.4, atol=0.04)
+    np.testing.assert_allclose(high[0] - low[0], 0.8, atol=0.04)
+
+
+def test_water_goes_on_across_a_periodic_boundary() -> None:
+    # a layer over the whole box: flat, without the rim of an island
+    layer = block(6)
+    layer = layer[layer[:, 2] < 3]
+    frame = make_frame(0, layer, np.zeros((0, 3)))
+    frame = replace(frame, box=np.array([[0.0] * 3, [6.0] * 3]), periodic=(True, True, False))
+    stage = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
+    water = stage.artist().stand_up(frame).water
+    np.testing.assert_allclose(water.points[:, 0].min(), 0, atol=0.1)
+    near_the_end = abs(water.points[:, 0] - 0.6) < 0.2
+    inner = near_the_end & (abs(water.points[:, 1] - 3) < 2) & (water.points[:, 2] > 1.5)
+    np.testing.assert_allclose(water.points[inner, 2], 3, atol=0.1)
+
+
+def test_colours_show_a_quantity_with_a_scale() -> None:
+    frame = frames()[1]
+    speed = dict(zip(("vx", "vy", "vz"), np.tile(frame.positions[:, 0], (3, 1)), strict=True))
+    fast = replace(frame, columns=frame.columns | speed)
+    stage = scene_of([fast], Choice(colour_by="speed"))
+    assert stage.scale is not None
+    assert stage.scale.low == 0 < stage.scale.high
+    green = [share_of(picture(one, fast), 0.3, 0.3) for one in (stage, scene_of([fast]))]
+    assert green[0] > 0.002 > green[1]
+    with pytest.raises(UserError, match="no column vx vy vz"):
+        scene_of(frames(), Choice(colour_by="speed"))
+
+
+def test_a_lost_drop_changes_nothing() -> None:
+    water = [*block(4, 0.06, (0.4, 0.4, -0.1)), [1e9, 0, 0]]
+    lost, kept = (
+        replace(make_frame(1, part, SHEET), periodic=(False,) * 3) for part in (water, water[:-1])
+    )
+    stage = scene_of([frames()[0], lost])
+    np.testing.assert_array_equal(picture(stage, lost), picture(stage, kept))
+
+
+@pytest.mark.parametrize("fluid", [[[np.nan, 0, 0]], [[0, np.inf, 0]]])
+def test_positions_must_be_finite(fluid: list[list[float]]) -> None:
+    with pytest.raises(UserError, match="not finite at step 3"):
+        scene_of(frames()).artist().stand_up(make_frame(3, fluid, SHEET))
+
+
+# the command
+
+
+@pytest.fixture
+def dump(write_dump: Callable[[str], Path]) -> Path:
+    """A dump of three frames in which water comes and goes."""
+    drops = [[[0.3, 0.1, 1.0]], [[0.3, 0.1, 0.8], [0.4, 0.1, 0.8]], []]
+    texts = [
+        dump_frame(
+            10 * step,
+            [[i + 1, 1, *place] for i, place in enumerate(places)] + [[9, 2, 0, 0, 0.1 * step]],
+        )
+        for step, places in enumerate(drops)
+    ]
+    return write_dump("".join(texts))
+
+
+def call(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
+    texts = ["sphcloth", "render", *map(str, arguments)]
+    monkeypatch.setattr("sys.argv", texts)
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    return int(ended.value.code or 0)
+
+
+def test_frames_become_numbered_pictures(
+    dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, report = tmp_path / "out", tmp_path / "report.json"
+    out.mkdir()
+    (out / "frame_0007.png").touch()
+    options = ["--size", "64x48", "--out", out, "--json", report]
+    assert call(monkeypatch, dump, *options) == 0
+    files = sorted(path.name for path in out.iterdir())
+    assert files == ["frame_0000.png", "frame_0001.png", "frame_0002.png"]
+    assert Image.open(out / files[0]).size == (64, 48)
+    said = json.loads(report.read_text())
+    assert (said["steps"], said["particles"]) == ([0, 10, 20], 3)
+
+
+@pytest.mark.parametrize("form", ["gif", "mp4"])
+def test_films(dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str) -> None:
+    if form == "mp4":
+        pytest.importorskip("imageio_ffmpeg")
+    options = ["--size", "64x48", "--out", tmp_path, "--format", form]
+    assert call(monkeypatch, dump, *options) == 0
+    film = tmp_path / f"run.{form}"
+    assert film.stat().st_size > 1000
+    if form == "gif":
+        assert Image.open(film).n_frames == 3
+
+
+def test_a_turntable_goes_around_a_single_frame(
+    dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "TURNTABLE_VIEWS", 4)
+    options = ["--size", "64x48", "--out", tmp_path, "--frames", "1", "--turntable"]
+    assert call(monkeypatch, dump, *options, "--fluid", "1,2") == 0
+    views = [np.asarray(Image.open(tmp_path / f"frame_000{n}.png")) for n in range(4)]
+    assert not np.array_equal(views[0], views[1])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--format", "avi"], "--format avi: use png, gif, mp4"),
+        (["--size", "big"], "--size big: expected WIDTHxHEIGHT"),
+        (["--size", "9x9"], "--size 9x9: each side from 16"),
+        (["--camera", "1,2"], "--camera 1,2: expected three numbers"),
+        (["--target", "1,nan,2"], "--target 1,nan,2: expected three numbers"),
+        (["--camera", "1,2,3", "--target", "1,2,3"], "the same point"),
+        (["--camera", "1,2,3", "--turntable"], "--turntable chooses the view"),
+        (["--time", "1"], "--time 1: expected FROM:TO"),
+        (["--time", "0:1"], "no times: give its log with --log"),
+        (["--every", "2", "--frames", "2"], "--frames and --every exclude each other"),
+        (["--spacing", "-1"], "--spacing -1: must be positive"),
+        (["--colour-by", "mood"], "--colour-by mood: use none, speed, pressure, density"),
+        (["--colour-by", "density"], "the dump has no column rho"),
+        (["--fluid", "x"], "--fluid x: expected atom types"),
+        (["--fluid", "7"], "--fluid 7: the dump has the types 1, 2"),
+        (["--cloth", "2"], "--cloth 2: triangles come from a data file"),
+        (["--data", "none.data"], "no data file none.data"),
+        (["--log", "none.log"], "no log file none.log"),
+    ],
+)
+def test_mistakes_are_named(
+    dump: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    options: list[str],
+    message: str,
+) -> None:
+    assert call(monkeypatch, dump, "--out", tmp_path / "out", *options) == 2
+    assert message in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "holds no complete frame"),
+        (dump_frame(0, [[1, 1]], "id type"), "lacks the column x y z"),
+        (dump_frame(0, [[1, 1, 0, 0, 0]]).replace("\n1\n", "\n999999999999\n", 1), "no complete"),
+        (dump_frame(0, []), "neither water nor cloth"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*cut off")
+def test_dumps_that_cannot_be_drawn(
+    write_dump: Callable[[str], Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    text: str,
+    message: str,
+) -> None:
+    assert call(monkeypatch, write_dump(text), "--out", tmp_path / "out") == 2
+    assert message in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_missing_encoder_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    with pytest.raises(UserError, match="needs an encoder"):
+        movie.check_format("mp4", SIZE)
+
+
+def test_the_data_file_names_the_roles(tmp_path: Path, cloth_data: Path) -> None:
+    text = cloth_data.read_text()
+    coefficients = "Pair Coeffs # sph/tait\n\n1 fluid 8 k 9\n2 boundary pressure own\n\nAtoms"
+    data = tmp_path / "roles.data"
+    data.write_text(text.replace("Atoms", coefficients, 1))
+    roles = Roles.read(data)
+    assert (roles.fluid, roles.walls) == (frozenset({1}), frozenset({2}))
+    assert roles.volume == {1: 1 / 8}
+    assert roles.mesh is not None
+    assert Roles.read(cloth_data).fluid is None
+    assert Roles.beside(tmp_path / "other.lammpstrj") == Roles()
+
+
+# what the command shares with 'sphcloth run'
 
 
 def test_the_contact_sheet_holds_the_pictures(tmp_path: Path) -> None:
-    picture = tmp_path / "blue.png"
-    image.imsave(picture, np.full((60, 80, 3), colors.to_rgb("#1257a8")))
-    sheet = tmp_path / "sheet.png"
-    render.contact_sheet([picture] * 8, ["t"] * 8, sheet)
-    assert share_of_blue(image.imread(sheet)) > 0.5
+    path = tmp_path / "blue.png"
+    Image.new("RGB", (80, 60), "#1257a8").save(path)
+    contact_sheet([path] * 6, ["t"] * 6, tmp_path / "sheet.png")
+    assert share_of(np.asarray(Image.open(tmp_path / "sheet.png").convert("RGB")), 0.59) > 0.5
 
 
 def test_spacing_keeps_the_ends() -> None:
-    assert render.evenly_spaced(11, 3) == [0, 5, 10]
-    assert render.evenly_spaced(2, 6) == [0, 1]
-    assert render.evenly_spaced(5, 1) == [4]
-
-
-def test_nothing_to_draw_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="no frame"):
-        render.render_frames([], MESH, tmp_path)
+    assert command.evenly_spaced(11, 3) == [0, 5, 10]
+    assert command.evenly_spaced(2, 6) == [0, 1]
+    assert command.evenly_spaced(5, 1) == [4]

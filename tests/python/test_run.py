@@ -81,6 +81,26 @@ def test_a_particle_unaccounted_for_is_failure(drop: Path) -> None:
     assert json.loads((drop / "summary.json").read_text())["mass_defect"] == 1
 
 
+def test_a_scene_of_cloth_alone_has_nothing_to_fail(drop: Path) -> None:
+    script = examples.find_example("drop").script
+    dry = SCRIPT.replace("fix             1 fluid", "delete_atoms    group fluid\nfix 1 fluid")
+    script.write_text(dry.replace("dt v_fluid v_poured v_drained", ""))
+    code, text = run(drop, "tiny")
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 0, text
+    assert summary["passed"]
+    assert summary["crossed"] is None
+    assert "n/a" not in text
+
+
+def test_pictures_are_drawn(drop: Path) -> None:
+    console = Console(file=io.StringIO())
+    code = run_example("drop", "tiny", 1, drop, {}, 1, console)
+    assert code == 0
+    names = ["contact_sheet.png", "history.png", "pictures/frame_0000.png"]
+    assert all((drop / name).stat().st_size > 1000 for name in names)
+
+
 def test_size_and_settings_reach_the_script(drop: Path) -> None:
     run(drop, "tiny")
     assert json.loads((drop / "summary.json").read_text())["steps"] == 100

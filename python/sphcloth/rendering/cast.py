@@ -1,0 +1,257 @@
+"""Which atoms of a dump are water, walls and cloth, and where they are in a picture."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from sphcloth.errors import UserError
+from sphcloth.mesh import ClothMesh
+from sphcloth.rendering.surface import REACH, WIDTH, Drops
+from sphcloth.roles import Roles
+from sphcloth.trajectory import Frame
+
+QUANTITIES = {"speed": ("vx", "vy", "vz"), "pressure": ("pressure",), "density": ("rho",)}
+# beyond this a coordinate is a mistake: its square loses what a scene is made of
+LARGEST = 1e12
+# layers of copies that give a two-dimensional scene a depth
+LAYERS = np.arange(-2, 3)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a user says of the atoms; None leaves it to the data file and the dump.
+
+    Attributes:
+        fluid: types of water.
+        cloth: types of the vertices of cloth; other triangles are obstacles.
+        spacing: of the particles of water.
+        colour_by: a key of ``QUANTITIES``.
+    """
+
+    fluid: frozenset[int] | None = None
+    cloth: frozenset[int] | None = None
+    spacing: float | None = None
+    colour_by: str | None = None
+
+
+@dataclass(frozen=True)
+class Cast:
+    """Who plays what in a dump.
+
+    Attributes:
+        fluid: types of water.
+        walls: types of boundary particles.
+        mesh: triangles of cloth and obstacles, or None.
+        cloth: which of the mesh's triangles are cloth, shape (T,); empty without a mesh.
+        spacing: of each type of water and wall.
+        is_flat: whether the scene is two-dimensional, in the plane of x and y.
+        colour_by: a key of ``QUANTITIES``, or None.
+    """
+
+    fluid: frozenset[int]
+    walls: frozenset[int]
+    mesh: ClothMesh | None
+    cloth: NDArray[np.bool_]
+    spacing: dict[int, float]
+    is_flat: bool
+    colour_by: str | None
+
+    @classmethod
+    def of(cls, frames: Sequence[Frame], roles: Roles, choice: Choice) -> Cast:
+        """Find out from some frames of a dump who plays what.
+
+        Raises:
+            UserError: a type that is not in the dump, or cloth that is not in the data file.
+        """
+        for frame in frames:
+            check_positions(frame.positions, frame)
+        present = frozenset(np.unique(np.concatenate([frame.types for frame in frames])).tolist())
+        corners = _corner_types(frames[0], roles.mesh)
+        vertices = frozenset(np.unique(corners).tolist())
+        _check_types(choice, present, vertices)
+        walls = (roles.walls | _still_types(frames)) - vertices - (choice.fluid or frozenset())
+        fluid = choice.fluid or roles.fluid or present - vertices - walls
+        cloth = np.isin(corners, list(choice.cloth or vertices)).all(axis=1)
+        is_flat = all(np.ptp(frame.positions[:, 2]) == 0 for frame in frames if len(frame))
+        spacing = {
+            kind: _spacing(kind, frames, roles, choice, is_flat)
+            for kind in (fluid | walls) & present
+        }
+        return cls(
+            fluid & present,
+            (walls - fluid) & present,
+            roles.mesh,
+            cloth & ~_resting(frames, roles.mesh),
+            spacing,
+            is_flat,
+            choice.colour_by,
+        )
+
+    @property
+    def largest_spacing(self) -> float:
+        """The spacing of the coarsest water; 0 without water."""
+        return max((self.spacing[kind] for kind in self.fluid), default=0.0)
+
+    def upright(self, points: NDArray) -> NDArray[np.float64]:
+        """Turn points, shape (..., 3), so that z points up: the y of a two-dimensional scene."""
+        return points[..., [0, 2, 1]] * [1.0, -1.0, 1.0] if self.is_flat else points
+
+    def water(self, frame: Frame) -> Drops:
+        """Return the water of a frame, with what looks over from across a periodic boundary.
+
+        Raises:
+            UserError: a position that is not finite, or no column for the colours.
+        """
+        return self._drops(frame, self.fluid, self.values(frame))
+
+    def wall_particles(self, frame: Frame) -> Drops:
+        """Return the boundary particles of a frame, likewise."""
+        return self._drops(frame, self.walls, None)
+
+    def values(self, frame: Frame) -> NDArray[np.float64] | None:
+        """Return the quantity of all atoms that gives water its colour, shape (N,), or None."""
+        if self.colour_by is None:
+            return None
+        values = frame.vectors(*QUANTITIES[self.colour_by])
+        return np.linalg.norm(values, axis=1) if values.shape[1] > 1 else values[:, 0]
+
+    def _drops(self, frame: Frame, kinds: frozenset[int], values: NDArray | None) -> Drops:
+        chosen = np.flatnonzero(np.isin(frame.types, list(kinds)))
+        spacing = np.array([self.spacing[kind] for kind in frame.types[chosen]], dtype=float)
+        drops = Drops(frame.positions[chosen], spacing, None if values is None else values[chosen])
+        check_positions(drops.positions, frame)
+        drops = _with_images(drops, frame, axes=2 if self.is_flat else 3)
+        if self.is_flat:
+            drops = _with_depth(drops)
+        return replace(
+            drops,
+            positions=self.upright(drops.positions),
+            room=np.sort(self.upright(drops.room), axis=0),
+        )
+
+
+def check_positions(positions: NDArray, frame: Frame) -> None:
+    """Raise UserError for a position, shape (N, 3), that is no number, or too large for one."""
+    if not np.all(np.abs(positions) < LARGEST):
+        raise UserError(f"the dump has positions that are not finite at step {frame.step}")
+
+
+def _corner_types(frame: Frame, mesh: ClothMesh | None) -> NDArray[np.int64]:
+    """Return the types of the corners of all triangles, shape (T, 3)."""
+    if mesh is None:
+        return np.zeros((0, 3), np.int64)
+    return mesh.vectors(frame, "type")[:, 0].astype(np.int64)[mesh.triangles]
+
+
+def _check_types(choice: Choice, present: frozenset[int], vertices: frozenset[int]) -> None:
+    listed = ", ".join(map(str, sorted(present))) or "none"
+    for kind in sorted((choice.fluid or frozenset()) - present):
+        raise UserError(f"--fluid {kind}: the dump has the types {listed}")
+    for kind in sorted((choice.cloth or frozenset()) - vertices):
+        held = ", ".join(map(str, sorted(vertices)))
+        raise UserError(
+            f"--cloth {kind}: the triangles of the data file have the types {held}"
+            if vertices
+            else f"--cloth {kind}: triangles come from a data file, and there is none: give --data"
+        )
+
+
+def _still_types(frames: Sequence[Frame]) -> frozenset[int]:
+    """Return the types of which no atom comes, goes or moves."""
+    still: set[int] = set()
+    if len(frames) > 1:
+        for kind in np.unique(frames[0].types).tolist():
+            first, *rest = (frame.select(kind).positions for frame in frames)
+            if all(np.array_equal(first, later) for later in rest):
+                still.add(kind)
+    return frozenset(still)
+
+
+def _resting(frames: Sequence[Frame], mesh: ClothMesh | None) -> NDArray[np.bool_]:
+    """Return which triangles belong to pieces that rest in all frames, shape (T,): obstacles."""
+    if mesh is None:
+        return np.zeros(0, bool)
+    if len(frames) < 2:
+        return np.zeros(len(mesh.triangles), bool)
+    first, *rest = (mesh.positions(frame) for frame in frames)
+    moves = np.any([later != first for later in rest], axis=(0, 2))
+    pieces = mesh.pieces
+    moving = np.bincount(pieces, moves) > 0
+    return ~moving[pieces[mesh.triangles[:, 0]]]
+
+
+def _spacing(
+    kind: int, frames: Sequence[Frame], roles: Roles, choice: Choice, is_flat: bool
+) -> float:
+    """Return the spacing of a type: the user's, the data file's, or that of its neighbours."""
+    if choice.spacing is not None:
+        return choice.spacing
+    if kind in roles.volume:
+        return roles.volume[kind] ** (1 / 2 if is_flat else 1 / 3)
+    positions = max((frame.select(kind).positions for frame in frames), key=len)
+    positions = positions[np.isfinite(positions).all(axis=1)]
+    if len(positions) < 2:
+        return 0.01 * float(np.ptp(frames[0].box, axis=0).max())
+    distance, _ = cKDTree(positions).query(positions, k=2)
+    return float(np.median(distance[:, 1])) or 0.01 * float(np.ptp(positions, axis=0).max())
+
+
+def _with_images(drops: Drops, frame: Frame, axes: int) -> Drops:
+    """Add the periodic images of particles that the surface in the box depends on."""
+    if any(frame.tilt) or not len(drops.positions):
+        return drops
+    reach = REACH * WIDTH * float(drops.spacing.max())
+    room = drops.room.copy()
+    for axis in itertools.compress(range(axes), frame.periodic):
+        low, high = room[:, axis] = frame.box[:, axis]
+        place = low + (drops.positions[:, axis] - low) % (high - low)
+        positions = drops.positions.copy()
+        positions[:, axis] = place
+        drops = replace(drops, positions=positions)
+        parts = [drops, *_images(drops, axis, low, high, reach)]
+        drops = _joined(parts)
+    return replace(drops, room=room)
+
+
+def _images(drops: Drops, axis: int, low: float, high: float, reach: float) -> Iterator[Drops]:
+    place = drops.positions[:, axis]
+    for chosen, shift in ((place < low + reach, high - low), (place > high - reach, low - high)):
+        part = _picked(drops, chosen)
+        part.positions[:, axis] += shift
+        yield part
+
+
+def _with_depth(drops: Drops) -> Drops:
+    """Put copies of the particles of a plane side by side along z."""
+    parts = []
+    for layer in LAYERS:
+        part = _picked(drops, np.ones(len(drops.positions), bool))
+        part.positions[:, 2] += layer * part.spacing
+        parts.append(part)
+    return _joined(parts)
+
+
+def _picked(drops: Drops, chosen: NDArray[np.bool_]) -> Drops:
+    """Return copies of some particles."""
+    values = None if drops.values is None else drops.values[chosen]
+    return replace(
+        drops, positions=drops.positions[chosen], spacing=drops.spacing[chosen], values=values
+    )
+
+
+def _joined(parts: Sequence[Drops]) -> Drops:
+    values = None
+    if parts[0].values is not None:
+        values = np.concatenate([part.values for part in parts])
+    return replace(
+        parts[0],
+        positions=np.concatenate([part.positions for part in parts]),
+        spacing=np.concatenate([part.spacing for part in parts]),
+        values=values,
+    )

@@ -1,0 +1,272 @@
+"""What ``sphcloth render`` does: chooses frames of a dump and draws them."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.progress import track
+
+from sphcloth.errors import UserError
+from sphcloth.rendering.cast import QUANTITIES, Cast, Choice
+from sphcloth.rendering.movie import check_format, write_pictures
+from sphcloth.rendering.scene import Scene
+from sphcloth.roles import Roles, parse_types
+from sphcloth.trajectory import Frame, Trajectory
+
+# frames that are looked at before drawing, to find one view and one scale for all
+SAMPLE = 8
+# views of a turntable around a single frame
+TURNTABLE_VIEWS = 72
+LEAST_SIZE, LARGEST_SIZE = 16, 4096
+LOG = "log.lammps"
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Which frames to draw: at most one of these, or all frames.
+
+    Attributes:
+        count: so many, evenly spaced, with the first and the last.
+        every: each so many, from the first.
+        time: ``a:b``, those between two times; an empty end is the dump's.
+    """
+
+    count: int | None = None
+    every: int | None = None
+    time: str | None = None
+
+    def choose(self, trajectory: Trajectory) -> list[int]:
+        """Return the numbers of the frames.
+
+        Raises:
+            UserError: several ways to choose, no time known, or no frame in the range.
+        """
+        given = [f"--{name}" for name, value in self._options().items() if value is not None]
+        if len(given) > 1:
+            raise UserError(f"{' and '.join(given)} exclude each other")
+        total = len(trajectory)
+        if self.count is not None:
+            return evenly_spaced(total, self.count)
+        if self.time is not None:
+            return self._between(trajectory.times)
+        return list(range(0, total, self.every or 1))
+
+    def _options(self) -> dict[str, object]:
+        return {"frames": self.count, "every": self.every, "time": self.time}
+
+    def _between(self, times: NDArray[np.float64]) -> list[int]:
+        low, high = _parse_range(self.time or "")
+        if np.isnan(times).all():
+            raise UserError(f"--time {self.time}: the dump has no times: give its log with --log")
+        chosen = np.flatnonzero((times >= low) & (times <= high)).tolist()
+        if not chosen:
+            span = f"{np.nanmin(times):g} to {np.nanmax(times):g}"
+            raise UserError(f"--time {self.time}: no frame there, the dump has times {span}")
+        return chosen
+
+
+@dataclass(frozen=True)
+class View:
+    """How pictures look: texts as the user gave them, None for what is found out.
+
+    Attributes:
+        camera: ``x,y,z`` of the camera.
+        target: ``x,y,z`` of the middle of the picture.
+        turntable: whether the camera walks around the scene once.
+        size: ``WIDTHxHEIGHT`` in pixels.
+        spheres: whether water is drawn as balls.
+    """
+
+    camera: str | None = None
+    target: str | None = None
+    turntable: bool = False
+    size: str = "1280x960"
+    spheres: bool = False
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was drawn, for ``--json``."""
+
+    dump: str
+    pictures: list[str]
+    frames: list[int]
+    steps: list[int]
+    particles: int
+    seconds_per_picture: float
+
+
+def evenly_spaced(total: int, wanted: int) -> list[int]:
+    """Return up to ``wanted`` indices out of ``total``: the last, the first, and some between."""
+    last_first = np.linspace(total - 1, 0, min(wanted, total))
+    return np.unique(last_first.round().astype(int)).tolist()
+
+
+def make_choice(
+    fluid: str | None, cloth: str | None, spacing: float | None, colour_by: str
+) -> Choice:
+    """Turn options into a choice of atoms and colours.
+
+    Raises:
+        UserError: a value that is none.
+    """
+    if spacing is not None and not 0 < spacing < np.inf:
+        raise UserError(f"--spacing {spacing:g}: must be positive")
+    if colour_by not in ("none", *QUANTITIES):
+        raise UserError(f"--colour-by {colour_by}: use {', '.join(('none', *QUANTITIES))}")
+    return Choice(
+        None if fluid is None else parse_types(fluid, "--fluid"),
+        None if cloth is None else parse_types(cloth, "--cloth"),
+        spacing,
+        None if colour_by == "none" else colour_by,
+    )
+
+
+def samples(trajectory: Trajectory) -> list[Frame]:
+    """Return a few frames that tell what there is in a dump."""
+    return [trajectory[index] for index in evenly_spaced(len(trajectory), SAMPLE)]
+
+
+def make_scene(frames: Sequence[Frame], cast: Cast, view: View | None = None) -> Scene:
+    """Choose what all pictures of a dump share, from some of its frames.
+
+    Raises:
+        UserError: nothing to draw, or a view that is none.
+    """
+    view = view or View()
+    camera, target = _parse_place(view.camera, "--camera"), _parse_place(view.target, "--target")
+    scene = Scene.of(frames, cast, parse_size(view.size), view.spheres)
+    if camera is None and target is None:
+        return scene.seen_all_around() if view.turntable else scene
+    if view.turntable:
+        raise UserError("--turntable chooses the view: leave out --camera and --target")
+    return scene.look_from(camera, target)
+
+
+def draw_frames(
+    trajectory: Trajectory, scene: Scene, numbers: Sequence[int], turntable: bool = False
+) -> Iterator[NDArray[np.uint8]]:
+    """Draw frames, one in memory at a time.
+
+    On a turntable the camera goes once around; a single frame gives ``TURNTABLE_VIEWS`` pictures.
+    """
+    artist = scene.artist()
+    views = TURNTABLE_VIEWS if turntable and len(numbers) == 1 else 1
+    total = views * len(numbers)
+    for place, number in enumerate(numbers):
+        props = artist.stand_up(trajectory[number])
+        for view in range(views):
+            angle = 2 * np.pi * (place * views + view) / total if turntable else 0.0
+            yield artist.picture(props, angle)
+
+
+def render(
+    dump: Path,
+    out: Path,
+    *,
+    data: Path | None,
+    log: Path | None,
+    frames: Frames,
+    choice: Choice,
+    view: View,
+    form: str,
+    console: Console,
+) -> Report:
+    """Draw frames of a dump and say what was written.
+
+    Args:
+        dump: text dump.
+        out: folder for the pictures.
+        data: data file of the scene; None takes that of the dump's name, if there is one.
+        log: log of the run; None takes ``log.lammps`` beside the dump, if there is one.
+        frames: which frames.
+        choice: which atoms are what, and the colours.
+        view: camera and size.
+        form: ``png``, ``gif`` or ``mp4``.
+        console: where progress and the result appear.
+
+    Raises:
+        UserError: a file that is missing or of another form, or an option that does not fit.
+    """
+    check_format(form, parse_size(view.size))
+    trajectory = Trajectory(dump, log or _log_beside(dump, frames))
+    numbers = frames.choose(trajectory)
+    roles = Roles.read(data) if data else Roles.beside(dump)
+    some = samples(trajectory)
+    scene = make_scene(some, Cast.of(some, roles, choice), view)
+    total = TURNTABLE_VIEWS if view.turntable and len(numbers) == 1 else len(numbers)
+    start = time.perf_counter()
+    pictures = track(
+        draw_frames(trajectory, scene, numbers, view.turntable), "drawing", total, console=console
+    )
+    paths = list(write_pictures(pictures, form, out, dump.stem))
+    seconds = (time.perf_counter() - start) / total
+    particles = max(trajectory.counts[numbers])
+    console.print(f"{paths[0]}" + (f" ... {paths[-1].name}" if len(paths) > 1 else ""))
+    console.print(
+        f"{total} pictures of up to {particles:,} atoms, {seconds:.2g} s each", highlight=False
+    )
+    return Report(
+        str(dump),
+        [str(path) for path in paths],
+        numbers,
+        [int(trajectory.steps[number]) for number in numbers],
+        int(particles),
+        seconds,
+    )
+
+
+def write_report(report: Report, path: Path) -> None:
+    """Write a report as JSON."""
+    path.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Turn ``1280x960`` into numbers.
+
+    Raises:
+        UserError: another form, or a picture too small or too large.
+    """
+    width, _, height = text.partition("x")
+    if not (width.isdigit() and height.isdigit()):
+        raise UserError(f"--size {text}: expected WIDTHxHEIGHT such as 1280x960")
+    size = int(width), int(height)
+    if not all(LEAST_SIZE <= side <= LARGEST_SIZE for side in size):
+        raise UserError(f"--size {text}: each side from {LEAST_SIZE} to {LARGEST_SIZE} pixels")
+    return size
+
+
+def _parse_place(text: str | None, option: str) -> NDArray[np.float64] | None:
+    if text is None:
+        return None
+    try:
+        place = np.array(text.split(","), dtype=float)
+    except ValueError:
+        place = np.array([])
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise UserError(f"{option} {text}: expected three numbers x,y,z")
+    return place
+
+
+def _parse_range(text: str) -> tuple[float, float]:
+    start, colon, end = text.partition(":")
+    try:
+        low, high = float(start or -np.inf), float(end or np.inf)
+    except ValueError:
+        colon = ""
+    if not colon or not low <= high:
+        raise UserError(f"--time {text}: expected FROM:TO such as 0.5:2 or 1:")
+    return low, high
+
+
+def _log_beside(dump: Path, frames: Frames) -> Path | None:
+    """Return the log of a run in the dump's folder, where its times are asked for."""
+    log = dump.parent / LOG
+    return log if frames.time is not None and log.is_file() else None

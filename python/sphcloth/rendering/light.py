@@ -1,0 +1,213 @@
+"""Where light comes from, and how much of it reaches a point.
+
+A sun with a soft edge, and a sky: how much of them points see comes from shadow maps, one from
+near the sun and one from each of some directions all over the sky. Water lets most of it through.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from sphcloth.rendering.camera import ParallelView, in_axes
+from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
+from sphcloth.rendering.surface import Surface
+
+SUN_PIXELS, SUN_RAYS = 900, 24
+SKY_PIXELS, SKY_DIRECTIONS = 150, 28
+# half of the angle under which the sun appears, as a slope: the softness of shadows
+SUN_SLOPE = 0.05
+# what a sun's ray that meets nothing is taken to have risen, of the radius of the scene
+LEAST_RISE = 0.12
+# what water takes from light that is on its way through
+WATER_SHADE, WATER_SKY_SHADE = 0.45, 0.35
+# cosines of the angles from the sun in which the lamp that water mirrors fades
+SOFTBOX_EDGE = (0.93, 0.965)
+GROUND, HORIZON, ZENITH = (
+    np.array(colour) for colour in ((0.42, 0.43, 0.46), (0.86, 0.90, 0.95), (0.34, 0.52, 0.78))
+)
+
+
+@dataclass(frozen=True)
+class Balls:
+    """Balls of one or many colours.
+
+    Attributes:
+        centres: shape (N, 3).
+        radius: shape (N,).
+        colours: linear, shape (N, 3).
+    """
+
+    centres: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    colours: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Light:
+    """Sun and sky over a scene.
+
+    Attributes:
+        sun: towards the sun, a unit vector, shape (3,).
+        maps: how far from the sun is what it sees: solids and water.
+        sky: the same for directions of the sky.
+    """
+
+    sun: NDArray[np.float64]
+    maps: tuple[_ShadowMap, _ShadowMap]
+    sky: list[tuple[_ShadowMap, _ShadowMap]]
+
+    @classmethod
+    def on(
+        cls,
+        solids: Sequence[Surface],
+        water: Surface,
+        balls: Sequence[Balls],
+        sun: NDArray[np.float64],
+        room: tuple[NDArray[np.float64], float],
+    ) -> Light:
+        """Cast light on surfaces and balls in a room: a ball, its centre and radius."""
+        view = ParallelView(sun, *room, SUN_PIXELS)
+        maps = (_ShadowMap.of(view, solids, balls), _ShadowMap.of(view, [water], []))
+        parts = [*(solid.points for solid in solids), *(part.centres for part in balls)]
+        grains = np.concatenate([np.zeros((0, 3)), *parts])
+        sky = []
+        for direction in sky_directions(SKY_DIRECTIONS):
+            view = ParallelView(direction, *room, SKY_PIXELS)
+            sky.append(tuple(_ShadowMap.of_points(view, dust) for dust in (grains, water.points)))
+        return cls(sun, maps, sky)
+
+    def sunshine(self, points: NDArray, normals: NDArray) -> NDArray[np.float64]:
+        """Return the share of the sun that points see, shape (N,)."""
+        solid, water = self.maps
+        start = points + 2.5 * solid.view.pixel * normals
+        places, near = solid.view.project(start)
+        blocked = solid.blocked_softly(places, near, SUN_RAYS)
+        wet = water.blocked_softly(places, near, SUN_RAYS // 2)
+        return (1 - blocked) * (1 - WATER_SHADE * wet)
+
+    def skylight(self, points: NDArray, normals: NDArray) -> NDArray[np.float64]:
+        """Return the share of the sky over their tangent planes that points see, shape (N,)."""
+        total, seen = np.full(len(points), 1e-9), np.full(len(points), 1e-9)
+        for solid, water in self.sky:
+            cosine = np.maximum(_along(normals, solid.view.direction), 0)
+            places, near = solid.view.project(points + 2.0 * solid.view.pixel * normals)
+            clear = ~solid.blocked(places, near) * (
+                1 - WATER_SKY_SHADE * water.blocked(places, near)
+            )
+            total += cosine
+            seen += cosine * clear
+        return seen / total
+
+
+@dataclass(frozen=True)
+class _ShadowMap:
+    """The distance towards the light of what is nearest to it, -inf where nothing is."""
+
+    view: ParallelView
+    nearness: NDArray[np.float64]
+
+    @classmethod
+    def of(
+        cls, view: ParallelView, surfaces: Sequence[Surface], balls: Sequence[Balls]
+    ) -> _ShadowMap:
+        nearness = np.full(view.pixels**2, -np.inf)
+        for surface in surfaces:
+            places, near = view.project(surface.points)
+            corners = surface.triangles
+            parts = triangle_fragments(places[corners], near[corners], view.shape)
+            np.maximum(nearness, nearest(parts, len(nearness)).nearness, out=nearness)
+        for part in balls:
+            places, near = view.project(part.centres)
+            for discs in disc_fragments(places, part.radius / view.pixel, view.shape):
+                top = near[discs.disc] + part.radius[discs.disc] * discs.bulge
+                np.maximum.at(nearness, discs.pixel, top)
+        return cls(view, _bordered(nearness.reshape(view.shape)))
+
+    @classmethod
+    def of_points(cls, view: ParallelView, points: NDArray) -> _ShadowMap:
+        """Take points for all of a surface; they are denser than pixels, or nearly."""
+        places, near = view.project(points)
+        nearness = np.full(view.shape, -np.inf)
+        column, row = np.floor(np.clip(places, 0, view.pixels - 1)).astype(np.int64).T
+        np.maximum.at(nearness, (row, column), near)
+        return cls(view, _bordered(ndimage.maximum_filter(nearness, 2)))
+
+    def blocked(self, places: NDArray, near: NDArray) -> NDArray[np.bool_]:
+        """Return whether something is between the light and points of its view, shape (N,)."""
+        return self._look(places) > near
+
+    def blocked_softly(self, places: NDArray, near: NDArray, rays: int) -> NDArray[np.float64]:
+        """Return which share of rays to all parts of the sun is blocked, shape (N,).
+
+        What a ray that leans aside meets is looked up where it is as high as what the straight
+        ray meets: exact for a flat blocker.
+        """
+        straight = self._look(places)
+        rise = np.where(np.isfinite(straight), straight - near, 0)
+        reach = np.maximum(rise, LEAST_RISE * self.view.radius) * (SUN_SLOPE / self.view.pixel)
+        blocked = sum(
+            (self._look(places + reach[:, None] * slope) > near).astype(np.float32)
+            for slope in _spiral(rays)
+        )
+        return blocked / rays
+
+    def _look(self, places: NDArray) -> NDArray[np.float64]:
+        """Return what is nearest to the light at places, shape (N, 2)."""
+        column, row = np.clip(places, 0, self.view.pixels - 1).astype(np.int32).T
+        return self.nearness[row * self.view.pixels + column]
+
+
+def _bordered(nearness: NDArray) -> NDArray[np.float64]:
+    """Return a map, flat, with nothing on its border: what is off the map is in the light."""
+    nearness[[0, -1], :] = nearness[:, [0, -1]] = -np.inf
+    return nearness.ravel()
+
+
+def sky_directions(count: int) -> NDArray[np.float64]:
+    """Return unit vectors spread evenly over the upper half of the sphere, shape (count, 3)."""
+    height = (np.arange(count) + 0.5) / count
+    turn = np.arange(count) * np.pi * (3 - np.sqrt(5))
+    flat = np.sqrt(1 - height**2)
+    return np.stack([flat * np.cos(turn), flat * np.sin(turn), height], axis=1)
+
+
+def _spiral(count: int) -> NDArray[np.float64]:
+    """Return points spread evenly over the unit disc, shape (count, 2)."""
+    radius = np.sqrt((np.arange(count) + 0.5) / count)
+    turn = np.arange(count) * np.pi * (3 - np.sqrt(5))
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
+
+
+def surroundings(directions: NDArray, sun: NDArray) -> NDArray[np.float64]:
+    """Return the light that comes from unit directions, shape (N, 3), in linear colour (N, 3).
+
+    A studio: ground, horizon and sky, a large bright lamp around the sun and a long faint one
+    opposite, for water to mirror.
+    """
+    height = directions[:, 2:3]
+    up = np.clip(height, 0, 1) ** 0.6
+    light = np.where(
+        height > 0,
+        HORIZON + up * (ZENITH - HORIZON),
+        HORIZON + np.clip(-4 * height, 0, 1) * (GROUND - HORIZON),
+    )
+    key = _smooth_step(_along(directions, sun), *SOFTBOX_EDGE)
+    behind = _along(directions, -sun * [1, 1, 0] / np.linalg.norm(sun[:2]))
+    height_of_strip = _smooth_step(0.16 - np.abs(height[:, 0] - 0.38), 0, 0.08)
+    strip = _smooth_step(behind, 0.3, 0.6) * height_of_strip
+    return light + (7.0 * key + 1.4 * strip)[:, None]
+
+
+def _smooth_step(values: NDArray, low: float, high: float) -> NDArray[np.float64]:
+    share = np.clip((values - low) / (high - low), 0, 1)
+    return share**2 * (3 - 2 * share)
+
+
+def _along(vectors: NDArray, direction: NDArray) -> NDArray[np.float64]:
+    """Return the components of vectors, shape (N, 3), along a direction, shape (N,)."""
+    return in_axes(vectors, direction[None])[:, 0]

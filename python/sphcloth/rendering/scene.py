@@ -1,0 +1,322 @@
+"""What all pictures of a dump share, and how a frame becomes one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib import colors
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from sphcloth.errors import UserError
+from sphcloth.meshing.sequence import Unwrapper
+from sphcloth.rendering.camera import Camera
+from sphcloth.rendering.cast import Cast, check_positions
+from sphcloth.rendering.legend import Scale, add_scale
+from sphcloth.rendering.light import Balls, Light
+from sphcloth.rendering.shading import Props, Solid, Stage, draw
+from sphcloth.rendering.subdivision import Refinement
+from sphcloth.rendering.surface import Drops, Surface, smoothed, water_surface
+from sphcloth.trajectory import Frame
+
+# front and back of each piece of cloth, in turn; then of obstacles, pins and balls of water
+CLOTH_COLOURS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
+OBSTACLE_COLOUR, PIN_COLOUR = "#b9bcc2", "#8c2f25"
+BALL_COLOUR = "#2f7fd0"
+
+PIN_RADIUS = 0.006  # of the scene
+# from the scene to the camera; of a two-dimensional scene almost straight in front of it
+VIEW, FLAT_VIEW = np.array([1.0, -1.8, 0.95]), np.array([0.25, -1.0, 0.22])
+# towards the sun from the camera: aside, upwards, back; and how high it stands at least
+SUN, LEAST_SUN_HEIGHT = np.array([-0.5, 0.8, 0.3]), 1.05
+# quantiles of the coordinates of water between which it is to be seen
+MOST_WATER = (0.1, 0.9)
+# triangles of cloth, after they have been made smooth by subdivision
+FINE_TRIANGLES = 100_000
+# how far around what is to be seen water is drawn, and light is followed, in radii of the stage
+DRAWN_ROOM, LIT_ROOM = 3.0, 1.25
+# of a sheet, in spacings of the water: water keeps this distance, and is looked for so far
+SKIN, GRIP = 0.03, 1.0
+# what is farther aside from the nearest vertex, in edges, is beyond the border of the sheet
+SIDEWAYS = 0.8
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What all pictures of a dump share.
+
+    Attributes:
+        cast: who plays what.
+        camera: the view; a turntable turns it.
+        stage: the floor, the room and the sun.
+        pinned: indices of the vertices that never move, shape (K,).
+        scale: values of the colours of water, or None for water's own.
+        as_balls: whether water is drawn as balls.
+    """
+
+    cast: Cast
+    camera: Camera
+    stage: Stage
+    pinned: NDArray[np.int64]
+    scale: Scale | None
+    as_balls: bool
+
+    @classmethod
+    def of(
+        cls,
+        frames: Sequence[Frame],
+        cast: Cast,
+        size: tuple[int, int] = (1280, 960),
+        as_balls: bool = False,
+    ) -> Scene:
+        """Choose one view, floor and colour scale for a dump, from some of its frames."""
+        points, floor = _framed(frames, cast)
+        low, high = points.min(axis=0), points.max(axis=0)
+        centre = (low + high) / 2
+        radius = float(np.linalg.norm(high - low)) / 2 or 1.0
+        camera = Camera.framing(points, FLAT_VIEW if cast.is_flat else VIEW, size)
+        sun = SUN @ camera.axes
+        sun[2] = max(sun[2], LEAST_SUN_HEIGHT)
+        stage = Stage(floor, centre, radius, sun / np.linalg.norm(sun))
+        return cls(cast, camera, stage, _pins(frames, cast), _scale(frames, cast), as_balls)
+
+    def look_from(
+        self, position: NDArray[np.float64] | None, target: NDArray[np.float64] | None
+    ) -> Scene:
+        """Return the scene seen from a place, or towards one, or both.
+
+        Raises:
+            UserError: both are the same.
+        """
+        target = self.camera.target if target is None else target
+        if position is None:
+            position = target + self.camera.position - self.camera.target
+        if np.array_equal(position, target):
+            raise UserError("--camera and --target are the same point: there is no direction")
+        return replace(self, camera=Camera(position, target, self.camera.size))
+
+    def seen_all_around(self) -> Scene:
+        """Return the scene with the camera so far back that a turntable shows all of it."""
+        middle, radius = self.stage.centre, self.stage.radius
+        camera = self.camera
+        distance = 1.02 * radius / np.sin(camera.half_angle)
+        return replace(
+            self, camera=replace(camera, position=middle + distance * camera.axes[2], target=middle)
+        )
+
+    def artist(self) -> Artist:
+        """Return what draws frames, in the order of the dump."""
+        return Artist(self)
+
+
+class Artist:
+    """Draws frames of a scene, one after another."""
+
+    def __init__(self, scene: Scene) -> None:
+        """Take the scene; sheets that reach through a periodic boundary are followed."""
+        self._scene = scene
+        mesh = scene.cast.mesh
+        self._unwrap = None if mesh is None else Unwrapper(mesh)
+        self._parts = _coloured_parts(scene.cast)
+        self._walls: tuple[Drops, Surface] | None = None
+
+    def stand_up(self, frame: Frame) -> Props:
+        """Make the surfaces of a frame.
+
+        Raises:
+            UserError: a vertex or a column is not in the frame, or a number is not finite.
+        """
+        scene = self._scene
+        solids = self._solids(frame)
+        balls = [self._pins(frame)] if len(scene.pinned) else []
+        drops = _within(scene.cast.water(frame), scene.stage)
+        water, tint = Surface.empty(), None
+        if scene.as_balls:
+            balls.append(self._water_balls(drops))
+        else:
+            water = _held_back(water_surface(drops), drops, solids, scene.cast.largest_spacing)
+            tint = None if scene.scale is None else _linear(scene.scale.shades(water.values))
+        surfaces = [solid.surface for solid in solids]
+        room = (scene.stage.centre, LIT_ROOM * scene.stage.radius)
+        light = Light.on(surfaces, water, balls, scene.stage.sun, room)
+        return Props(solids, balls, water, tint, self._glass(frame), light)
+
+    def picture(self, props: Props, angle: float = 0.0) -> NDArray[np.uint8]:
+        """Draw surfaces with the camera walked around by an angle, in radians.
+
+        Returns:
+            The picture, shape (height, width, 3).
+        """
+        scene = self._scene
+        picture = draw(scene.camera.turned(angle), scene.stage, props)
+        return picture if scene.scale is None else add_scale(picture, scene.scale)
+
+    def _solids(self, frame: Frame) -> list[Solid]:
+        """Return cloth and obstacles of a frame."""
+        if self._unwrap is None:
+            return []
+        points = self._scene.cast.upright(self._unwrap(frame))
+        check_positions(points, frame)
+        return [
+            Solid(Surface.of(fine.weights @ points, fine.triangles), front, back)
+            for fine, front, back in self._parts
+        ]
+
+    def _pins(self, frame: Frame) -> Balls:
+        scene = self._scene
+        centres = scene.cast.upright(scene.cast.mesh.positions(frame)[scene.pinned])
+        radius = np.full(len(centres), PIN_RADIUS * scene.stage.radius)
+        return Balls(centres, radius, np.tile(_linear(PIN_COLOUR), (len(centres), 1)))
+
+    def _water_balls(self, drops: Drops) -> Balls:
+        if self._scene.scale is None:
+            colours = np.tile(_linear(BALL_COLOUR), (len(drops.positions), 1))
+        else:
+            colours = _linear(self._scene.scale.shades(drops.values))
+        return Balls(drops.positions, 0.55 * drops.spacing, colours)
+
+    def _glass(self, frame: Frame) -> Surface:
+        """Return the surface of boundary particles, which is made anew only if they moved."""
+        drops = _within(self._scene.cast.wall_particles(frame), self._scene.stage)
+        if self._walls is None or not np.array_equal(self._walls[0].positions, drops.positions):
+            self._walls = drops, water_surface(drops)
+        return self._walls[1]
+
+
+def _coloured_parts(cast: Cast) -> list[tuple[Refinement, NDArray, NDArray]]:
+    """Return smooth meshes of all cloth and obstacles, one for each pair of colours."""
+    if cast.mesh is None:
+        return []
+    triangles = cast.mesh.triangles
+    colour = cast.mesh.pieces[triangles[:, 0]] % len(CLOTH_COLOURS)
+    colour[~cast.cloth] = -1
+    colours = dict(enumerate(CLOTH_COLOURS)) | {-1: (OBSTACLE_COLOUR, OBSTACLE_COLOUR)}
+    return [
+        (
+            Refinement.of(triangles[colour == number], len(cast.mesh.ids), FINE_TRIANGLES),
+            *map(_linear, pair),
+        )
+        for number, pair in colours.items()
+        if (colour == number).any()
+    ]
+
+
+def _framed(frames: Sequence[Frame], cast: Cast) -> tuple[NDArray[np.float64], float]:
+    """Return points that are to be seen, shape (N, 3), and the height of the floor."""
+    cloth, water = np.zeros((0, 3)), [np.zeros((0, 3))]
+    if cast.mesh is not None:
+        cloth = np.concatenate([cast.upright(cast.mesh.positions(frame)) for frame in frames])
+    for frame in frames:
+        positions = cast.upright(frame.positions[np.isin(frame.types, list(cast.fluid))])
+        water.append(positions[np.isfinite(positions).all(axis=1)])
+    wet = np.concatenate(water)
+    walls = cast.upright(frames[0].positions[np.isin(frames[0].types, list(cast.walls))])
+    radius = cast.largest_spacing / 2
+    if len(cloth):
+        low, high = cloth.min(axis=0), cloth.max(axis=0)
+        extent = float((high - low).max())
+        floor = low[2] - 0.1 * extent
+        points = np.concatenate([cloth, [[*(low + high)[:2] / 2, floor]]])
+        if len(wet):
+            points = np.concatenate([points, _most_of(wet, low - extent, high + extent)])
+    elif len(wet):
+        points, floor = _corners(*np.quantile(wet, [0.005, 0.995], axis=0), radius), np.inf
+    elif len(walls):
+        points, floor = walls, np.inf
+    else:
+        raise UserError("the dump holds neither water nor cloth to draw: see --fluid and --data")
+    floor = min(floor, *(np.quantile(part[:, 2], 0.005) for part in (points, wet) if len(part)))
+    if not len(cloth) and len(walls):
+        floor = min(floor, walls[:, 2].min())
+    return points, float(floor) - radius
+
+
+def _most_of(water: NDArray, low: NDArray, high: NDArray) -> NDArray[np.float64]:
+    """Return the corners of a box with most of some water, cut off at low and high, shape (8, 3).
+
+    Drops that are far from a sheet may leave the picture: they would shrink all the rest.
+    """
+    return _corners(*np.clip(np.quantile(water, MOST_WATER, axis=0), low, high), 0.0)
+
+
+def _corners(low: NDArray, high: NDArray, margin: float) -> NDArray[np.float64]:
+    """Return the corners of a box, shape (8, 3)."""
+    ends = np.stack([low - margin, high + margin])
+    return np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _pins(frames: Sequence[Frame], cast: Cast) -> NDArray[np.int64]:
+    """Return the vertices of cloth that never move, shape (K,)."""
+    if cast.mesh is None or len(frames) < 2:
+        return np.zeros(0, np.int64)
+    first, *rest = (cast.mesh.positions(frame) for frame in frames)
+    still = ~np.any([later != first for later in rest], axis=(0, 2))
+    of_cloth = np.zeros(len(still), bool)
+    of_cloth[cast.mesh.triangles[cast.cloth]] = True
+    return np.flatnonzero(still & of_cloth)
+
+
+def _scale(frames: Sequence[Frame], cast: Cast) -> Scale | None:
+    """Return the range of the coloured quantity that few particles leave."""
+    if cast.colour_by is None:
+        return None
+    values = [cast.values(frame)[np.isin(frame.types, list(cast.fluid))] for frame in frames]
+    values = np.concatenate(values)
+    low, high = np.quantile(values, [0.02, 0.98]) if len(values) else (0.0, 1.0)
+    if cast.colour_by == "speed":
+        low = 0.0
+    return Scale(cast.colour_by, float(low), float(max(high, low + 1e-12)))
+
+
+def _within(drops: Drops, stage: Stage) -> Drops:
+    """Leave out what is far away: a lost drop would stretch the grid of the surface."""
+    away = np.abs(drops.positions - stage.centre).max(axis=1)
+    near = away < DRAWN_ROOM * stage.radius
+    values = None if drops.values is None else drops.values[near]
+    return replace(
+        drops, positions=drops.positions[near], spacing=drops.spacing[near], values=values
+    )
+
+
+def _held_back(water: Surface, drops: Drops, solids: Sequence[Solid], spacing: float) -> Surface:
+    """Return water that ends at sheets: its surface, a radius from the particles, reaches through.
+
+    A vertex beyond a sheet, seen from the nearest particle, goes back on that particle's side.
+    """
+    if not solids or not len(water.points):
+        return water
+    sheet = np.concatenate([solid.surface.points for solid in solids])
+    upwards = np.concatenate([solid.surface.normals for solid in solids])
+    _, nearest = cKDTree(sheet).query(water.points, distance_upper_bound=GRIP * spacing)
+    near = np.flatnonzero(nearest < len(sheet))
+    place, normal = sheet[nearest[near]], upwards[nearest[near]]
+    aside = np.linalg.norm(np.cross(water.points[near] - place, normal), axis=1)
+    over = (
+        aside
+        < SIDEWAYS * np.concatenate([_cells(solid.surface) for solid in solids])[nearest[near]]
+    )
+    near, place, normal = near[over], place[over], normal[over]
+    points = water.points.copy()
+    _, particle = cKDTree(drops.positions).query(points[near])
+    side = np.sign(np.einsum("ij,ij->i", drops.positions[particle] - place, normal))
+    height = side * np.einsum("ij,ij->i", points[near] - place, normal)
+    points[near] += (side * np.maximum(SKIN * spacing - height, 0))[:, None] * normal
+    return smoothed(replace(water, points=points), 2)
+
+
+def _cells(surface: Surface) -> NDArray[np.float64]:
+    """Return the length of an edge at each vertex, shape (V,)."""
+    ends = surface.points[surface.triangles]
+    lengths = np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2).max(axis=1)
+    longest = np.zeros(len(surface.points))
+    np.maximum.at(longest, surface.triangles.ravel(), np.repeat(lengths, 3))
+    return longest
+
+
+def _linear(colour: object) -> NDArray[np.float64]:
+    """Return sRGB colours of any form that matplotlib knows as linear ones, shape (..., 3)."""
+    encoded = colors.to_rgba_array(colour)[:, :3]
+    linear = np.where(encoded < 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return linear[0] if isinstance(colour, str) else linear

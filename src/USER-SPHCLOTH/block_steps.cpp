@@ -21,7 +21,7 @@ static constexpr double OVERHEAD = 0.1;
 
 BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, double **&rows) :
     Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), finest_vertex(0),
-    stage(LEVELS)
+    ideal(0.0), stage(LEVELS)
 {
 }
 
@@ -222,7 +222,9 @@ void BlockSteps::book()
   for (const int i : pair->active_particles()) {
     begin_own_step(rows[i]);
     rows[i][TERM] = term[i];
-    fix->set_own_step(i, at.line.step(static_cast<int>(rows[i][LEVEL])));
+    const double own = at.line.step(static_cast<int>(rows[i][LEVEL]));
+    fix->set_own_step(i, own);
+    ideal += own / wanted[i];
   }
 }
 
@@ -278,7 +280,6 @@ void BlockSteps::fall_asleep()
   for (const int i : marked) {
     rows[i][LEVEL] = ASLEEP;
     rows[i][SINCE] = physical_time(update);
-    std::fill_n(atom->f[i], 3, 0.0);
     std::fill_n(atom->v[i], 3, 0.0);
   }
 }
@@ -366,13 +367,14 @@ void BlockSteps::share_impulses()
   marked.clear();
   slots.clear();
   for (const int i : pair->active_particles()) {
-    if (sleeps(i)) continue;
-    if (look_around(i)) {
+    if (sleeps(i))    // since now
+      std::fill_n(atom->f[i], 3, 0.0);
+    else if (look_around(i))
       prolong(i, span[i] - 1.0);
-      continue;
+    else {
+      prolong(i, -1.0);
+      slots.push_back(pair->order().slot(i));
     }
-    prolong(i, -1.0);
-    slots.push_back(pair->order().slot(i));
   }
   if (options.sleep > 0.0) wake_beside_moving_boundaries();
   comm->reverse_comm(fix, 1);
@@ -525,6 +527,13 @@ void BlockSteps::unpack_reverse(int n, const int *list, const double *buf)
 {
   for (int k = 0; k < n; k++)
     if (const int its = static_cast<int>(buf[k]); its != UNTOUCHED) touch(list[k], its);
+}
+
+int BlockSteps::sleepers() const
+{
+  int n = 0;
+  for (int i = 0; i < atom->nlocal; i++) n += pair->is_fluid(atom->type[i]) && sleeps(i);
+  return n;
 }
 
 double BlockSteps::bytes() const

@@ -80,6 +80,12 @@ class BlockSteps : protected Pointers {
   sphcloth::Limit limited_by() const { return at.limit; }
   bool arrives() const { return at.reaches_output && ends_root(); }
 
+  // of this rank: who sleeps, and how many updates it would have been so far, had everybody taken
+  // exactly the step that the limits allow
+  int sleepers() const;
+  double ideal_updates() const { return ideal; }
+  void set_ideal_updates(double n) { ideal = n; }
+
   // ghosts
   int pack_forward(int n, const int *list, double *buf) const;
   void unpack_forward(int n, int first, const double *buf);
@@ -125,6 +131,7 @@ class BlockSteps : protected Pointers {
   int apart;    // levels that neighbours may be apart
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
+  double ideal;
 
   // by particle, owned and ghost; scratch
   Stage stage;

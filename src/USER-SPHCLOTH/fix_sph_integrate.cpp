@@ -56,7 +56,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
   restart_peratom = 1;
   create_attribute = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = 5 + N_LIMITS - 1 + N_OF_PARTICLES + 2;
+  size_vector = 5 + N_LIMITS - 1 + N_OF_PARTICLES + 4;
   global_freq = 1;
   extscalar = extvector = 0;
   peratom_flag = 1;
@@ -693,13 +693,17 @@ double FixSPHIntegrate::own_step(int i) const
 double FixSPHIntegrate::compute_scalar() { return update->dt; }
 
 // limit in force, active fraction, particle updates, largest compression, steps clamped at min,
-// then steps by limit, particles by limit, whether this is an output time, and the step for thermo
+// then steps by limit, particles by limit, whether this is an output time, the step for thermo,
+// particles that sleep and ideal updates
 
 double FixSPHIntegrate::compute_vector(int n)
 {
   constexpr int PARTICLES = 5 + N_LIMITS - 1, TIMES = PARTICLES + N_OF_PARTICLES;
   if (n == TIMES) return at_output_time();
-  if (n > TIMES) return static_cast<double>(next_thermo());
+  if (n == TIMES + 1) return static_cast<double>(next_thermo());
+  if (n > TIMES && !blocks->begun()) return 0.0;
+  if (n == TIMES + 2) return sum_over_ranks(blocks->sleepers());
+  if (n == TIMES + 3) return sum_over_ranks(blocks->ideal_updates());
   if (n >= PARTICLES) {
     if (blocks->begun()) count_blocks();
     return sum_over_ranks(particles_limited[n - PARTICLES + 1]);
@@ -762,7 +766,7 @@ double FixSPHIntegrate::sum_over_ranks(double mine) const
 ------------------------------------------------------------------------- */
 
 struct FixSPHIntegrate::Record {
-  double previous, ceiling, updates, largest_before;
+  double previous, ceiling, updates, ideal_updates, largest_before;
   Limit limited_by;
   std::array<double, N_LIMITS> steps_limited;
   BlockSteps::Place blocks;
@@ -770,11 +774,12 @@ struct FixSPHIntegrate::Record {
 
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
-  double all_updates = 0.0;
-  MPI_Reduce(&updates, &all_updates, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  const double mine[2] = {updates, blocks->ideal_updates()};
+  double all[2] = {0.0, 0.0};
+  MPI_Reduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  const Record record{previous,   ceiling,       all_updates,    largest_before,
-                      limited_by, steps_limited, blocks->place()};
+  const Record record{previous,       ceiling,    all[0],        all[1],
+                      largest_before, limited_by, steps_limited, blocks->place()};
   const int bytes = static_cast<int>(sizeof(record));
   fwrite(&bytes, sizeof(int), 1, fp);
   fwrite(&record, sizeof(record), 1, fp);
@@ -789,6 +794,7 @@ void FixSPHIntegrate::restart(char *buf)
   if (!ceiling_given) ceiling = record.ceiling;
   limited_by = record.limited_by;
   updates = comm->me == 0 ? record.updates : 0.0;
+  blocks->set_ideal_updates(comm->me == 0 ? record.ideal_updates : 0.0);
   largest_before = record.largest_before;
   steps_limited = record.steps_limited;
   blocks->go_to(record.blocks);

@@ -16,9 +16,6 @@ from sphcloth.errors import UserError
 from sphcloth.tradeoff import scenes
 from sphcloth.tradeoff.scene import AS_WRITTEN, NORMS, SCHEMES, Quantity, Scene, column
 
-# what is run without --scheme
-USUAL_SCHEMES = ("constant", "global", "individual")
-
 
 def all_scenes() -> dict[str, Scene]:
     """Return name -> scene for every package in :mod:`sphcloth.tradeoff.scenes`."""
@@ -63,7 +60,7 @@ def find_schemes(scene: Scene, text: str | None) -> tuple[str, ...]:
     """Return the schemes to run; UserError for one that is unknown or that nothing chooses."""
     if text is None:
         if scene.clock is not None:
-            return USUAL_SCHEMES
+            return SCHEMES
         return (AS_WRITTEN,)
     found = tuple(word.strip() for word in text.split(","))
     for scheme in found:

@@ -33,7 +33,7 @@ SCENE = Scene(
         "constant": {"acoustic": COEFFICIENTS},
         "global": {"acoustic": COEFFICIENTS[1:6], "force": FORCE},
         "individual": UNEQUAL,
-        "block": UNEQUAL,
+        "block": {"acoustic": COEFFICIENTS[1:6], "sleep": ("0.0", "0.02", "0.1")},
     },
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={"calm": str(INTERVAL), "frames": "1"},

@@ -32,7 +32,7 @@ SCENE = Scene(
         "constant": {"acoustic": COEFFICIENTS},
         "global": {"acoustic": COEFFICIENTS[1::2], "force": FORCE},
         "individual": UNEQUAL,
-        "block": UNEQUAL,
+        "block": UNEQUAL | {"ceiling": ("4.0", "8.0"), "force": FORCE},
     },
     reference={"scheme": "constant", "acoustic": "0.1"},
     variables={"calm": str(INTERVAL), "frames": "1"},

@@ -33,10 +33,6 @@ static constexpr int GAP = 3, HOLD = 6;
 // body and what holds it within a few steps, whatever their masses; with 1 it would go on for ever.
 static constexpr double CLOSED = 0.25;
 
-// Part of it by which the step that stiffness belongs to gets shorter in each step.  A pull runs through
-// a sheet in a few steps, so what is stored is gone long before.
-static constexpr double STIFFENS = 0.01;
-
 // impulse before the first step
 static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
@@ -49,7 +45,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
     iterations(10), there_and_back(false), from_start(true), tolerance(0.0), pinbit(0),
     pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr),
     lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0),
-    remembered(true), last_residual(0.0), last_energy(0.0), started(false), stiff_dt(0.0)
+    remembered(true), last_residual(0.0), last_energy(0.0), started(false)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -305,7 +301,6 @@ void FixPBDCloth::post_integrate()
 {
   if (pin_motion) move_pins();
   if (lent) lend();
-  stiffen();
   load();
   if (hold) start_pulls();
   begin_guests();
@@ -376,20 +371,6 @@ Vertex FixPBDCloth::velocity_of_attached(int s) const
   return {u[0] + by * gap[0], u[1] + by * gap[1], u[2] + by * gap[2], p[s].w};
 }
 
-// What has no compliance is met to an error in a substep, and is as stiff as the substep is short, by its
-// square.  If steps got shorter at once, what a stretched sheet stores in its errors would grow as much:
-// energy from nothing.  So stiffness follows by and by, while the errors go.
-
-void FixPBDCloth::stiffen() { stiff_dt = std::max(update->dt, (1.0 - STIFFENS) * stiff_dt); }
-
-// whole steps have sweeps enough to leave no errors of that size
-
-double FixPBDCloth::share() const
-{
-  const double shorter = update->dt / stiff_dt;
-  return solver == Solver::SUBSTEPS ? shorter * shorter : 1.0;
-}
-
 void FixPBDCloth::substep(int n)
 {
   const double dt = update->dt / substeps();
@@ -454,8 +435,8 @@ void FixPBDCloth::damp()
 
 void FixPBDCloth::project_all(double dt)
 {
-  Vertex *const apart = solver == Solver::JACOBI ? change.data() : nullptr;
-  const ClothState state{start.data(), way.data(), from_start, apart, 1.0 / (dt * dt), share()};
+  const ClothState state{start.data(), way.data(), from_start,
+                         solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = iterations / substeps();
@@ -804,18 +785,12 @@ int FixPBDCloth::maxsize_restart() { return 4 + (hold ? HOLD : 0) + (lent ? 3 : 
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double values[] = {started ? 1.0 : 0.0, stiff_dt};
-  const int bytes = sizeof(values);
+  const int bytes = sizeof(int), value = started;
   fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(values, bytes, 1, fp);
+  fwrite(&value, sizeof(int), 1, fp);
 }
 
-void FixPBDCloth::restart(char *buf)
-{
-  const auto *values = reinterpret_cast<const double *>(buf);
-  started = values[0] != 0.0;
-  stiff_dt = values[1];
-}
+void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(buf); }
 
 double FixPBDCloth::memory_usage()
 {

@@ -116,7 +116,6 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double last_residual, last_energy;
   std::vector<ClothGuest *> guests, present;    // those that are near in this step
   bool started;    // velocities are those of half a step ago, see direction start
-  double stiff_dt;    // step to which the stiffness belongs, see stiffen()
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
@@ -132,8 +131,6 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void load();
   void load_attached(int slot);
   sphcloth::Vertex velocity_of_attached(int slot) const;
-  void stiffen();
-  double share() const;
   void substep(int n);
   void go();
   void damp();

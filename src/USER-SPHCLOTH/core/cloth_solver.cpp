@@ -52,11 +52,11 @@ namespace {
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double a = compliance[l] * s.inv_dt_sq, acting = a > 0.0 ? k[l] : s.share * k[l];
+        const double a = compliance[l] * s.inv_dt_sq;
         const DistanceStep by = START
             ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
-                                  acting, a, lambda[l], most[l])
-            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], acting, a, lambda[l], most[l]);
+                                  k[l], a, lambda[l], most[l])
+            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l], most[l]);
         lambda[l] += by.lambda;
         step.put(l, by.x, by.y, by.z);
       }
@@ -98,7 +98,7 @@ namespace {
       rows_1.to(e1);
     }
 
-    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq, double share)
+    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *most = &c.most[m];
@@ -117,11 +117,9 @@ namespace {
         const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
         const double lever = weight - LEAST_LEVER * w * steepest;
-        const double alpha = compliance[l] * inv_dt_sq;
-        const double whole = alpha > 0.0 ? k[l] : share * k[l];
-        const double acting = std::min(h.valid, lever) > 0.0 ? whole : 0.0;
+        const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
-                                            alpha, lambda[l], most[l]);
+                                            compliance[l] * inv_dt_sq, lambda[l], most[l]);
         lambda[l] += step;
         a.put(l, step * h.ax, step * h.ay, step * h.az);
         e2.put(l, step * x2, step * y2, step * z2);
@@ -163,7 +161,7 @@ namespace {
       HingeGroup group[BATCH];
       const int n = std::min(BATCH, (end - m) / WIDE);
       for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, way);
-      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq, s.share);
+      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq);
       for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, way, moved);
     }
   }

@@ -85,7 +85,6 @@ struct ClothState {
   bool along_start = false;    // project edges along the directions that they had at the start
   Vertex *change = nullptr;    // Jacobi: add up here what the ways would change by, or null
   double inv_dt_sq = 0.0;
-  double share = 1.0;    // of its projection, for what has no compliance
 };
 
 void project(Constraints<2> &, int colour, const ClothState &);

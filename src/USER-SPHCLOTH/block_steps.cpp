@@ -16,8 +16,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// what a step of the scene costs beside its updates, in updates per particle: drift, ghosts, cloth
+// what a step of the scene costs beside its updates, in updates per particle: drift, ghosts
 static constexpr double OVERHEAD = 0.1;
+// and what projection and contact of a vertex cost in it
+static constexpr int UPDATES_PER_VERTEX = 2;
 
 BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, double **&rows) :
     Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), finest_vertex(0),
@@ -111,6 +113,7 @@ void BlockSteps::begin_root()
   least_of_all = std::min(least_of_all, fix->longest_step());
   WantedSteps mine, all;
   for (const int i : pair->active_particles()) mine.add(wanted[i], least_of_all);
+  mine.count[0] += UPDATES_PER_VERTEX * fix->count_vertices();    // whatever they want
   MPI_Allreduce(mine.count.data(), all.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
 
   fit_root(all.best_root(least_of_all, OVERHEAD), least_of_all);

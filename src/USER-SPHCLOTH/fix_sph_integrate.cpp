@@ -489,6 +489,13 @@ double FixSPHIntegrate::vertex_step(int i) const
   return pair->is_fluid(atom->type[i]) ? 0.0 : state[i][OWN_STEP];
 }
 
+int FixSPHIntegrate::count_vertices() const
+{
+  int n = 0;
+  for_vertices([&](int, const FixPBDCloth &) { n++; });
+  return n;
+}
+
 // none knows its own before the first step has been taken
 
 StepLimit FixSPHIntegrate::tightest_vertex() const

@@ -82,6 +82,7 @@ class FixSPHIntegrate : public Fix {
   double next_output_time(double dt) const;
   sphcloth::StepLimit tightest_vertex() const;
   double vertex_step(int i) const;
+  int count_vertices() const;
 
  private:
   struct Record;    // in restart files

@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.variations import ONE_RESOLUTION
 from sphcloth.validation.cases import dam_break
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.01
-COEFFICIENTS = ("0.2", "0.4", "0.8", "1.2", "1.4", "1.6", "1.8", "2.0", "2.2")
-FORCE = ("0.05", "0.2")
-# for schemes in which particles have steps of their own
-UNEQUAL = {"acoustic": COEFFICIENTS[1:6:2], "ceiling": ("1.0", "2.0", "4.0")}
 
 
 def clock(values: Mapping[str, float]) -> Clock:
@@ -31,12 +28,7 @@ SCENE = Scene(
         Quantity("front", "place of the front", column("v_front"), by_range=True),
         Quantity("potential", "potential energy", column("v_potential"), by_range=True),
     ),
-    variations={
-        "constant": {"acoustic": COEFFICIENTS},
-        "global": {"acoustic": COEFFICIENTS[1:6], "force": FORCE},
-        "individual": UNEQUAL,
-        "block": UNEQUAL,
-    },
+    variations=ONE_RESOLUTION,
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={
         "across": "48",

@@ -12,15 +12,12 @@ from numpy.typing import NDArray
 
 from sphcloth.log import ThermoTable
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.variations import ONE_RESOLUTION
 from sphcloth.validation.cases import oscillating_drop
 from sphcloth.validation.lattice import density_sum
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.2
-COEFFICIENTS = ("0.2", "0.4", "0.8", "1.2", "1.4", "1.6", "1.8", "2.0", "2.2")
-FORCE = ("0.05", "0.2")
-# for schemes in which particles have steps of their own
-UNEQUAL = {"acoustic": COEFFICIENTS[1:6:2], "ceiling": ("1.0", "2.0", "4.0")}
 KERNEL, SUPPORT = "wendland/c2", 4.0
 
 
@@ -44,12 +41,7 @@ SCENE = Scene(
         Quantity("shape", "second moment of the drop", column("v_potential"), by_range=True),
         Quantity("energy", "total energy", total_energy, norm="end"),
     ),
-    variations={
-        "constant": {"acoustic": COEFFICIENTS},
-        "global": {"acoustic": COEFFICIENTS[1:6], "force": FORCE},
-        "individual": UNEQUAL,
-        "block": UNEQUAL,
-    },
+    variations=ONE_RESOLUTION,
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={
         "across": "40",

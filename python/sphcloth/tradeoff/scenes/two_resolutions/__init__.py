@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.variations import CEILINGS, FORCE
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.01
 COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
-FORCE = ("0.05", "0.2")
 # for schemes in which particles have steps of their own
-UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": ("1.0", "2.0", "4.0")}
+UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": CEILINGS}
 
 
 def clock(values: Mapping[str, float]) -> Clock:

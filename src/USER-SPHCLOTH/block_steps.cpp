@@ -93,11 +93,9 @@ void BlockSteps::choose()
 
 void BlockSteps::want_steps()
 {
-  const double *approach = fix->wants_approach() ? pair->approach_speeds().data() : nullptr;
   for (const int i : pair->active_particles()) {
     const double before = at.line.step(static_cast<int>(rows[i][LEVEL]));
-    const StepLimit own =
-        fix->bounded_limit(i, &rows[i][EXTERNAL], approach ? approach[i] : 0.0, before);
+    const StepLimit own = fix->bounded_limit(i, &rows[i][EXTERNAL], before);
     wanted[i] = own.dt;
     rows[i][BY] = static_cast<double>(own.by);
   }

@@ -153,6 +153,7 @@ void FixSPHIntegrate::init()
   check_scheme();
   pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
   if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
+  if (scheme != SteppingScheme::CONSTANT && lambda.relative > 0.0) pair->want_approach();
   control.sound_time = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
     if (pair->is_fluid(t))
@@ -393,7 +394,6 @@ StepLimit FixSPHIntegrate::tightest_anywhere()
 StepLimit FixSPHIntegrate::tightest_particle()
 {
   const double now = physical_time(update);
-  const double *approach = wants_approach() ? pair->approach_speeds().data() : nullptr;
   StepLimit tightest;
   particles_limited.fill(0.0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -401,9 +401,7 @@ StepLimit FixSPHIntegrate::tightest_particle()
     StepLimit own{state[i][OWN_STEP],
                   rows ? static_cast<Limit>(static_cast<int>(rows[i][BY])) : Limit::NONE};
     if (state[i][ACTIVE] != 0.0 || !rows) {
-      StepState particle = particle_state(i, atom->f[i]);
-      if (approach) particle.approach = approach[i];
-      own = particle_limit(lambda, particle);
+      own = particle_limit(lambda, particle_state(i, atom->f[i]));
       state[i][OWN_STEP] = std::min(own.dt, ceiling);
       state[i][LAST_UPDATE] = now;
       if (rows) hold(i, own);
@@ -438,14 +436,11 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
    steps in powers of two
 ------------------------------------------------------------------------- */
 
-StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double approach,
-                                         double before) const
+StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double before) const
 {
   const double *f = atom->f[i];
   const double total[3] = {f[0] + external[0], f[1] + external[1], f[2] + external[2]};
-  StepState particle = particle_state(i, total);
-  particle.approach = approach;
-  const StepLimit wanted = particle_limit(lambda, particle);
+  const StepLimit wanted = particle_limit(lambda, particle_state(i, total));
   const StepLimit step = bounded_step(wanted, before, growth, floor, ceiling);
   if (step.by == Limit::FLOOR && !clamp_at_floor)
     error->one(
@@ -557,6 +552,7 @@ StepState FixSPHIntegrate::particle_state(int i, const double *f) const
   s.rho = atom->rho[i];
   s.nu = pair->viscosity(atom->type[i]);
   s.sound = eos.sound_speed(s.rho);
+  if (lambda.relative > 0.0) s.approach = pair->approach_speed(i);
   const bool flies = pair->pressure_term()[i] == 0.0;
   if (flies) s.until_pressed = until_pressed(eos, s.rho, atom->drho[i]);
   // nothing is compressed in free flight, but individual steps interpolate the density

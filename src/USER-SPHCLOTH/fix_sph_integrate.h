@@ -67,13 +67,10 @@ class FixSPHIntegrate : public Fix {
   void finish_step();
 
   // What BlockSteps asks.  The step that particle i allows, between floor and ceiling, with the force
-  // of others than the fluid and the speed at which a neighbour comes near, after a step `before`
-  // (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
+  // of others than the fluid, after a step `before` (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
   // 0 for what is none.
-  bool wants_approach() const { return lambda.relative > 0.0; }
   bool wants_force() const { return lambda.force > 0.0; }
-  sphcloth::StepLimit bounded_limit(int i, const double *external, double approach,
-                                    double before) const;
+  sphcloth::StepLimit bounded_limit(int i, const double *external, double before) const;
   void set_own_step(int i, double dt);
   // that sound needs across the support; by a force
   double sound_time(int i) const;

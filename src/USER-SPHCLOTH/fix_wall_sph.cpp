@@ -125,6 +125,7 @@ void FixWallSPH::init()
   if (modify->get_fix_by_style("^wall/sph$").size() > 1)
     error->all(FLERR, "{}: there is another fix wall/sph: give all faces to one", label);
   table = pair->wall_table();
+  found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
     if (wall.place != Place::VARIABLE) continue;
@@ -172,6 +173,8 @@ void FixWallSPH::begin()
   last_time = now;
   std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
+  found.clear();
+  found_at.assign(atom->nlocal, UNKNOWN);
   summed = false;
 }
 
@@ -215,7 +218,25 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
 
 // false if no wall is in reach of particle i; otherwise `near` holds what each wall is to it
 
-bool FixWallSPH::look(int i, double back)
+bool FixWallSPH::look(int i)
+{
+  if (i >= static_cast<int>(found_at.size())) return measure(i);
+  int &at = found_at[i];
+  if (at == UNKNOWN) {
+    at = OUT_OF_REACH;
+    if (!measure(i)) return false;
+    at = static_cast<int>(found.size());
+    found.insert(found.end(), near.begin(), near.end());
+    return true;
+  }
+  if (at == OUT_OF_REACH) return false;
+  std::copy_n(found.begin() + at, near.size(), near.begin());
+  return true;
+}
+
+// with the walls where they are, and the particle where it was a time `back` ago
+
+bool FixWallSPH::measure(int i, double back)
 {
   if (!(atom->mask[i] & groupbit)) return false;
   const double *x = atom->x[i];
@@ -246,7 +267,7 @@ double FixWallSPH::density(int i)
 
 double FixWallSPH::density_rate(int i, double back)
 {
-  if (!look(i, back)) return 0.0;
+  if (!measure(i, back)) return 0.0;
   double rate = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
   return rate;

@@ -79,6 +79,11 @@ class FixWallSPH : public Fix, public FluidWall {
   sphcloth::WallTable table;
 
   std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall
+  // the same, one after another, of those that were found in reach in this evaluation, and where by
+  // particle
+  enum { UNKNOWN = -1, OUT_OF_REACH = -2 };
+  std::vector<sphcloth::WallTable::Value> found;
+  std::vector<int> found_at;
   std::vector<Press> presses;    // kept only for fix_modify virial yes
   std::vector<double> mine, all;    // force on each wall, x, y, z, then the energy; of all ranks
   bool summed;
@@ -88,7 +93,8 @@ class FixWallSPH : public Fix, public FluidWall {
   void check_face(const Wall &) const;
   void locate(Wall &, double);
   void find_open_space();
-  bool look(int i, double back = 0.0);
+  bool look(int i);
+  bool measure(int i, double back = 0.0);
   double slope(int, std::size_t) const;
   double departure(int, std::size_t) const;
   void push(int i, double pressure_term, double times, bool first);

@@ -170,17 +170,19 @@ void PairSPHTait::find_sheets()
 void PairSPHTait::forget_evaluation()
 {
   fluid.reset();
+  materials.unsettle();
   is_evaluated = false;
 }
 
 void PairSPHTait::set_model()
 {
+  materials.settle();
   FluidModel &model = fluid->model;
   const int n = atom->ntypes + 1;
   model.dimension = domain->dimension;
   model.n_types = atom->ntypes;
   model.friction = Friction::NONE;
-  model.wants_rate = false;
+  model.also = Also::NOTHING;
   model.role.assign(n, Role::NONE);
   model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
@@ -354,6 +356,7 @@ Particles PairSPHTait::particles()
   p.rho = atom->rho;
   p.drho = atom->drho;
   p.f = atom->f[0];
+  p.approach = approach.data();
   p.force_unit = 1.0 / force->ftm2v;
   p.active = active;
   p.active_column = active_column;
@@ -376,6 +379,7 @@ void PairSPHTait::new_lists()
   amount.resize(atom->nmax);
   pressure.assign(atom->nmax, 0.0);
   if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
+  if (fluid->model.also == Also::RATE_AND_APPROACH) approach.resize(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
     if (!materials.is_boundary(itype))
@@ -605,17 +609,12 @@ void PairSPHTait::want_wetting() const
   for (SheetWalls *mesh : meshes) mesh->want_wetting();
 }
 
-const std::vector<double> &PairSPHTait::approach_speeds()
+double PairSPHTait::approach_speed(int i)
 {
-  approach.assign(atom->nmax, 0.0);
-  fluid->approach_speeds(approach.data());
-  const auto include = [&](auto *wall) {
-    for_each_fluid(
-        [&](int i, const Tait &) { approach[i] = std::max(approach[i], wall->approach(i)); });
-  };
-  for (FluidWall *wall : walls) include(wall);
-  for (SheetWalls *mesh : meshes) include(mesh);
-  return approach;
+  double most = approach[i];
+  for (FluidWall *wall : walls) most = std::max(most, wall->approach(i));
+  for (SheetWalls *mesh : meshes) most = std::max(most, mesh->approach(i));
+  return most;
 }
 
 PairSPHTait::Wetting PairSPHTait::wetting(int i)

@@ -17,6 +17,7 @@ PairStyle(sph/tait,PairSPHTait);
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -96,9 +97,10 @@ class PairSPHTait : public Pair {
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
   const double *pressure_term() const { return pressure.data(); }
 
-  // Of the last evaluation, by owned atom: the largest speed at which a neighbour or a wall and an
-  // active fluid particle come near.  A pass over all neighbours.
-  const std::vector<double> &approach_speeds();
+  // The largest speed at which a neighbour or a wall and an owned fluid particle came near when it
+  // was active last; to be asked for in init()
+  void want_approach() { fluid->model.also = sphcloth::Also::RATE_AND_APPROACH; }
+  double approach_speed(int i);
 
   // volume of a particle, owned or ghost, in the last evaluation
   double volume(int i) const
@@ -136,7 +138,10 @@ class PairSPHTait : public Pair {
   }
 
   // d rho/dt goes to atom->drho with the forces; to be asked for in init()
-  void want_density_rate() { fluid->model.wants_rate = true; }
+  void want_density_rate()
+  {
+    fluid->model.also = std::max(fluid->model.also, sphcloth::Also::RATE);
+  }
 
   // Time that has passed since the last evaluation, for a density that follows its rate
   void advance(double dt) { elapsed += dt; }

@@ -24,6 +24,7 @@ void SPHMaterials::allocate()
   const int n = atom->ntypes + 1;
   types.assign(n, TypeData());
   pairs.assign(n * n, PairData());
+  unsettle();
 }
 
 const SPHMaterials::PairData &SPHMaterials::said(int i, int j) const
@@ -37,6 +38,7 @@ const SPHMaterials::PairData &SPHMaterials::said(int i, int j) const
 
 void SPHMaterials::read(int narg, char **arg, int **setflag)
 {
+  unsettle();
   if (narg < 3) utils::missing_cmd_args(FLERR, COEFF, error);
   const int n = atom->ntypes + 1;
   int ilo, ihi, jlo, jhi;
@@ -157,7 +159,7 @@ SPHMaterials::PairData SPHMaterials::read_pair(ArgReader &args) const
    what follows for a pair
 ------------------------------------------------------------------------- */
 
-double SPHMaterials::support(int i, int j) const
+double SPHMaterials::find_support(int i, int j) const
 {
   if (said(i, j).support > 0.0) return said(i, j).support;
   if (i == j) return default_support;
@@ -165,13 +167,32 @@ double SPHMaterials::support(int i, int j) const
   return is_fluid(i) ? support(i, i) : support(j, j);
 }
 
-double SPHMaterials::viscosity(int i) const
+double SPHMaterials::find_viscosity(int i) const
 {
   // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2))
   const TypeData &t = types[i];
   const double artificial =
       t.alpha * t.eos.sound_speed() * 0.5 * support(i, i) / (2.0 * (domain->dimension + 2));
   return t.nu + artificial;
+}
+
+void SPHMaterials::settle()
+{
+  unsettle();
+  const int n = static_cast<int>(types.size());
+  std::vector<double> radii(n * n, 0.0), nus(n, 0.0);
+  for (int i = 1; i < n; i++) {
+    if (is_fluid(i)) nus[i] = find_viscosity(i);
+    for (int j = 1; j < n; j++) radii[i * n + j] = find_support(i, j);
+  }
+  supports = std::move(radii);
+  viscosities = std::move(nus);
+}
+
+void SPHMaterials::unsettle()
+{
+  supports.clear();
+  viscosities.clear();
 }
 
 // What the user did not say of a pair: the mean of two fluids, the fluid's own at a boundary.

@@ -42,9 +42,15 @@ class SPHMaterials : protected Pointers {
   {
     return is_boundary(i) && types[i].pressure == Pressure::EXTRAPOLATE;
   }
-  double support(int i, int j) const;
+  double support(int i, int j) const
+  {
+    return supports.empty() ? find_support(i, j) : supports[i * types.size() + j];
+  }
   // laminar and artificial together
-  double viscosity(int i) const;
+  double viscosity(int i) const { return viscosities.empty() ? find_viscosity(i) : viscosities[i]; }
+  // keeps both at hand, until something is said anew
+  void settle();
+  void unsettle();
   double nu(int i, int j) const;
   double alpha(int i, int j) const;
   // one pair, with the kernel's scale
@@ -67,6 +73,10 @@ class SPHMaterials : protected Pointers {
   std::vector<TypeData> types;
   std::vector<PairData> pairs;    // (ntypes+1)^2, I <= J
 
+  std::vector<double> supports, viscosities;    // empty unless settled
+
+  double find_support(int i, int j) const;
+  double find_viscosity(int i) const;
   const PairData &said(int i, int j) const;
   // the fluid of a pair: its own, or the partner's of a boundary
   const TypeData &fluid_of(int i, int j) const { return types[is_fluid(i) ? i : j]; }

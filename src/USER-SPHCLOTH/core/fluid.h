@@ -30,6 +30,9 @@ enum class Friction : int { NONE, ARTIFICIAL, ANY };
 // whom forces are for
 enum class On { ALL, FLUID, BOUNDARIES };
 
+// what is found beside the forces: d rho/dt, the speed at which the fastest neighbour comes near
+enum class Also : int { NOTHING, RATE, RATE_AND_APPROACH };
+
 // one pair of types
 
 struct PairTerms {
@@ -45,7 +48,7 @@ struct PairTerms {
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
-  bool wants_rate = false;    // d rho/dt beside the forces
+  Also also = Also::NOTHING;
   std::vector<Role> role;          // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
@@ -62,6 +65,7 @@ struct Particles {
   const double *pressure = nullptr;    // p / rho^2
   double *rho = nullptr;
   double *f = nullptr, *drho = nullptr;    // what forces() adds to
+  double *approach = nullptr;              // of the fluid, what it finds if asked
   double force_unit = 1.0;                 // of mass times acceleration
   const Sides *sides = nullptr;    // for new lists; null: there are no sheets
   double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
@@ -75,6 +79,7 @@ struct Particles {
 struct Acceleration {
   double x = 0.0, y = 0.0, z = 0.0;
   double drho = 0.0;    // d rho / dt
+  double approach = 0.0;    // the largest speed of a neighbour inside the support, 0 if all recede
   double virial[6] = {};    // half of sum r_ij f_ij: xx, yy, zz, xy, xz, yz
 };
 
@@ -137,7 +142,7 @@ class Fluid {
   // Records density, volume, velocity and pressure of all particles.
   virtual void record(const Particles &) = 0;
 
-  // (2): adds force and, if wanted, d rho/dt of all active owned particles
+  // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
   virtual void forces(const Particles &, On) = 0;
 
   // Impulses of particles that take steps of their own, given to both partners of a pair: instead of
@@ -147,10 +152,6 @@ class Fluid {
   virtual void record_impulses(const Particles &, const double *pressure_time,
                                const double *span) = 0;
   virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;
-
-  // The largest speed at which a neighbour comes near, of every active fluid particle; of the last
-  // record()
-  virtual void approach_speeds(double *speed) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);

@@ -56,7 +56,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   void forces(const Particles &, On) override;
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
   void impulses(const Particles &, const std::vector<int> &slots) override;
-  void approach_speeds(double *speed) override { all_approaches(speed); }
   void virials(const Particles &, Receiver, void *context) override;
   double lattice_sum(double support, double spacing) const override;
   double bytes() const override;
@@ -81,11 +80,14 @@ template <class K, class P> class FluidLoops : public Fluid {
     double equal = -1.0;    // the mass that all of mass[] hold
   };
 
-  template <bool RATE, bool VIRIAL> struct Sums {
+  template <Also ALSO, bool VIRIAL> struct Sums {
     LaneSum<LANES> x, y, z, drho, virial[VIRIAL ? 6 : 0];
+    alignas(64) Real approach_sq[LANES] = {};
     Acceleration total() const
     {
-      Acceleration a{x.total(), y.total(), z.total(), drho.total(), {}};
+      Acceleration a{x.total(), y.total(), z.total(), drho.total(), 0.0, {}};
+      if (ALSO == Also::RATE_AND_APPROACH)
+        a.approach = std::sqrt(*std::max_element(approach_sq, approach_sq + LANES));
       if (VIRIAL)
         for (int m = 0; m < 6; m++) a.virial[m] = 0.5 * virial[m].total();
       return a;
@@ -103,10 +105,11 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   // PairTerms in the precision of the loops
   struct Terms {
-    Real inv_support, f, nu, monaghan, soft, rho0, stiffness, diffusion;
+    Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
     explicit Terms(const PairTerms &t) :
-        inv_support(t.kernel.inv_support), f(t.kernel.f), nu(t.nu), monaghan(t.monaghan),
-        soft(t.soft), rho0(t.rho0), stiffness(t.stiffness), diffusion(t.diffusion)
+        inv_support(t.kernel.inv_support), support_sq(t.kernel.support_sq), f(t.kernel.f), nu(t.nu),
+        monaghan(t.monaghan), soft(t.soft), rho0(t.rho0), stiffness(t.stiffness),
+        diffusion(t.diffusion)
     {
     }
   };
@@ -123,7 +126,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   void place_all(const Particles &, const std::array<double, 3> &origin,
                  const std::array<double, 3> &per_quantum);
   void record_all(const Particles &);
-  void all_approaches(double *speed);
   void all_density_gradients(const Particles &, double *gradient);
   template <bool DIFFUSION> void all_density_rates(const Particles &, double back, double *rate);
 
@@ -138,23 +140,24 @@ template <class K, class P> class FluidLoops : public Fluid {
   void fill_spans(Columns &, const int *near) const;
   Coordinate beyond(const Site &, Real inv_support) const;
 
-  template <bool RATE, bool VIRIAL>
-  static void add(Sums<RATE, VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz,
+  template <Also ALSO, bool VIRIAL>
+  static void add(Sums<ALSO, VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz,
                   Real rate, Real dx, Real dy, Real dz);
+  template <Also ALSO, bool VIRIAL>
+  static void meet(Sums<ALSO, VIRIAL> &, int lane, Real v_dot_r, Real r_sq, Real support_sq);
   static void apply(const Particles &, int i, bool fluid, const Acceleration &);
-  template <Friction F, bool RATE, bool VIRIAL>
+  template <Friction F, Also ALSO, bool VIRIAL>
   void all_forces(const Particles &, On, Receiver, void *);
-  template <bool RATE> void forces_and_rates(const Particles &, On);
+  template <Also ALSO> void forces_and(const Particles &, On);
   template <Friction F> void all_impulses(const Particles &, const std::vector<int> &slots);
-  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
   void all_on(const Particles &, int slot, int t, Columns &, Receiver, void *);
-  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
   void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                      Columns &, Sums<RATE, VIRIAL> &) const;
-  template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
+                      Columns &, Sums<ALSO, VIRIAL> &) const;
+  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
   void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                       Columns &, Sums<RATE, VIRIAL> &) const;
-  double approach_sq(int i, const Stretch &, Real inv_support, Columns &) const;
+                       Columns &, Sums<ALSO, VIRIAL> &) const;
   Differences density_differences(const Particles &, int i, const Stretch &, const Terms &,
                                   double equal, Columns &) const;
   template <bool FROM_BOUNDARY, bool DIFFUSION>
@@ -351,15 +354,15 @@ void FluidLoops<K, P>::volumes(const Particles &p, int type, double *amount)
 // one pair: its force and rate per the amount of the neighbour, in lane m
 
 template <class K, class P>
-template <bool RATE, bool VIRIAL>
-SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<RATE, VIRIAL> &s, int m, double amount, Real fx,
+template <Also ALSO, bool VIRIAL>
+SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<ALSO, VIRIAL> &s, int m, double amount, Real fx,
                                            Real fy, Real fz, Real rate, Real dx, Real dy, Real dz)
 {
   const double x = amount * fx, y = amount * fy, z = amount * fz;
   s.x.of[m] += x;
   s.y.of[m] += y;
   s.z.of[m] += z;
-  if (RATE) s.drho.of[m] += amount * rate;
+  if (ALSO != Also::NOTHING) s.drho.of[m] += amount * rate;
   if (VIRIAL) {
     s.virial[0].of[m] += dx * x;
     s.virial[1].of[m] += dy * y;
@@ -370,15 +373,28 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<RATE, VIRIAL> &s, int m, double 
   }
 }
 
+// The square of the largest speed at which a neighbour inside the support comes near
+
+template <class K, class P>
+template <Also ALSO, bool VIRIAL>
+SPHCLOTH_INLINE void FluidLoops<K, P>::meet(Sums<ALSO, VIRIAL> &s, int m, Real v_dot_r, Real r_sq,
+                                            Real support_sq)
+{
+  if (ALSO != Also::RATE_AND_APPROACH) return;
+  const Real closing = std::min(v_dot_r, Real(0));
+  const Real speed_sq = closing * closing / std::max(r_sq, std::numeric_limits<Real>::min());
+  s.approach_sq[m] = std::max(s.approach_sq[m], r_sq < support_sq ? speed_sq : Real(0));
+}
+
 // Laminar viscosity: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
 // Artificial viscosity: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; it adds to the
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                 double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
+                                 double equal, Columns &c, Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
@@ -410,7 +426,8 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
         if (F == Friction::ANY) friction = mean * slope * t.nu * both / (site.own * c.own[k]);
       }
       const Real push = -slope * along;
-      add<RATE, VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
+      meet(sums, k, v_dot_r, r_sq, t.support_sq);
+      add<ALSO, VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
                         push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
     }
   }
@@ -423,10 +440,10 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 // boundary, its neighbours are fluid, the result is a force per volume.
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
+template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
 SPHCLOTH_INLINE void
 FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                  double equal, Columns &c, Sums<RATE, VIRIAL> &sums) const
+                                  double equal, Columns &c, Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
@@ -462,8 +479,9 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
         if (F == Friction::ANY) friction = span * slope * t.nu * Real(2) / rho;
       }
       const Real push = -slope * along;
+      if (!ON_BOUNDARY) meet(sums, k, v_dot_r, r_sq, t.support_sq);
       const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
-      add<RATE, VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
+      add<ALSO, VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
                         push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
     }
   }
@@ -472,14 +490,14 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
 // everything that one particle feels
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL, bool IMPULSE>
+template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
 SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int t, Columns &c,
                                               Receiver receive, void *context)
 {
   const int i = lists.at(slot);
   const bool fluid = is_fluid(t);
   lists.refresh(slot);
-  Sums<RATE, VIRIAL> sums;
+  Sums<ALSO, VIRIAL> sums;
   int met = 0;
   for (int other = 1; other <= model.n_types; other++) {
     const Stretch found = lists(slot, other);
@@ -488,14 +506,15 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
     const Terms terms(model.pair(t, other));
     const double equal = model.mass[other];
     if (fluid && is_fluid(other))
-      fluid_on_fluid<F, RATE, VIRIAL, IMPULSE>(p, i, found, terms, equal, c, sums);
+      fluid_on_fluid<F, ALSO, VIRIAL, IMPULSE>(p, i, found, terms, equal, c, sums);
     else if (fluid)
-      across_boundary<F, RATE, VIRIAL, IMPULSE, false>(p, i, found, terms, equal, c, sums);
+      across_boundary<F, ALSO, VIRIAL, IMPULSE, false>(p, i, found, terms, equal, c, sums);
     else
-      across_boundary<F, RATE, VIRIAL, IMPULSE, true>(p, i, found, terms, equal, c, sums);
+      across_boundary<F, ALSO, VIRIAL, IMPULSE, true>(p, i, found, terms, equal, c, sums);
   }
-  if (!met) return;
   const Acceleration a = sums.total();
+  if (ALSO == Also::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
+  if (!met) return;
   if (VIRIAL)
     receive(context, i, a);
   else
@@ -503,7 +522,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
 }
 
 template <class K, class P>
-template <Friction F, bool RATE, bool VIRIAL>
+template <Friction F, Also ALSO, bool VIRIAL>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, On whom,
                                                         Receiver receive, void *context)
 {
@@ -511,7 +530,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, On w
   for (int t = 1; t <= model.n_types; t++) {
     if (whom == (is_fluid(t) ? On::BOUNDARIES : On::FLUID)) continue;
     for (const int slot : selection.of(t))
-      all_on<F, RATE, VIRIAL, false>(p, slot, t, c, receive, context);
+      all_on<F, ALSO, VIRIAL, false>(p, slot, t, c, receive, context);
   }
 }
 
@@ -522,7 +541,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_impulses(const Particles &p,
 {
   Columns c;
   for (const int slot : slots)
-    all_on<F, false, false, true>(p, slot, p.type[lists.at(slot)], c, nullptr, nullptr);
+    all_on<F, Also::NOTHING, false, true>(p, slot, p.type[lists.at(slot)], c, nullptr, nullptr);
 }
 
 template <class K, class P>
@@ -558,69 +577,22 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
 
 template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p, On whom)
 {
-  if (model.wants_rate)
-    forces_and_rates<true>(p, whom);
-  else
-    forces_and_rates<false>(p, whom);
+  switch (model.also) {
+    case Also::NOTHING: return forces_and<Also::NOTHING>(p, whom);
+    case Also::RATE: return forces_and<Also::RATE>(p, whom);
+    case Also::RATE_AND_APPROACH: return forces_and<Also::RATE_AND_APPROACH>(p, whom);
+  }
 }
 
 template <class K, class P>
-template <bool RATE>
-void FluidLoops<K, P>::forces_and_rates(const Particles &p, On whom)
+template <Also ALSO>
+void FluidLoops<K, P>::forces_and(const Particles &p, On whom)
 {
   switch (model.friction) {
-    case Friction::NONE: return all_forces<Friction::NONE, RATE, false>(p, whom, nullptr, nullptr);
+    case Friction::NONE: return all_forces<Friction::NONE, ALSO, false>(p, whom, nullptr, nullptr);
     case Friction::ARTIFICIAL:
-      return all_forces<Friction::ARTIFICIAL, RATE, false>(p, whom, nullptr, nullptr);
-    case Friction::ANY: return all_forces<Friction::ANY, RATE, false>(p, whom, nullptr, nullptr);
-  }
-}
-
-// Square of the largest -v_ij . r_ij / r_ij over the neighbours inside the support, 0 if all recede
-
-template <class K, class P>
-SPHCLOTH_INLINE double FluidLoops<K, P>::approach_sq(int i, const Stretch &near, Real inv_support,
-                                                     Columns &c) const
-{
-  const Site site = sites[i];
-  const Motion motion = motions[i];
-  const Coordinate far = beyond(site, inv_support);
-  const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
-  const Real support_sq = Real(1) / (inv_support * inv_support);
-  alignas(64) Real most[LANES] = {};
-  for (int from = 0; from < near.n; from += LANES) {
-    fill(c, near, from, far);
-#pragma omp simd
-    for (int k = 0; k < LANES; k++) {
-      const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
-                 dz = P::difference(site.z, c.z[k], qz);
-      const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-      const Real r_sq = dx * dx + dy * dy + dz * dz;
-      const Real closing = std::min(du * dx + dv * dy + dw * dz, Real(0));
-      const Real speed_sq = closing * closing / std::max(r_sq, std::numeric_limits<Real>::min());
-      most[k] = std::max(most[k], r_sq < support_sq ? speed_sq : Real(0));
-    }
-  }
-  return *std::max_element(most, most + LANES);
-}
-
-template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(double *speed)
-{
-  Columns c;
-  for (int t = 1; t <= model.n_types; t++) {
-    if (!is_fluid(t)) continue;
-    for (const int slot : selection.of(t)) {
-      const int i = lists.at(slot);
-      double most = 0.0;
-      for (int other = 1; other <= model.n_types; other++) {
-        const Stretch near = lists(slot, other);
-        if (near.n == 0) continue;
-        const Real inv_support = static_cast<Real>(model.pair(t, other).kernel.inv_support);
-        most = std::max(most, approach_sq(i, near, inv_support, c));
-      }
-      speed[i] = std::sqrt(most);
-    }
+      return all_forces<Friction::ARTIFICIAL, ALSO, false>(p, whom, nullptr, nullptr);
+    case Friction::ANY: return all_forces<Friction::ANY, ALSO, false>(p, whom, nullptr, nullptr);
   }
 }
 
@@ -630,7 +602,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_approaches(double *speed)
 template <class K, class P>
 void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
 {
-  all_forces<Friction::ANY, false, true>(p, On::ALL, receive, context);
+  all_forces<Friction::ANY, Also::NOTHING, true>(p, On::ALL, receive, context);
 }
 
 /* ----------------------------------------------------------------------

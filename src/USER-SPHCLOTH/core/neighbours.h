@@ -2,9 +2,9 @@
 //
 // Particles are sorted by type and then by cell, cells in rows along x, so that the neighbours of a
 // particle lie in a few contiguous runs of single-precision coordinates: lists are built several
-// times faster than over linked bins.  A pair of types without a reach costs nothing, and the
-// neighbours of a particle come grouped by their type, so that a loop over one group has one set of
-// coefficients.
+// times faster than over linked bins.  Each type has a grid of its own, as fine as its particles look
+// among each other.  A pair of types without a reach costs nothing, and the neighbours of a particle
+// come grouped by their type, so that a loop over one group has one set of coefficients.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOURS_H
 #define SPHCLOTH_CORE_NEIGHBOURS_H
@@ -23,19 +23,30 @@ namespace sphcloth {
 
 // Where particles are, to count coordinates from the centre in single precision
 
-struct Bounds {
-  std::array<double, 3> lo, hi, centre;
+struct Extent {
+  std::array<double, 3> lo, hi;
+
+  Extent()
+  {
+    lo.fill(std::numeric_limits<double>::max());
+    hi.fill(std::numeric_limits<double>::lowest());
+  }
+  void include(const double *x)
+  {
+    for (int d = 0; d < 3; d++) {
+      lo[d] = std::min(lo[d], x[d]);
+      hi[d] = std::max(hi[d], x[d]);
+    }
+  }
+};
+
+struct Bounds : Extent {
+  std::array<double, 3> centre;
   double rounding;    // what that may do to a distance
 
   Bounds(const double *x, int n)
   {
-    lo.fill(std::numeric_limits<double>::max());
-    hi.fill(std::numeric_limits<double>::lowest());
-    for (int i = 0; i < n; i++)
-      for (int d = 0; d < 3; d++) {
-        lo[d] = std::min(lo[d], x[3 * i + d]);
-        hi[d] = std::max(hi[d], x[3 * i + d]);
-      }
+    for (int i = 0; i < n; i++) include(x + 3 * i);
     double extent = 0.0;
     for (int d = 0; d < 3; d++) {
       centre[d] = 0.5 * (lo[d] + hi[d]);
@@ -141,18 +152,37 @@ class NeighbourLists {
   }
 
  private:
+  // cells of one type
+
   struct Grid {
-    std::array<double, 3> lo, centre, inv_side;
-    std::array<int, 3> n;
-    double slack;    // what rounding to single precision may do to a distance
+    std::array<double, 3> lo{}, hi{};
+    std::array<int, 3> n{1, 1, 1};
+    double inv_side = 0.0;
+    std::int64_t first = 0;    // cell, of all types
+
     std::int64_t cells() const { return static_cast<std::int64_t>(n[0]) * n[1] * n[2]; }
+    std::int64_t row(int cy, int cz) const
+    {
+      return first + (static_cast<std::int64_t>(cz) * n[1] + cy) * n[0];
+    }
+    int along(int d, double x) const
+    {
+      // what is not a number lies in the first
+      return static_cast<int>(std::min(std::max(0.0, (x - lo[d]) * inv_side), n[d] - 1.0));
+    }
+    std::int64_t at(const double *x) const
+    {
+      return row(along(1, x[1]), along(2, x[2])) + along(0, x[0]);
+    }
   };
 
-  Grid grid;
+  std::vector<Grid> grids;    // by type
+  std::array<double, 3> centre;
+  double slack = 0.0;    // what rounding to single precision may do to a distance
   std::vector<int> slots_of, order;
   std::vector<int> place;    // of a slot among the sorted particles
-  std::vector<int> cell;    // of each particle, with its type
-  std::vector<int> cell_start;    // [type][cell] and one more
+  std::vector<int> cell;    // of each particle
+  std::vector<int> cell_start;    // of all types, and one more
   std::vector<int> id;    // sorted particles: index, position
   AlignedVector<float> px, py, pz;
   std::vector<int> candidate;    // of one particle
@@ -160,28 +190,51 @@ class NeighbourLists {
   Stretches lists;
   const Sides *sides = nullptr;    // during a build
 
-  void set_grid(const double *x, int n_all, double reach)
+  // Half of how far a type looks among its own, or, if it does not, of what others see of it
+
+  static double cell_side(int t, int n_types, const double *reach)
   {
-    const Bounds bounds(x, n_all);
-    double side = 0.5 * reach;
-    const auto cells_along = [&](int d) {
-      return 1.0 + std::floor((bounds.hi[d] - bounds.lo[d]) / side);
-    };
-    // few particles far apart: larger cells, not more of them
-    while (cells_along(0) * cells_along(1) * cells_along(2) > 4.0 * n_all + 64.0) side *= 1.3;
-    grid.lo = bounds.lo;
-    grid.centre = bounds.centre;
-    grid.slack = bounds.rounding;
-    for (int d = 0; d < 3; d++) {
-      grid.inv_side[d] = 1.0 / side;
-      grid.n[d] = static_cast<int>(cells_along(d));
-    }
+    if (const double own = reach[t * (n_types + 1) + t]; own > 0.0) return 0.5 * own;
+    double least = std::numeric_limits<double>::max();
+    for (int other = 1; other <= n_types; other++)
+      if (const double far = reach[other * (n_types + 1) + t]; far > 0.0)
+        least = std::min(least, far);
+    return 0.5 * least;
   }
 
-  int cell_along(int d, double x) const
+  // returns how many cells there are
+
+  std::int64_t set_grids(const double *x, const int *type, int n_all, int n_types,
+                         const double *reach)
   {
-    const int c = static_cast<int>((x - grid.lo[d]) * grid.inv_side[d]);
-    return std::clamp(c, 0, grid.n[d] - 1);
+    std::vector<Extent> extents(n_types + 1);
+    std::vector<int> count(n_types + 1, 0);
+    for (int i = 0; i < n_all; i++) {
+      extents[type[i]].include(x + 3 * i);
+      count[type[i]]++;
+    }
+    grids.assign(n_types + 1, Grid());
+    std::int64_t cells = 0;
+    for (int t = 1; t <= n_types; t++) {
+      grids[t].first = cells;
+      set_grid(grids[t], extents[t], count[t], cell_side(t, n_types, reach));
+      cells += grids[t].cells();
+    }
+    return cells;
+  }
+
+  static void set_grid(Grid &grid, const Extent &extent, int n, double side)
+  {
+    if (n == 0) return;
+    const auto cells_along = [&](int d) {
+      return 1.0 + std::floor((extent.hi[d] - extent.lo[d]) / side);
+    };
+    // few particles far apart: larger cells, not more of them
+    while (cells_along(0) * cells_along(1) * cells_along(2) > 4.0 * n + 64.0) side *= 1.3;
+    grid.lo = extent.lo;
+    grid.hi = extent.hi;
+    grid.inv_side = 1.0 / side;
+    for (int d = 0; d < 3; d++) grid.n[d] = static_cast<int>(cells_along(d));
   }
 
   // counting sort by type and cell
@@ -189,22 +242,19 @@ class NeighbourLists {
   void sort_into_cells(const double *x, const int *type, int n_owned, int n_all, int n_types,
                        const double *reach)
   {
-    double longest = 0.0;
-    for (int k = 0; k < (n_types + 1) * (n_types + 1); k++) longest = std::max(longest, reach[k]);
+    const double longest = *std::max_element(reach, reach + (n_types + 1) * (n_types + 1));
     order.clear();
     place.clear();
     slots_of.assign(n_types + 2, 0);
     if (n_all == 0 || longest == 0.0) return;
-    set_grid(x, n_all, longest);
+    const Bounds bounds(x, n_all);
+    centre = bounds.centre;
+    slack = bounds.rounding;
 
-    const std::int64_t cells = grid.cells();
+    cell_start.assign(set_grids(x, type, n_all, n_types, reach) + 1, 0);
     cell.resize(n_all);
-    cell_start.assign(cells * n_types + 1, 0);
     for (int i = 0; i < n_all; i++) {
-      const int cx = cell_along(0, x[3 * i]), cy = cell_along(1, x[3 * i + 1]);
-      const int cz = cell_along(2, x[3 * i + 2]);
-      cell[i] = static_cast<int>(cells * (type[i] - 1) +
-                                 (static_cast<std::int64_t>(cz) * grid.n[1] + cy) * grid.n[0] + cx);
+      cell[i] = static_cast<int>(grids[type[i]].at(x + 3 * i));
       cell_start[cell[i]]++;
     }
     int before = 0;
@@ -224,9 +274,9 @@ class NeighbourLists {
     id.resize(n_all + LANES);
     for (int p = 0; p < n_all; p++) {
       const int i = id[p];
-      px[p] = static_cast<float>(x[3 * i] - grid.centre[0]);
-      py[p] = static_cast<float>(x[3 * i + 1] - grid.centre[1]);
-      pz[p] = static_cast<float>(x[3 * i + 2] - grid.centre[2]);
+      px[p] = static_cast<float>(x[3 * i] - centre[0]);
+      py[p] = static_cast<float>(x[3 * i + 1] - centre[1]);
+      pz[p] = static_cast<float>(x[3 * i + 2] - centre[2]);
       if (i >= n_owned) continue;
       order.push_back(i);
       place.push_back(p);
@@ -241,7 +291,7 @@ class NeighbourLists {
       lists.close(0);
       return;
     }
-    const double far = reach + grid.slack;
+    const double far = reach + slack;
     const int n = candidates(slot, other, far, same_type);
     if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
     lists.close(compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
@@ -261,20 +311,20 @@ class NeighbourLists {
   SPHCLOTH_MULTIVERSION int candidates(int slot, int other, double reach, bool same_type)
   {
     const int self = place[slot];
+    const Grid &grid = grids[other];
     const float xi = px[self], yi = py[self], zi = pz[self];
     std::array<int, 3> from, to;
     const std::array<float, 3> at{xi, yi, zi};
     for (int d = 0; d < 3; d++) {
-      const double x = at[d] + grid.centre[d];
-      from[d] = cell_along(d, x - reach);
-      to[d] = cell_along(d, x + reach);
+      const double x = at[d] + centre[d];
+      if (x + reach < grid.lo[d] || x - reach > grid.hi[d]) return 0;
+      from[d] = grid.along(d, x - reach);
+      to[d] = grid.along(d, x + reach);
     }
-    const std::int64_t block = grid.cells() * (other - 1);
     int n = 0;
     for (int cz = from[2]; cz <= to[2]; cz++)
       for (int cy = from[1]; cy <= to[1]; cy++) {
-        const std::int64_t row =
-            block + (static_cast<std::int64_t>(cz) * grid.n[1] + cy) * grid.n[0];
+        const std::int64_t row = grid.row(cy, cz);
         const int begin = cell_start[row + from[0]], end = cell_start[row + to[0] + 1];
         const std::size_t need = n + whole_groups(end - begin) + 2 * LANES;
         if (key.size() < need) {

@@ -6,6 +6,7 @@
 #include "atom_tools.h"
 #include "comm.h"
 #include "fix_sph_integrate.h"
+#include "neighbor.h"
 #include "pair_sph_tait.h"
 #include "update.h"
 
@@ -21,9 +22,9 @@ static constexpr double OVERHEAD = 0.1;
 // and what projection and contact of a vertex cost in it
 static constexpr int UPDATES_PER_VERTEX = 2;
 
-BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, double **&rows) :
+BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, ParticleColumns &rows) :
     Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), finest_vertex(0),
-    ideal(0.0), stage(LEVELS)
+    ideal(0.0), stage(LEVELS), known(false)
 {
 }
 
@@ -31,6 +32,7 @@ void BlockSteps::init(PairSPHTait *style)
 {
   pair = style;
   pair->set_blocks(this);
+  known = false;
   apart = options.ratio == 4 ? 2 : 1;
 }
 
@@ -40,16 +42,35 @@ void BlockSteps::make_room()
   for (std::vector<int> *list : {&level, &pace, &mark}) list->resize(n, 0);
   for (std::vector<double> *list : {&span, &impulse, &wanted}) list->resize(n, 0.0);
   for (std::vector<double> *list : {&from_particles, &handed}) list->resize(3 * n, 0.0);
+  if (neighbor->ago == 0) known = false;
+}
+
+// what is kept of those who are not updated, where it is not known any more
+
+void BlockSteps::know_all()
+{
+  if (known) return;
+  known = true;
+  boundaries.clear();
+  impelled.clear();
+  for (int i = 0; i < atom->nlocal; i++) {
+    mark[i] = UNTOUCHED;
+    if (pair->is_fluid(atom->type[i]))
+      level[i] = static_cast<int>(rows[LEVEL][i]);
+    else
+      boundaries.push_back(i);
+    rest(i);
+  }
 }
 
 // It takes part in the shortest step until it chooses its own.
 
-void BlockSteps::set_new(double *row) const
+void BlockSteps::set_new(int i)
 {
-  row[LEVEL] = at.deepest;
-  row[BEFORE] = Pace::FIRST;
-  row[CALL] = NEW;
-  if (at.chosen) begin_own_step(row);
+  rows[LEVEL][i] = at.deepest;
+  rows[BEFORE][i] = Pace::FIRST;
+  rows[CALL][i] = NEW;
+  if (at.chosen) begin_own_step(i);
 }
 
 /* ----------------------------------------------------------------------
@@ -94,10 +115,11 @@ void BlockSteps::choose()
 void BlockSteps::want_steps()
 {
   for (const int i : pair->active_particles()) {
-    const double before = at.line.step(static_cast<int>(rows[i][LEVEL]));
-    const StepLimit own = fix->bounded_limit(i, &rows[i][EXTERNAL], before);
+    const double before = at.line.step(static_cast<int>(rows[LEVEL][i]));
+    const StepLimit own = fix->bounded_limit(
+        i, {rows[EXTERNAL][i], rows[EXTERNAL + 1][i], rows[EXTERNAL + 2][i]}, before);
     wanted[i] = own.dt;
-    rows[i][BY] = static_cast<double>(own.by);
+    rows[BY][i] = static_cast<double>(own.by);
   }
 }
 
@@ -125,7 +147,7 @@ void BlockSteps::fit_root(double best, double least)
   while (best > remaining && best > least) best *= 0.5;
   const double root = best <= least ? step_towards(remaining, best) : best;
   for (const int i : pair->active_particles())
-    rows[i][UNTIL] = (rows[i][UNTIL] - TimeLine::ticks(0)) * at.line.root / root;
+    rows[UNTIL][i] = (rows[UNTIL][i] - TimeLine::ticks(0)) * at.line.root / root;
   at.line = {root, 0};
   coarsest = 0;
   at.reaches_output = root == remaining;
@@ -135,9 +157,9 @@ void BlockSteps::fit_root(double best, double least)
 void BlockSteps::choose_levels()
 {
   for (const int i : pair->active_particles()) {
-    double *row = rows[i];
-    row[BEFORE] = row[CALL] == NEW ? Pace::FIRST : row[CALL] == WOKEN ? Pace::BROKEN : row[LEVEL];
-    row[LEVEL] = std::max(coarsest, at.line.level_of(wanted[i]));
+    const double call = rows[CALL][i];
+    rows[BEFORE][i] = call == NEW ? Pace::FIRST : call == WOKEN ? Pace::BROKEN : rows[LEVEL][i];
+    rows[LEVEL][i] = std::max(coarsest, at.line.level_of(wanted[i]));
   }
 }
 
@@ -154,11 +176,11 @@ void BlockSteps::find_step_of_scene()
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
   for (const int i : pair->active_particles()) {
-    const int own = static_cast<int>(rows[i][LEVEL]);
+    const int own = static_cast<int>(rows[LEVEL][i]);
     slowest = std::min(slowest, own);
-    finest = std::max(finest, LIMITS * own + static_cast<int>(rows[i][BY]));
-    until[0] = std::max(until[0], -rows[i][UNTIL]);
-    until[1] = std::max(until[1], rows[i][UNTIL]);
+    finest = std::max(finest, LIMITS * own + static_cast<int>(rows[BY][i]));
+    until[0] = std::max(until[0], -rows[UNTIL][i]);
+    until[1] = std::max(until[1], rows[UNTIL][i]);
   }
   const double mine[5] = {static_cast<double>(finest), -static_cast<double>(slowest), until[0],
                           until[1], static_cast<double>(of_vertices)};
@@ -178,16 +200,19 @@ void BlockSteps::find_step_of_scene()
 
 void BlockSteps::respect_neighbours()
 {
-  for (int i = 0; i < atom->nlocal; i++)
-    level[i] = pair->is_fluid(atom->type[i]) ? static_cast<int>(rows[i][LEVEL]) : vertex_level(i);
-  for (const int i : pair->active_particles())
-    if (pair->is_beside_mesh(i)) rows[i][LEVEL] = level[i] = std::max(level[i], finest_vertex);
+  know_all();
+  for (const int i : boundaries) level[i] = vertex_level(i);
+  for (const int i : pair->active_particles()) {
+    level[i] = static_cast<int>(rows[LEVEL][i]);
+    if (pair->is_beside_mesh(i)) rows[LEVEL][i] = level[i] = std::max(level[i], finest_vertex);
+  }
   stage = LEVELS;
   comm->forward_comm(fix, 1);
   NearLists &lists = pair->order();
   for (const int i : pair->active_particles())
     if (lists.greatest(lists.slot(i), level.data()) - apart > level[i])
-      rows[i][LEVEL] = std::min(at.deepest, level_beside(i));
+      rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
+  for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
 }
 
 int BlockSteps::level_beside(int i)
@@ -221,9 +246,9 @@ void BlockSteps::book()
 {
   const double *term = pair->pressure_term();
   for (const int i : pair->active_particles()) {
-    begin_own_step(rows[i]);
-    rows[i][TERM] = term[i];
-    const double own = at.line.step(static_cast<int>(rows[i][LEVEL]));
+    begin_own_step(i);
+    rows[TERM][i] = term[i];
+    const double own = at.line.step(static_cast<int>(rows[LEVEL][i]));
     fix->set_own_step(i, own);
     ideal += own / wanted[i];
   }
@@ -232,19 +257,19 @@ void BlockSteps::book()
 // Its impulses reach to the middle of the step that begins; before its first step, to its begin less
 // a half, as if steps of the same length came before.
 
-void BlockSteps::begin_own_step(double *row) const
+void BlockSteps::begin_own_step(int i)
 {
-  const double now = static_cast<double>(at.line.now), half = half_step(row);
-  const bool is_new = row[CALL] == NEW;
-  row[AHEAD] = is_new ? -half : row[UNTIL] - now;
-  row[TAKEN_BACK] = row[TERM] * std::max(0.0, row[AHEAD]);
-  row[UNTIL] = now + half;
-  row[CALL] = NONE;
+  const double now = static_cast<double>(at.line.now), half = half_step(i);
+  const bool is_new = rows[CALL][i] == NEW;
+  rows[AHEAD][i] = is_new ? -half : rows[UNTIL][i] - now;
+  rows[TAKEN_BACK][i] = rows[TERM][i] * std::max(0.0, rows[AHEAD][i]);
+  rows[UNTIL][i] = now + half;
+  rows[CALL][i] = NONE;
 }
 
-double BlockSteps::half_step(const double *row)
+double BlockSteps::half_step(int i) const
 {
-  return 0.5 * static_cast<double>(TimeLine::ticks(static_cast<int>(row[LEVEL])));
+  return 0.5 * static_cast<double>(TimeLine::ticks(static_cast<int>(rows[LEVEL][i])));
 }
 
 /* ----------------------------------------------------------------------
@@ -265,8 +290,8 @@ bool BlockSteps::is_slow(int i) const
 bool BlockSteps::rests_among_others(int i)
 {
   const double now = physical_time(update);
-  if (!is_slow(i)) rows[i][SINCE] = now;
-  if (now - rows[i][SINCE] < PATIENCE * fix->sound_time(i) || pair->feels_moving_wall(i))
+  if (!is_slow(i)) rows[SINCE][i] = now;
+  if (now - rows[SINCE][i] < PATIENCE * fix->sound_time(i) || pair->feels_moving_wall(i))
     return false;
   bool others = true;
   for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !inside_support(i, j)); });
@@ -279,8 +304,8 @@ void BlockSteps::fall_asleep()
   for (const int i : pair->active_particles())
     if (rests_among_others(i)) marked.push_back(i);
   for (const int i : marked) {
-    rows[i][LEVEL] = ASLEEP;
-    rows[i][SINCE] = physical_time(update);
+    rows[LEVEL][i] = level[i] = ASLEEP;
+    rows[SINCE][i] = physical_time(update);
     std::fill_n(atom->v[i], 3, 0.0);
   }
 }
@@ -295,7 +320,7 @@ void BlockSteps::wake_moved()
     if (!pair->is_fluid(atom->type[i]) || !sleeps(i)) continue;
     double change_sq = 0.0;
     for (int d = 0; d < 3; d++) {
-      const double change = atom->f[i][d] - rows[i][EXTERNAL + d];
+      const double change = atom->f[i][d] - rows[EXTERNAL + d][i];
       change_sq += change * change;
     }
     const double gain = PATIENCE * fix->sound_time(i) * fix->acceleration(i, std::sqrt(change_sq));
@@ -308,11 +333,11 @@ void BlockSteps::wake_moved()
 void BlockSteps::wake(int i)
 {
   if (sleeps(i)) {
-    rows[i][LEVEL] = at.deepest;
-    rows[i][CALL] = NEW;
-    rows[i][SINCE] = physical_time(update);
+    rows[LEVEL][i] = at.deepest;
+    rows[CALL][i] = NEW;
+    rows[SINCE][i] = physical_time(update);
   } else
-    rows[i][CALL] = WOKEN;
+    rows[CALL][i] = WOKEN;
 }
 
 void BlockSteps::wake_beside_moving_boundaries()
@@ -353,7 +378,7 @@ void BlockSteps::note_external_forces()
 {
   if (!needs_external()) return;
   for (const int i : pair->active_particles())
-    for (int d = 0; d < 3; d++) rows[i][EXTERNAL + d] = atom->f[i][d] - handed[3 * i + d];
+    for (int d = 0; d < 3; d++) rows[EXTERNAL + d][i] = atom->f[i][d] - handed[3 * i + d];
 }
 
 // Whose neighbours all take its step, and took the same before, has the force itself for all of its
@@ -364,7 +389,7 @@ void BlockSteps::share_impulses()
   measure_impulses();
   stage = IMPULSES;
   comm->forward_comm(fix, 3);
-  std::fill_n(mark.begin(), atom->nlocal + atom->nghost, UNTOUCHED);
+  std::fill_n(mark.begin() + atom->nlocal, atom->nghost, UNTOUCHED);
   marked.clear();
   slots.clear();
   for (const int i : pair->active_particles()) {
@@ -387,6 +412,7 @@ void BlockSteps::share_impulses()
 
 void BlockSteps::share_equally()
 {
+  known = false;
   pair->push_boundaries();
   const double times = at.span_of_all;
   if (times == 1.0) return;
@@ -413,24 +439,33 @@ void BlockSteps::measure_impulses()
 {
   const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
   const double *term = pair->pressure_term();
-  for (int i = 0; i < atom->nlocal; i++) {
-    const bool fluid = pair->is_fluid(atom->type[i]);
-    const bool asleep = fluid && sleeps(i);
-    // the pressure of a boundary, or of who sleeps, acts as long as its partner's
-    span[i] = asleep ? -1.0 : 0.0;
-    impulse[i] = fluid && !asleep ? 0.0 : term[i];
-    pace[i] = asleep ? Pace::of(0, Pace::SLEEPER)
-        : fluid      ? Pace::of(static_cast<int>(rows[i][LEVEL]), Pace::INACTIVE)
-                     : Pace::BOUNDARY;
-  }
-  for (const int i : pair->active_particles()) {
-    const double *row = rows[i];
-    if (sleeps(i)) continue;
-    const double half = half_step(row), ahead = row[AHEAD];
+  know_all();
+  for (const int i : impelled) rest(i);
+  for (const int i : boundaries) rest(i);
+  impelled = pair->active_particles();
+  for (const int i : impelled) {
+    if (sleeps(i)) {
+      rest(i);
+      continue;
+    }
+    const double half = half_step(i), ahead = rows[AHEAD][i];
     span[i] = std::max(0.0, half - ahead) / scene;
-    impulse[i] = ahead > 0.0 ? (half * term[i] - row[TAKEN_BACK]) / scene : span[i] * term[i];
-    pace[i] = Pace::of(static_cast<int>(row[LEVEL]), static_cast<int>(row[BEFORE]));
+    impulse[i] = ahead > 0.0 ? (half * term[i] - rows[TAKEN_BACK][i]) / scene : span[i] * term[i];
+    pace[i] = Pace::of(static_cast<int>(rows[LEVEL][i]), static_cast<int>(rows[BEFORE][i]));
   }
+}
+
+// Who is not updated has no impulse, but the pressure of a boundary, or of who sleeps, acts as long as
+// its partner's.
+
+void BlockSteps::rest(int i)
+{
+  const bool fluid = pair->is_fluid(atom->type[i]), asleep = fluid && sleeps(i);
+  span[i] = asleep ? -1.0 : 0.0;
+  impulse[i] = fluid && !asleep ? 0.0 : pair->pressure_term()[i];
+  pace[i] = asleep ? Pace::of(0, Pace::SLEEPER)
+      : fluid      ? Pace::of(static_cast<int>(rows[LEVEL][i]), Pace::INACTIVE)
+                   : Pace::BOUNDARY;
 }
 
 template <class Do> void BlockSteps::for_neighbours(int i, Do something)
@@ -480,8 +515,9 @@ void BlockSteps::wake_marked()
   for (const int i : marked) {
     const bool asleep = Pace::before(pace[i]) == Pace::SLEEPER;
     if (!asleep) slots.push_back(pair->order().slot(i));
-    const bool napped = asleep && now - rows[i][SINCE] > NAP * fix->sound_time(i);
+    const bool napped = asleep && now - rows[SINCE][i] > NAP * fix->sound_time(i);
     if (mark[i] & WAKE || napped) wake(i);
+    mark[i] = UNTOUCHED;
   }
 }
 
@@ -541,7 +577,7 @@ double BlockSteps::bytes() const
 {
   return static_cast<double>(sizeof(int)) *
       static_cast<double>(level.capacity() + pace.capacity() + mark.capacity() + marked.capacity() +
-                          slots.capacity()) +
+                          slots.capacity() + boundaries.capacity() + impelled.capacity()) +
       static_cast<double>(sizeof(double)) *
       static_cast<double>(span.capacity() + impulse.capacity() + wanted.capacity() +
                           from_particles.capacity() + handed.capacity());

@@ -16,6 +16,7 @@
 
 #include "core/criteria.h"
 #include "core/time_line.h"
+#include "particle_columns.h"
 
 #include <vector>
 
@@ -53,18 +54,18 @@ class BlockSteps : protected Pointers {
     double sleep = 0.0;
   } options;
 
-  // rows: [particle][N_COLUMNS], of the fix
-  BlockSteps(LAMMPS *, FixSPHIntegrate *, double **&rows);
+  // rows: what particles carry along, of the fix
+  BlockSteps(LAMMPS *, FixSPHIntegrate *, ParticleColumns &rows);
 
   void init(PairSPHTait *);
   void forget() { at = Place(); }
   bool begun() const { return at.line.root > 0.0; }
-  void set_new(double *row) const;    // a particle that comes in
+  void set_new(int i);    // a particle that comes in
 
   // Time goes on.  Is a particle updated now?  Those who sleep stay where they are.
   void begin_step();
-  bool is_due(int i) const { return rows[i][LEVEL] >= coarsest || rows[i][CALL] != NONE; }
-  bool sleeps(int i) const { return rows[i][LEVEL] == ASLEEP; }
+  bool is_due(int i) const { return rows[LEVEL][i] >= coarsest || rows[CALL][i] != NONE; }
+  bool sleeps(int i) const { return rows[LEVEL][i] == ASLEEP; }
   void wake_moved();    // by others than the fluid
 
   // The pair style tells when it knows the forces of other particles on the active fluid, and when it
@@ -126,23 +127,27 @@ class BlockSteps : protected Pointers {
 
   FixSPHIntegrate *fix;
   PairSPHTait *pair;
-  double **&rows;
+  ParticleColumns &rows;
   Place at;
   int apart;    // levels that neighbours may be apart
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
   double ideal;
 
-  // by particle, owned and ghost; scratch
+  // by particle, owned and ghost; of owned particles that are not updated it stays as it is while
+  // the order of the atoms does
   Stage stage;
+  bool known;
   std::vector<int> level, pace, mark;
   std::vector<double> span, impulse;    // in steps of the scene: time, and pressure times time
   std::vector<double> from_particles, handed;    // forces [n][3]
   std::vector<double> wanted;
   std::vector<int> marked;    // owned
   std::vector<int> slots;    // of those who need impulses
+  std::vector<int> boundaries, impelled;    // owned, the latter in the last evaluation
 
   void make_room();
+  void know_all();
   bool ends_root() const;
 
   void choose();
@@ -159,11 +164,12 @@ class BlockSteps : protected Pointers {
   bool rests_among_others(int i);
   bool is_slow(int i) const;
   void book();
-  void begin_own_step(double *row) const;
-  static double half_step(const double *row);
+  void begin_own_step(int i);
+  double half_step(int i) const;
 
   bool needs_external() const;
   void measure_impulses();
+  void rest(int i);
   void share_impulses();
   void share_equally();
   void prolong(int i, double times);

@@ -43,10 +43,9 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), interval(0.0), until(0.0), ceiling_given(false),
-    clamp_at_floor(false), state(nullptr), rows(nullptr), n_columns(0),
-    blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0), largest_before(0.0),
-    uncut(0.0), arrives(false), limited_by(Limit::NONE), updates(0.0), steps_limited{},
-    particles_limited{}
+    clamp_at_floor(false), state(nullptr), blocks(std::make_unique<BlockSteps>(lmp, this, rows)),
+    previous(0.0), largest_before(0.0), uncut(0.0), arrives(false), limited_by(Limit::NONE),
+    updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
@@ -132,7 +131,6 @@ FixSPHIntegrate::~FixSPHIntegrate()
   atom->delete_callback(id, Atom::GROW);
   atom->delete_callback(id, Atom::RESTART);
   memory->destroy(state);
-  memory->destroy(rows);
 }
 
 int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_RUN; }
@@ -203,27 +201,26 @@ void FixSPHIntegrate::check_scheme()
 
 void FixSPHIntegrate::want_rows(int columns)
 {
-  if (rows && n_columns == columns) return;
+  if (rows.count() == columns) return;
   forget_rows();
-  n_columns = columns;
-  memory->create(rows, atom->nmax, n_columns, "sph/integrate:rows");
-  for (int i = 0; i < atom->nmax; i++) set_row(i);
+  rows.create(columns, atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) set_row(i);
 }
 
 void FixSPHIntegrate::set_row(int i)
 {
-  std::fill(rows[i], rows[i] + n_columns, 0.0);
-  if (n_columns == BlockSteps::N_COLUMNS) blocks->set_new(rows[i]);
+  rows.clear(i);
+  if (rows.count() == BlockSteps::N_COLUMNS) blocks->set_new(i);
 }
 
 // of a run before, or a restart file, with steps of individual particles
 
 void FixSPHIntegrate::forget_rows()
 {
-  if (!rows) return;
+  if (rows.empty()) return;
   blocks->forget();
   for (int i = 0; i < atom->nlocal; i++) state[i][ACTIVE] = 1.0;
-  memory->destroy(rows);
+  rows.create(0, 0);
 }
 
 void FixSPHIntegrate::setup(int)
@@ -302,7 +299,7 @@ void FixSPHIntegrate::move_individually()
     const double elapsed = before - state[i][LAST_UPDATE];
     double *x = atom->x[i], *v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      const double accel = rows[i][ACCEL + d];
+      const double accel = rows[ACCEL + d][i];
       v[d] += dt * accel;
       x[d] += dt * (v[d] + elapsed * accel);
     }
@@ -322,7 +319,7 @@ void FixSPHIntegrate::select_active()
     if (active)
       updates++;
     else
-      atom->rho[i] += dt * rows[i][DENSITY];
+      atom->rho[i] += dt * rows[DENSITY][i];
   }
   pair->set_active(state, ACTIVE, true);
 }
@@ -399,12 +396,12 @@ StepLimit FixSPHIntegrate::tightest_particle()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     StepLimit own{state[i][OWN_STEP],
-                  rows ? static_cast<Limit>(static_cast<int>(rows[i][BY])) : Limit::NONE};
-    if (state[i][ACTIVE] != 0.0 || !rows) {
+                  !rows.empty() ? static_cast<Limit>(static_cast<int>(rows[BY][i])) : Limit::NONE};
+    if (state[i][ACTIVE] != 0.0 || rows.empty()) {
       own = particle_limit(lambda, particle_state(i, atom->f[i]));
       state[i][OWN_STEP] = std::min(own.dt, ceiling);
       state[i][LAST_UPDATE] = now;
-      if (rows) hold(i, own);
+      if (!rows.empty()) hold(i, own);
     }
     count(own);
     tightest.tighten(own.dt, own.by);
@@ -436,7 +433,8 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
    steps in powers of two
 ------------------------------------------------------------------------- */
 
-StepLimit FixSPHIntegrate::bounded_limit(int i, const double *external, double before) const
+StepLimit FixSPHIntegrate::bounded_limit(int i, const std::array<double, 3> &external,
+                                         double before) const
 {
   const double *f = atom->f[i];
   const double total[3] = {f[0] + external[0], f[1] + external[1], f[2] + external[2]};
@@ -475,7 +473,7 @@ void FixSPHIntegrate::limit_vertices()
   for_vertices([&](int i, const FixPBDCloth &cloth) {
     const StepLimit own = limit_of_vertex(i, cloth);
     state[i][OWN_STEP] = own.dt;
-    rows[i][BlockSteps::BY] = static_cast<double>(own.by);
+    rows[BlockSteps::BY][i] = static_cast<double>(own.by);
   });
 }
 
@@ -499,7 +497,7 @@ StepLimit FixSPHIntegrate::tightest_vertex() const
   for_vertices([&](int i, const FixPBDCloth &) {
     if (state[i][OWN_STEP] > 0.0)
       tightest.tighten(state[i][OWN_STEP],
-                       static_cast<Limit>(static_cast<int>(rows[i][BlockSteps::BY])));
+                       static_cast<Limit>(static_cast<int>(rows[BlockSteps::BY][i])));
   });
   return tightest;
 }
@@ -513,9 +511,9 @@ StepLimit FixSPHIntegrate::tightest_vertex() const
 void FixSPHIntegrate::hold(int i, const StepLimit &own)
 {
   const double to_accel = force->ftm2v / atom_mass(atom, i);
-  for (int d = 0; d < 3; d++) rows[i][ACCEL + d] = to_accel * atom->f[i][d];
-  rows[i][DENSITY] = atom->drho[i];
-  rows[i][BY] = static_cast<double>(own.by);
+  for (int d = 0; d < 3; d++) rows[ACCEL + d][i] = to_accel * atom->f[i][d];
+  rows[DENSITY][i] = atom->drho[i];
+  rows[BY][i] = static_cast<double>(own.by);
 }
 
 void FixSPHIntegrate::count_blocks()
@@ -523,7 +521,7 @@ void FixSPHIntegrate::count_blocks()
   particles_limited.fill(0.0);
   for (int i = 0; i < atom->nlocal; i++)
     if (state[i][OWN_STEP] > 0.0)
-      count({state[i][OWN_STEP], static_cast<Limit>(static_cast<int>(rows[i][BlockSteps::BY]))});
+      count({state[i][OWN_STEP], static_cast<Limit>(static_cast<int>(rows[BlockSteps::BY][i]))});
 }
 
 void FixSPHIntegrate::count(const StepLimit &own)
@@ -834,7 +832,7 @@ void FixSPHIntegrate::unpack_reverse_comm(int n, int *list, double *buf)
 void FixSPHIntegrate::grow_arrays(int nmax)
 {
   memory->grow(state, nmax, N_COLUMNS, "sph/integrate:state");
-  if (rows) memory->grow(rows, nmax, n_columns, "sph/integrate:rows");
+  rows.grow(nmax);
   array_atom = state;
   if (pair) pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
 }
@@ -842,36 +840,34 @@ void FixSPHIntegrate::grow_arrays(int nmax)
 void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
   std::copy(state[i], state[i] + N_COLUMNS, state[j]);
-  if (rows) std::copy(rows[i], rows[i] + n_columns, rows[j]);
+  rows.copy(i, j);
 }
 
 void FixSPHIntegrate::set_arrays(int i)
 {
   state[i][OWN_STEP] = state[i][LAST_UPDATE] = 0.0;
   state[i][ACTIVE] = 1.0;
-  if (rows) set_row(i);
+  if (!rows.empty()) set_row(i);
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
   double *end = std::copy(state[i], state[i] + N_COLUMNS, buf);
-  if (rows) end = std::copy(rows[i], rows[i] + n_columns, end);
-  return static_cast<int>(end - buf);
+  return static_cast<int>(rows.pack(i, end) - buf);
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
   std::copy(buf, buf + N_COLUMNS, state[i]);
-  if (!rows) return N_COLUMNS;
-  std::copy(buf + N_COLUMNS, buf + N_COLUMNS + n_columns, rows[i]);
-  return N_COLUMNS + n_columns;
+  rows.unpack(i, buf + N_COLUMNS);
+  return N_COLUMNS + rows.count();
 }
 
 // The first value of a record is its length.  Only individual steps have more to say.
 
 int FixSPHIntegrate::pack_restart(int i, double *buf)
 {
-  buf[0] = rows ? 1 + pack_exchange(i, buf + 1) : 1;
+  buf[0] = rows.empty() ? 1 : 1 + pack_exchange(i, buf + 1);
   return static_cast<int>(buf[0]);
 }
 
@@ -882,14 +878,14 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
   if (*record == 1.0) return;
   want_rows(static_cast<int>(*record) - 1 - N_COLUMNS);
   std::copy(record + 1, record + 1 + N_COLUMNS, state[i]);
-  std::copy(record + 1 + N_COLUMNS, record + 1 + N_COLUMNS + n_columns, rows[i]);
+  rows.unpack(i, record + 1 + N_COLUMNS);
 }
 
 int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
-int FixSPHIntegrate::maxsize_restart() { return rows ? 1 + N_COLUMNS + n_columns : 1; }
+int FixSPHIntegrate::maxsize_restart() { return rows.empty() ? 1 : 1 + N_COLUMNS + rows.count(); }
 
 double FixSPHIntegrate::memory_usage()
 {
-  return static_cast<double>(sizeof(double)) * (N_COLUMNS + (rows ? n_columns : 0)) * atom->nmax +
+  return static_cast<double>(sizeof(double)) * N_COLUMNS * atom->nmax + rows.bytes() +
       blocks->bytes();
 }

@@ -13,6 +13,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include "core/criteria.h"
 #include "core/tait.h"
+#include "particle_columns.h"
 
 #include <array>
 #include <memory>
@@ -70,7 +71,8 @@ class FixSPHIntegrate : public Fix {
   // of others than the fluid, after a step `before` (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
   // 0 for what is none.
   bool wants_force() const { return lambda.force > 0.0; }
-  sphcloth::StepLimit bounded_limit(int i, const double *external, double before) const;
+  sphcloth::StepLimit bounded_limit(int i, const std::array<double, 3> &external,
+                                    double before) const;
   void set_own_step(int i, double dt);
   // that sound needs across the support; by a force
   double sound_time(int i) const;
@@ -100,11 +102,10 @@ class FixSPHIntegrate : public Fix {
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
 
-  // per particle with steps of its own, null otherwise: BlockSteps::Column, or, of the last update of
+  // per particle with steps of its own, empty otherwise: BlockSteps::Column, or, of the last update of
   // individual steps, dv/dt, d rho/dt, its own limit
   enum Rate { ACCEL, DENSITY = 3, BY, N_RATES };
-  double **rows;
-  int n_columns;
+  ParticleColumns rows;
   std::unique_ptr<BlockSteps> blocks;
 
   double previous;      // the last step, before an output time cut it; 0 before the first

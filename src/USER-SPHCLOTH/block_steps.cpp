@@ -323,9 +323,17 @@ void BlockSteps::wake_moved()
       const double change = atom->f[i][d] - rows[EXTERNAL + d][i];
       change_sq += change * change;
     }
-    const double gain = PATIENCE * fix->sound_time(i) * fix->acceleration(i, std::sqrt(change_sq));
-    if (!is_slow(i) || gain > options.sleep || pair->feels_moving_wall(i)) wake(i);
+    if (!is_slow(i) || gains_speed(i, change_sq) || pair->feels_moving_wall(i)) wake(i);
   }
+}
+
+// from a force, squared, for as long as water has to be slow before it sleeps
+
+bool BlockSteps::gains_speed(int i, double force_sq) const
+{
+  if (force_sq == 0.0) return false;
+  const double accel = fix->acceleration(i, std::sqrt(force_sq));
+  return PATIENCE * fix->sound_time(i) * accel > options.sleep;
 }
 
 // as a particle that is new
@@ -342,8 +350,8 @@ void BlockSteps::wake(int i)
 
 void BlockSteps::wake_beside_moving_boundaries()
 {
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!pair->is_fluid(atom->type[i]) && !is_slow(i))
+  for (const int i : boundaries)
+    if (!is_slow(i))
       for_neighbours(i, [&](int j) {
         if (Pace::before(pace[j]) == Pace::SLEEPER && inside_support(i, j)) touch(j, WAKE);
       });

@@ -163,6 +163,7 @@ class BlockSteps : protected Pointers {
   void fall_asleep();
   bool rests_among_others(int i);
   bool is_slow(int i) const;
+  bool gains_speed(int i, double force_sq) const;
   void book();
   void begin_own_step(int i);
   double half_step(int i) const;

@@ -352,11 +352,13 @@ double FixWallSPH::approach(int i)
 
 bool FixWallSPH::moves_beside(int i)
 {
-  if (!look(i)) return false;
-  return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
+  const auto moves = [](const Wall &wall) {
     const double *u = wall.velocity;
-    const bool moves = u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0;
-    return moves && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
+    return u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0;
+  };
+  if (std::none_of(walls.begin(), walls.end(), moves) || !look(i)) return false;
+  return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
+    return moves(wall) && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
   });
 }
 

@@ -282,7 +282,7 @@ void PairSPHTait::compute(int eflag, int vflag)
 
 void PairSPHTait::select(const Particles &p)
 {
-  fluid->select(p);
+  if (!fluid->select(p)) return;
   active_fluid.clear();
   for (int t = 1; t <= atom->ntypes; t++)
     if (materials.is_fluid(t))

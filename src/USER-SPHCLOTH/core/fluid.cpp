@@ -21,12 +21,15 @@ void Fluid::list(const Particles &p, const double *reach)
     for (int j = 1; j < n; j++)
       if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID)
         support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
+  everyone = false;
   lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
               model.dimension, p.sides);
 }
 
-void Fluid::select(const Particles &p)
+bool Fluid::select(const Particles &p)
 {
+  if (everyone && !p.active) return false;
+  everyone = !p.active;
   selection.slots.clear();
   selection.first.assign(model.n_types + 2, 0);
   for (int t = 1; t <= model.n_types; t++) {
@@ -36,6 +39,7 @@ void Fluid::select(const Particles &p)
       if (all || p.is_active(lists.at(slot))) selection.slots.push_back(slot);
   }
   selection.first[model.n_types + 1] = selection.slots.size();
+  return true;
 }
 
 int Fluid::count_inside(const Particles &p, int owned, int type, int most) const

@@ -108,7 +108,8 @@ class Fluid {
   void list(const Particles &, const double *reach);
 
   // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
-  void select(const Particles &);
+  // False if nothing has changed.
+  bool select(const Particles &);
   const Selection &active() const { return selection; }
 
   // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
@@ -175,6 +176,7 @@ class Fluid {
  protected:
   NearLists lists;
   Selection selection;
+  bool everyone = false;    // is selected, of these lists
 };
 
 }    // namespace sphcloth

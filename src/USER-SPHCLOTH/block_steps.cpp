@@ -365,7 +365,7 @@ void BlockSteps::note_forces()
 {
   make_room();
   for (const int i : pair->active_particles())
-    std::copy(atom->f[i], atom->f[i] + 3, &from_particles[3 * i]);
+    for (int d = 0; d < 3; d++) from_particles[3 * i + d] = atom->f[i][d];
 }
 
 void BlockSteps::hand_out()
@@ -377,7 +377,7 @@ void BlockSteps::hand_out()
     share_impulses();
   if (!needs_external()) return;
   for (const int i : pair->active_particles())
-    std::copy(atom->f[i], atom->f[i] + 3, &handed[3 * i]);
+    for (int d = 0; d < 3; d++) handed[3 * i + d] = atom->f[i][d];
 }
 
 bool BlockSteps::needs_external() const { return fix->wants_force() || options.sleep > 0.0; }

@@ -21,7 +21,7 @@ class TimeLine {
   long long now = 0;    // since the root step began, in ticks of root / 2^DEEPEST
 
   static long long ticks(int level) { return 1LL << (DEEPEST - level); }
-  double step(int level) const { return std::ldexp(root, -level); }
+  double step(int level) const { return root / static_cast<double>(1LL << level); }
   bool begins(int level) const { return now % ticks(level) == 0; }
   bool ended() const { return now == ticks(0); }
 
@@ -67,10 +67,12 @@ class WantedSteps {
   double best_root(double least, double overhead) const
   {
     double best = 0.0, best_cost = 0.0;
+    int end = N;
+    while (end > 0 && !count[end - 1]) end--;
     for (int shift = 0; shift < PARTS; shift++) {
       const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
       int longest = 0;
-      const double cost = work_per_time(shift, overhead, longest) / shortest;
+      const double cost = work_per_time(shift, end, overhead, longest) / shortest;
       if (shift > 0 && cost >= best_cost) continue;
       best_cost = cost;
       best = std::ldexp(shortest, longest);
@@ -79,11 +81,11 @@ class WantedSteps {
   }
 
  private:
-  // in units of the shortest step; longest: the octave of the longest step
-  double work_per_time(int shift, double overhead, int &longest) const
+  // of the counts before `end`, in units of the shortest step; longest: the octave of the longest step
+  double work_per_time(int shift, int end, double overhead, int &longest) const
   {
     double updates = 0.0, particles = 0.0;
-    for (int k = 0; k < N; k++) {
+    for (int k = 0; k < end; k++) {
       if (!count[k]) continue;
       const int octave = (k + shift) / PARTS;
       updates += std::ldexp(count[k], -octave);

@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 
+from sphcloth.references.checks import check_positive
+
 # Gamma grows by this factor from solution to solution, each of which starts the next
 GROWTH = 2.0
 POINTS = 101
@@ -28,9 +30,15 @@ class HeavyElastica:
 
     Attributes:
         gamma: w L^3 / B, > 0.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     gamma: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "gamma")
 
     @property
     def drop(self) -> float:

@@ -15,6 +15,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class TurnedJet:
@@ -24,11 +26,17 @@ class TurnedJet:
         thickness: of the jet B, m.
         speed: of the jet v, m/s.
         rho0: density, kg/m^3.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     thickness: float
     speed: float
     rho0: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "thickness", "rho0")
 
     @property
     def flow(self) -> float:

@@ -25,6 +25,7 @@ from scipy.optimize import brentq, root
 from scipy.special import ellipe, ellipeinc, ellipj, ellipk
 
 from sphcloth.errors import UserError
+from sphcloth.references.checks import check_positive
 
 # angles at the water line among which the root is looked for
 _ANGLES = np.linspace(1e-4, math.pi - 1e-4, 2000)
@@ -43,6 +44,9 @@ class Lintearia:
         area: cross-section A of the water, m^2.
         rho0: density of the water, kg/m^3.
         gravity: acceleration g, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     length: float
@@ -50,6 +54,9 @@ class Lintearia:
     area: float
     rho0: float
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "length", "span", "area", "rho0", "gravity")
 
     @cached_property
     def angle(self) -> float:

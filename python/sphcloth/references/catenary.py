@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from sphcloth.references.checks import check, check_positive
+
 
 @dataclass(frozen=True)
 class HangingPolygon:
@@ -27,6 +29,9 @@ class HangingPolygon:
         mass: at each inner joint, kg.
         gravity: acceleration g, m/s^2.
         compliance: of a link, m/N; 0 for rigid links.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     links: int
@@ -35,6 +40,11 @@ class HangingPolygon:
     mass: float
     gravity: float
     compliance: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_positive(self, "links", "length", "span", "mass", "gravity")
+        rigid_fits = self.compliance > 0 or self.span < self.length
+        check(self, "span", rigid_fits, f"it must be below the length, {self.length:g}")
 
     @cached_property
     def pull(self) -> float:

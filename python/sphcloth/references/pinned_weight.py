@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class Load:
@@ -15,6 +17,9 @@ class Load:
         water: volume of the water, m^3.
         rho0: density of the water, kg/m^3.
         gravity: acceleration g, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     side: float
@@ -22,6 +27,9 @@ class Load:
     water: float
     rho0: float
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "side", "gravity")
 
     @property
     def weight(self) -> float:

@@ -1,7 +1,7 @@
 """A light sheet, level at first, that is held at one edge and falls.
 
 It has no bending stiffness and does not stretch, so it falls like the chain of links between its
-rows of vertices (:mod:`sphcloth.validation.chain`). What is far from the edge falls freely until
+rows of vertices (:mod:`sphcloth.references.chain`). What is far from the edge falls freely until
 the pull of the edge arrives.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from sphcloth.validation.chain import LinkedPendulum
+from sphcloth.references.chain import LinkedPendulum
 
 
 def falling_sheet(rows: int, length: float, gravity: float) -> LinkedPendulum:

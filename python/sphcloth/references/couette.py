@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.references.checks import check_positive
+
 TERMS = 400
 
 
@@ -21,11 +23,17 @@ class CouetteStart:
         gap: distance of the plates, m.
         nu: kinematic viscosity, m^2/s.
         lid: velocity of the plate at y = gap, m/s.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     gap: float
     nu: float
     lid: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "gap", "nu")
 
     @property
     def fastest(self) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from sphcloth.validation.chain import LinkedPendulum
+from sphcloth.references.chain import LinkedPendulum
 
 
 @cache

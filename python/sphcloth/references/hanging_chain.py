@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class HangingChain:
@@ -22,6 +24,9 @@ class HangingChain:
         length: of a link at rest, m.
         compliance: alpha of a link, m/N.
         gravity: acceleration g, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     links: int
@@ -29,6 +34,9 @@ class HangingChain:
     length: float
     compliance: float
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "links", "mass", "length", "gravity")
 
     @property
     def tensions(self) -> NDArray[np.float64]:

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class TaylorGreen:
@@ -22,9 +24,15 @@ class TaylorGreen:
 
     Attributes:
         reynolds: U times side over viscosity.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     reynolds: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "reynolds")
 
     @property
     def rate(self) -> float:
@@ -39,3 +47,7 @@ class TaylorGreen:
         """Return the velocity at the start, shape (N, 2)."""
         x, y = 2 * math.pi * positions[:, 0], 2 * math.pi * positions[:, 1]
         return np.stack([-np.cos(x) * np.sin(y), np.sin(x) * np.cos(y)], axis=1)
+
+    def velocity(self, positions: NDArray, time: float) -> NDArray[np.float64]:
+        """Return the velocity at positions, shape (N, 2 or more), and a time; shape (N, 2)."""
+        return math.exp(-self.rate * time) * self.mode(positions)

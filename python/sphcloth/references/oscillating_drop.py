@@ -17,6 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_ivp
 from scipy.integrate._ivp.ivp import OdeResult
 
+from sphcloth.references.checks import check_positive
+
 TOLERANCE = 1e-12
 # longest time to look for a period, in that of small oscillations; at most 1.42 are needed
 PATIENCE = 3.0
@@ -31,10 +33,16 @@ class EllipticDrop:
     Attributes:
         sigma: rate of strain at the start, 1/s.
         omega: of the force field, 1/s.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     sigma: float
     omega: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "omega")
 
     def semi_axes(self, times: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return both semi-axes over the radius at some times in s, that along x first."""

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.references.checks import check_positive
+
 TERMS = 200
 
 
@@ -21,11 +23,17 @@ class PoiseuilleStart:
         gap: distance of the plates, m.
         nu: kinematic viscosity, m^2/s.
         drive: acceleration along the plates, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     gap: float
     nu: float
     drive: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "gap", "nu")
 
     @property
     def fastest(self) -> float:

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class Piston:
@@ -27,6 +29,9 @@ class Piston:
         height: of the fluid h, m.
         rho0: density, kg/m^3.
         sound: speed of sound c, m/s.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     areal: float
@@ -34,6 +39,9 @@ class Piston:
     height: float
     rho0: float
     sound: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "stiffness", "height", "rho0", "sound")
 
     @property
     def rigid_period(self) -> float:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class Jet:
@@ -21,12 +23,18 @@ class Jet:
         speed: of the jet, U, m/s.
         angle: between jet and plate, degrees; 90 for a jet that meets the plate squarely.
         rho0: density, kg/m^3.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     thickness: float
     speed: float
     angle: float
     rho0: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "thickness", "rho0")
 
     @property
     def force(self) -> float:

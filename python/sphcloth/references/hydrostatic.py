@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.references.checks import check, check_positive
+
 
 @dataclass(frozen=True)
 class TaitColumn:
@@ -23,6 +25,9 @@ class TaitColumn:
         gravity: acceleration, m/s^2.
         sound: speed of sound at rest, m/s.
         gamma: exponent of the equation of state, > 1.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     height: float
@@ -30,6 +35,10 @@ class TaitColumn:
     gravity: float
     sound: float
     gamma: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "height", "rho0", "sound")
+        check(self, "gamma", self.gamma > 1, "it must be above 1")
 
     def pressure(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Return the pressure in Pa of what started at a depth in m."""

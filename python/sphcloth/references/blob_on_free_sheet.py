@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class Collision:
@@ -22,12 +24,18 @@ class Collision:
         sheet: mass of the sheet, kg.
         speed: of the drop, m/s.
         angle: between its way and the sheet, degrees; 90 for a normal impact.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     drop: float
     sheet: float
     speed: float
     angle: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "drop", "sheet")
 
     @property
     def velocity(self) -> NDArray[np.float64]:

@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from sphcloth.references.checks import check_positive
 
 
 @dataclass(frozen=True)
@@ -17,11 +19,17 @@ class StandingWave:
         depth: of the undisturbed water, m.
         length: of the wave, m.
         gravity: acceleration, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     depth: float
     length: float
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "depth", "length", "gravity")
 
     @property
     def number(self) -> float:
@@ -33,6 +41,17 @@ class StandingWave:
         """Period in s, from omega^2 = g k tanh(k H)."""
         rate = self.gravity * self.number * math.tanh(self.number * self.depth)
         return 2 * math.pi / math.sqrt(rate)
+
+    def surface(self, x: ArrayLike, time: float, amplitude: float) -> NDArray[np.float64]:
+        """Return the height of the surface over the one at rest, m, shape of ``x``.
+
+        Args:
+            x: places along the wave, m; a crest is at 0 when the time is 0.
+            time: s.
+            amplitude: A, m, small against depth and length.
+        """
+        phase = math.cos(2 * math.pi * time / self.period)
+        return amplitude * np.cos(self.number * np.asarray(x, dtype=np.float64)) * phase
 
     def second_order(self, amplitude: float) -> float:
         """Return the relative change of the period in second order of an amplitude in m.

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.checks import check_positive
+
 
 @dataclass(frozen=True)
 class Oscillator:
@@ -24,11 +26,17 @@ class Oscillator:
         mass: kg.
         compliance: alpha, m/N.
         step: h, s; the substep where a step is divided.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     mass: float
     compliance: float
     step: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "mass", "compliance", "step")
 
     @property
     def omega(self) -> float:

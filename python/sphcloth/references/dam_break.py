@@ -16,6 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.references.checks import check_positive
+
 # largest shift in time that is allowed, in units of sqrt(a / 2 g)
 LARGEST_SHIFT = 0.15
 # how many shifts are tried
@@ -51,10 +53,16 @@ class Column:
     Attributes:
         width: a, m; it is 2 a high.
         gravity: acceleration, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     width: float
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "width", "gravity")
 
     @property
     def time(self) -> float:

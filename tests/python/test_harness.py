@@ -171,7 +171,7 @@ def test_a_ball_encloses_its_volume_wherever_it_is() -> None:
 
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
     mesh = ClothMesh(np.arange(1, len(ball.vertices) + 1), np.asarray(ball.faces))
-    frame = make_frame(0, [], np.asarray(ball.vertices) + [3, -2, 7], first_fluid_id=10_000)
+    frame = make_frame(0, [], ball.vertices + np.array([3, -2, 7]), first_fluid_id=10_000)
     assert metrics.enclosed_volume(mesh, frame) == pytest.approx(np.pi / 6, rel=0.01)
     assert metrics.enclosed_volume(mesh, frame) == pytest.approx(ball.volume, rel=1e-12)
     with pytest.raises(UserError, match="a border of 16 edges"):

@@ -5,8 +5,9 @@ They use NumPy and SciPy and nothing of the simulation, so they can judge a run 
     frame = Trajectory("run.lammpstrj", "log.lammps")[-1]
     exact = CouetteStart(gap=1e-3, nu=1e-6, lid=1e-5).velocity(frame.positions[:, 1], frame.time)
 
-Units are those in the docstrings, SI, or any other consistent set. Formulas and sources stand at the
-head of each module. Parameters for which there is no such scene raise :class:`~sphcloth.errors.UserError`.
+Units are those in the docstrings, SI, or any other consistent set. Formulas and sources stand at
+the head of each module. Parameters for which there is no such scene raise
+:class:`~sphcloth.errors.UserError`.
 """
 
 from __future__ import annotations

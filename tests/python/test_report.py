@@ -54,6 +54,7 @@ def results(tmp_path: Path) -> Path:
     write(folder / "a", "jet.json", validation("jet"))
     (folder / "a" / "jet.png").write_bytes(DOT)
     write(folder / "b", "evil.json", validation(EVIL, passed=False))
+    write(folder / "b", "out.json", validation("../a/jet"))
     best = {"overall": "global", "by_scheme": {"global": {"values": {"acoustic": "0.5"}}}}
     quantities = [{"name": "../../a/jet"}, {"name": "kinetic"}, "nonsense"]
     study = {"scene": "pool", "points": [], "quantities": quantities, "error": 0.01}
@@ -87,7 +88,7 @@ def make(folder: Path, out: Path, *more: str) -> str:
 def test_each_result_is_on_the_page(results: Path, tmp_path: Path) -> None:
     page = make(results, tmp_path / "page.html", "--title", "Wet & dry")
     assert "<h1>Wet &amp; dry</h1>" in page
-    assert "1 of 2</span> cases within all their limits" in page
+    assert "2 of 3</span> cases within all their limits" in page
     assert "0.01235" in page and "0.02" in page
     assert '1.5 <span class="soft">(1.25 to 2)</span>' in page
     assert "acoustic = 0.5" in page and "<code># fix contact</code>" in page

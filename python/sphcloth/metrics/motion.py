@@ -37,6 +37,17 @@ def masses(frame: Frame, by_type: Mapping[int, float] | None = None) -> Array:
     return np.array([by_type[kind] for kind in types], dtype=np.float64)[number]
 
 
+def masses_of(frame: Frame, mass: float | Mapping[int, float]) -> Array:
+    """Return the mass of each atom, shape (N,): the column ``mass`` if there is one, or as given.
+
+    Raises:
+        UserError: a type without a mass.
+    """
+    if isinstance(mass, Mapping) or "mass" in frame.columns:
+        return masses(frame, mass if isinstance(mass, Mapping) else None)
+    return _weights(frame, mass)
+
+
 def kinetic_energy(frame: Frame, mass: ArrayLike) -> float:
     """Return sum m v^2 / 2; masses of shape (N,), or one for all."""
     return float(0.5 * np.sum(_weights(frame, mass) * np.sum(frame.velocities**2, axis=1)))
@@ -90,19 +101,13 @@ def outer_force(
             )
         if not after.time > before.time:
             raise UserError("outer_force: frames need times: Trajectory(DUMP, LOG)")
-        each = _masses_of(after, mass)
+        each = masses_of(after, mass)
         change = momentum(after, each) - momentum(before, each)
         weight = np.sum(each) * np.asarray(gravity, dtype=np.float64)
         forces.append(change / (after.time - before.time) - weight)
     if not forces:
         raise UserError("outer_force: forces are found between frames: there is only one")
     return np.array(forces)
-
-
-def _masses_of(frame: Frame, mass: float | Mapping[int, float]) -> Array:
-    if isinstance(mass, Mapping) or "mass" in frame.columns:
-        return masses(frame, mass if isinstance(mass, Mapping) else None)
-    return _weights(frame, mass)
 
 
 def _weights(frame: Frame, mass: ArrayLike) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -43,9 +44,14 @@ class Evidence:
         steps = int(table["Step"][-1] - table["Step"][0])
         return cls(commands, columns, True, steps, float(table["Time"][-1]))
 
-    def largest(self, name: str) -> float | None:
-        """Return the largest value of a column, None if there is no such column or no number."""
+    def largest(self, name: str, until: float = math.inf) -> float | None:
+        """Return the largest value of a column up to a time of the probe.
+
+        None if there is no such column, or no number in it.
+        """
         values = self.columns.get(name, np.empty(0))
+        if until < math.inf:
+            values = values[self.columns["v_advise_time"] <= until]
         values = values[np.isfinite(values)]
         return float(values.max()) if len(values) else None
 

@@ -151,7 +151,10 @@ def _longer(keywords: str) -> Trial:
     def judge(run: Evidence, again: Evidence) -> tuple[str, bool]:
         further = again.time / again.steps / (run.time / run.steps)
         name = f"f_{run.commands.stepper.id}[4]"
-        before, after = run.largest(name) or 0.0, again.largest(name) or 0.0
+        # the second probe goes further: only what both have seen is compared
+        before, after = (
+            each.largest(name, min(run.time, again.time)) or 0.0 for each in (run, again)
+        )
         said = f"with {keywords} steps are {further:.2f} times as long"
         helps = further > 1 / WORTH and after <= MORE_COMPRESSION * before
         return f"{said}, largest compression {after:.2%} instead of {before:.2%}", helps

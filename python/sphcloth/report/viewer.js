@@ -5,7 +5,7 @@
 const LIGHT = normalised([-0.45, -0.55, 0.75]);
 const COLOURS = { front: [226, 138, 62], back: [188, 96, 66], obstacle: [150, 152, 160], wall: [176, 180, 188] };
 const SLOW = [21, 84, 158], MIDDLE = [72, 158, 219], FAST = [232, 248, 255];
-const LARGEST_RADIUS = 40, FULL = 65535, FRAME_MS = 80;
+const LARGEST_RADIUS = 40, FULL = 65535, FRAME_MS = 80, SAMPLE = 12000;
 
 function normalised(v) {
   const length = Math.hypot(...v);
@@ -69,7 +69,12 @@ class Viewer {
   // the middle of what there is to see, in the unit cube of the data
   middle() {
     const low = [1, 1, 1], high = [0, 0, 0];
+    const total = this.frames.reduce((n, each) => n + each.water.length + each.vertices.length, 0);
+    const stride = 3 * Math.ceil(total / 3 / SAMPLE);
+    this.sample = [];
     const meet = (values, scale) => {
+      for (let i = 0; i < values.length; i += stride)
+        this.sample.push([values[i] / scale, values[i + 1] / scale, values[i + 2] / scale]);
       for (let i = 0; i < values.length; i++) {
         const x = values[i] / scale;
         low[i % 3] = Math.min(low[i % 3], x);
@@ -80,7 +85,6 @@ class Viewer {
       meet(frame.water, FULL);
       meet(frame.vertices, 1);
     }
-    this.corners = [0, 1, 2, 3, 4, 5, 6, 7].map(n => low.map((x, i) => (n >> i & 1 ? high[i] : x)));
     this.extent = Math.max(0.1, Math.hypot(...high.map((x, i) => x - low[i])));
     return high.map((x, i) => (x + low[i]) / 2);
   }
@@ -89,14 +93,14 @@ class Viewer {
     Object.assign(this, { yaw: 0.6, pitch: 0.35, distance: 0 });
   }
 
-  // as near as all corners of the scene are in the picture
+  // as near as what there is in any frame is in the picture
   fit() {
-    const out = [0, 0, 0], margin = 0.04;
-    const isIn = corner => this.project(...corner, out) && out[2] > 0.01
+    const out = [0, 0, 0], margin = 0.07;
+    const isIn = point => this.project(...point, out) && out[2] > 0.01
       && out[0] > margin * this.width && out[0] < (1 - margin) * this.width
       && out[1] > margin * this.height && out[1] < (1 - margin) * this.height;
     this.distance = 0.5 * this.extent;
-    while (this.distance < 8 * this.extent && !this.corners.every(isIn)) this.distance *= 1.03;
+    while (this.distance < 8 * this.extent && !this.sample.every(isIn)) this.distance *= 1.03;
   }
 
   listen(box) {

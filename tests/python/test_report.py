@@ -144,7 +144,10 @@ def test_nothing_to_show_is_an_error(tmp_path: Path) -> None:
 
 def test_a_dump_that_cannot_be_read_is_left_out(results: Path, tmp_path: Path) -> None:
     write(results, "bad.lammpstrj", "ITEM: NOTHING\n")
+    steps = [dump_frame(n, [[1, 1, math.nan if n == 7 else n, 0, 0]]) for n in range(20)]
+    write(results, "lost.lammpstrj", "".join(steps))
     page = make(results, tmp_path / "page.html")
+    assert "lost.lammpstrj" in page and "NaN" not in page
     assert "bad.lammpstrj" in page and "expected &#x27;ITEM: TIMESTEP&#x27;" in page
 
 

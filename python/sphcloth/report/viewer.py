@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.errors import UserError
-from sphcloth.rendering.cast import Cast, Choice
+from sphcloth.rendering.cast import Cast, Choice, check_positions
 from sphcloth.rendering.command import evenly_spaced, samples
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
+
+Array = NDArray[np.float64]
 
 # what a page shows at most: beyond, every n-th frame and particle
 FRAMES, PARTICLES, VERTICES = 60, 10_000, 20_000
@@ -38,118 +40,120 @@ class Packed:
     data: dict
 
 
+@dataclass(frozen=True)
+class _View:
+    """What is kept of a frame: of a large one little.
+
+    Attributes:
+        label: its time or step.
+        water: places of particles, z upwards, shape (N, 3).
+        speeds: of these, shape (N,); 0 if the dump has none.
+        vertices: of the meshes, shape (V, 3).
+    """
+
+    label: str
+    water: Array
+    speeds: Array
+    vertices: Array
+
+
 def pack(dump: Path) -> Packed:
     """Read a dump with the data file and the log beside it, as far as they are there.
 
     Raises:
         UserError: the dump cannot be read, or holds nothing to show.
     """
-    log = dump.parent / "log.lammps"
-    try:
-        trajectory = Trajectory(dump, log if log.is_file() else None)
-    except UserError:
-        trajectory = Trajectory(dump)
-    cast = Cast.of(samples(trajectory), Roles.beside(dump), Choice())
+    trajectory = _open(dump)
+    few = samples(trajectory)
+    cast = Cast.of(few, Roles.beside(dump), Choice())
+    every = _every(max(np.count_nonzero(_is(frame, cast.fluid)) for frame in few))
+    shows_mesh = cast.mesh is not None and len(cast.mesh.ids) <= VERTICES
     chosen = evenly_spaced(len(trajectory), FRAMES)
-    every = -(-max(_water_count(trajectory[n], cast) for n in _some(chosen)) // PARTICLES) or 1
-    frames = [trajectory[n] for n in chosen]
-    low, high = _bounds(frames, cast)
-    fastest = max(_speeds(_water(frame, cast, 1)).max(initial=0.0) for frame in frames)
-    shows_cloth = cast.mesh is not None and len(cast.mesh.ids) <= VERTICES
-    still = _still(frames[0], cast)
+    views = [_view(trajectory[n], cast, every, shows_mesh) for n in chosen]
+    low, size = _bounds(views)
+    fastest = max(view.speeds.max(initial=0.0) for view in views) or 1.0
     data = {
         "low": low.tolist(),
-        "size": float(np.max(high - low)),
-        "spacing": cast.largest_spacing or float(np.max(high - low)) / 100,
-        "fastest": float(fastest),
-        "triangles": _text(cast.mesh.triangles, np.uint32) if shows_cloth else "",
-        "cloth": _text(cast.cloth, np.uint8) if shows_cloth else "",
-        "walls": _text(_scaled(_upright(still, cast), low, high)[0], np.uint16),
-        "frames": [_frame(frame, cast, every, low, high, fastest, shows_cloth) for frame in frames],
+        "size": size,
+        "spacing": cast.largest_spacing or size / 100,
+        "triangles": _text(cast.mesh.triangles, np.uint32) if shows_mesh else "",
+        "cloth": _text(cast.cloth, np.uint8) if shows_mesh else "",
+        "walls": _text(_scaled(_walls(few[0], cast), low, size)[0], np.uint16),
+        "frames": [_numbers(view, low, size, fastest) for view in views],
     }
-    shown = f"{len(chosen)} of {len(trajectory)} frames"
-    thinned = f", every {_ordinal(every)} particle" if every > 1 else ""
-    left_out = "" if shows_cloth or cast.mesh is None else ", without the cloth: too many vertices"
-    return Packed(f"{dump.parent.name}/{dump.name}", f"{shown}{thinned}{left_out}", data)
+    caption = f"{len(chosen)} of {len(trajectory)} frames"
+    caption += f", every {_ordinal(every)} particle" if every > 1 else ""
+    if cast.mesh is not None and not shows_mesh:
+        caption += ", without the cloth: too many vertices"
+    return Packed(f"{dump.resolve().parent.name}/{dump.name}", caption, data)
 
 
-def _frame(
-    frame: Frame,
-    cast: Cast,
-    every: int,
-    low: NDArray,
-    high: NDArray,
-    fastest: float,
-    shows_cloth: bool,
-) -> dict:
-    water = _water(frame, cast, every)
-    places, inside = _scaled(_upright(water, cast), low, high)
-    speeds = _speeds(water)[inside] / (fastest or 1.0)
-    vertices = cast.upright(cast.mesh.positions(frame)) if shows_cloth else np.empty((0, 3))
-    return {
-        "label": f"step {frame.step}" if np.isnan(frame.time) else f"t = {frame.time:.4g}",
-        "water": _text(places, np.uint16),
-        "speed": _text(np.round(255 * speeds), np.uint8),
-        "vertices": _text((vertices - low) / np.max(high - low), np.float32),
-    }
+def _open(dump: Path) -> Trajectory:
+    """Open a dump with the times of the log beside it, if they can be read."""
+    log = dump.parent / "log.lammps"
+    try:
+        return Trajectory(dump, log if log.is_file() else None)
+    except UserError:
+        return Trajectory(dump)
 
 
-def _some(chosen: list[int]) -> list[int]:
-    return [chosen[n] for n in evenly_spaced(len(chosen), 5)]
+def _is(frame: Frame, kinds: frozenset[int]) -> NDArray[np.bool_]:
+    return np.isin(frame.types, list(kinds))
 
 
-def _water_count(frame: Frame, cast: Cast) -> int:
-    return int(np.count_nonzero(np.isin(frame.types, list(cast.fluid))))
+def _every(count: int) -> int:
+    """Return n such that every n-th particle is no more than a page shows."""
+    return max(1, -(-int(count) // PARTICLES))
 
 
-def _water(frame: Frame, cast: Cast, every: int) -> Frame:
-    """Return every n-th particle of water, the same ones in all frames."""
-    return _chosen(frame, np.isin(frame.types, list(cast.fluid)) & (frame.ids % every == 0))
-
-
-def _still(frame: Frame, cast: Cast) -> Frame:
-    """Return particles of walls, as many as a page shows."""
-    walls = np.isin(frame.types, list(cast.walls))
-    every = -(-int(np.count_nonzero(walls)) // PARTICLES) or 1
-    return _chosen(frame, walls & (frame.ids % every == 0))
-
-
-def _chosen(frame: Frame, rows: NDArray[np.bool_]) -> Frame:
-    columns = {name: values[rows] for name, values in frame.columns.items()}
-    return Frame(frame.step, frame.time, frame.box, columns)
-
-
-def _upright(frame: Frame, cast: Cast) -> NDArray[np.float64]:
-    return cast.upright(frame.positions)
-
-
-def _speeds(frame: Frame) -> NDArray[np.float64]:
-    """Return speeds, 0 if the dump has none."""
+def _view(frame: Frame, cast: Cast, every: int, shows_mesh: bool) -> _View:
+    """Take out of a frame what is shown: every n-th particle, the same ones in all frames."""
+    check_positions(frame.positions, frame)
+    rows = _is(frame, cast.fluid) & (frame.ids % every == 0)
     known = {"vx", "vy", "vz"} <= frame.columns.keys()
-    return np.linalg.norm(frame.velocities, axis=1) if known else np.zeros(len(frame))
+    speeds = np.linalg.norm(frame.velocities[rows], axis=1) if known else np.zeros(rows.sum())
+    vertices = cast.mesh.positions(frame) if shows_mesh else np.empty((0, 3))
+    label = f"step {frame.step}" if np.isnan(frame.time) else f"t = {frame.time:.4g}"
+    return _View(label, cast.upright(frame.positions[rows]), speeds, cast.upright(vertices))
 
 
-def _bounds(frames: list[Frame], cast: Cast) -> tuple[NDArray, NDArray]:
-    """Return the corners of what a picture holds: all cloth, and the water but for its spray."""
+def _walls(frame: Frame, cast: Cast) -> Array:
+    """Return the places of wall particles, as many as a page shows."""
+    walls = _is(frame, cast.walls)
+    return cast.upright(frame.positions[walls & (frame.ids % _every(walls.sum()) == 0)])
+
+
+def _bounds(views: list[_View]) -> tuple[Array, float]:
+    """Return corner and edge of the cube of the picture: all cloth, the water but for its spray."""
     parts = []
-    for frame in frames:
-        if len(water := _upright(_water(frame, cast, 1), cast)):
-            parts.append(np.quantile(water, [SPRAY, 1 - SPRAY], axis=0))
-        if cast.mesh is not None:
-            vertices = cast.upright(cast.mesh.positions(frame))
-            parts.append(np.stack([vertices.min(axis=0), vertices.max(axis=0)]))
+    for view in views:
+        if len(view.water):
+            parts.append(np.quantile(view.water, [SPRAY, 1 - SPRAY], axis=0))
+        if len(view.vertices):
+            parts.append(np.stack([view.vertices.min(axis=0), view.vertices.max(axis=0)]))
     if not parts:
         raise UserError("neither water nor cloth in it")
     corners = np.concatenate(parts)
     low, high = corners.min(axis=0), corners.max(axis=0)
     margin = 0.05 * np.max(high - low) or 1.0
-    return low - margin, high + margin
+    return low - margin, float(np.max(high - low) + 2 * margin)
 
 
-def _scaled(points: NDArray, low: NDArray, high: NDArray) -> tuple[NDArray, NDArray[np.bool_]]:
+def _numbers(view: _View, low: Array, size: float, fastest: float) -> dict:
+    places, inside = _scaled(view.water, low, size)
+    return {
+        "label": view.label,
+        "water": _text(places, np.uint16),
+        "speed": _text(np.round(255 * view.speeds[inside] / fastest), np.uint8),
+        "vertices": _text((view.vertices - low) / size, np.float32),
+    }
+
+
+def _scaled(points: Array, low: Array, size: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return points as whole numbers, and which of them are inside of the picture."""
-    inside = np.all((points >= low) & (points <= high), axis=1)
-    return np.round(FULL * (points[inside] - low) / np.max(high - low)), inside
+    share = (points - low) / size
+    inside = np.all((share >= 0) & (share <= 1), axis=1)
+    return np.round(FULL * share[inside]), inside
 
 
 def _text(values: NDArray, form: type) -> str:

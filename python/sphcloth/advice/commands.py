@@ -22,7 +22,6 @@ class Fluid:
         kind: atom type, or the range, as in the script.
         words: all arguments of ``pair_coeff``.
         sound: speed of sound at rest.
-        density: at rest.
         speed: reference speed of ``fluctuation``; None if the script gives the speed of sound.
         alpha, nu: artificial and kinematic viscosity.
         support: radius of the kernel.
@@ -31,7 +30,6 @@ class Fluid:
     kind: str
     words: tuple[str, ...]
     sound: float
-    density: float
     speed: float | None
     alpha: float
     nu: float
@@ -50,7 +48,7 @@ class Fluid:
             sound = number["c0"] if "c0" in number else math.sqrt(number["k"])
         viscosity = number.get("alpha", 0.0), number.get("nu", 0.0)
         own = number.get("support", support)
-        return cls(words[0], tuple(words), sound, float(words[3]), speed, *viscosity, own)
+        return cls(words[0], tuple(words), sound, speed, *viscosity, own)
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,6 @@ class Commands:
         pair_style, neighbor, dihedral_style, run_style: arguments; empty without the command.
         bonds, hinges: by type, the arguments behind it.
         variables: equal-style variables, name -> formula.
-        timestep: None without the command.
         steps_by_limit: name of a limit -> steps that it set, over all runs of one fix.
     """
 
@@ -96,7 +93,6 @@ class Commands:
     bonds: dict[str, tuple[str, ...]] = field(default_factory=dict)
     hinges: dict[str, tuple[str, ...]] = field(default_factory=dict)
     variables: dict[str, str] = field(default_factory=dict)
-    timestep: float | None = None
     steps_by_limit: dict[str, int] = field(default_factory=dict)
 
     @classmethod
@@ -132,7 +128,6 @@ class Commands:
         support = float(style[1]) if style[:1] == ("sph/tait",) else math.nan
         coefficients = [words for words in said.get("pair_coeff", []) if words[2:3] == ["fluid"]]
         formulas = [w for w in said.get("variable", []) if len(w) > 2 and w[1] == "equal"]
-        step = last("timestep")
         return cls(
             {words[0]: Fix(*words[:3], tuple(words[3:])) for words in fixes},
             {words[0]: Fluid.of(words, support) for words in coefficients},
@@ -143,7 +138,6 @@ class Commands:
             by_type("bond_coeff"),
             by_type("dihedral_coeff"),
             {words[0]: "".join(words[2:]) for words in formulas},
-            float(step[0]) if step else None,
             limits,
         )
 

@@ -35,6 +35,13 @@ sphcloth tradeoff two-resolutions --scheme constant,global --vary acoustic=0.5,1
 sphcloth tradeoff my.in --vary dt=1e-3,5e-4 --reference dt=1e-5 --quantity KinEng
 """
 
+ADVISE_EXAMPLES = """
+Examples:
+
+sphcloth advise in.drop
+
+sphcloth advise in.pour --var hold=corners --ranks 2 --probe-steps 3000 --speed 4
+"""
 
 RENDER_EXAMPLES = """
 Examples:
@@ -492,6 +499,60 @@ def tradeoff(
         result.write(json_file)
     show(result, console)
     console.print(*(str(file) for file in files), sep="\n", highlight=False, soft_wrap=True)
+
+
+@app.command(epilog=ADVISE_EXAMPLES)
+def advise(
+    script: Annotated[Path, typer.Argument(metavar="IN", help="Input script; it is not changed.")],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--var", "--set", metavar="NAME=VALUE", help="Set a variable of the script."),
+    ] = None,
+    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
+    steps: Annotated[
+        int, typer.Option("--probe-steps", min=1, help="Stop after so many steps.")
+    ] = 1000,
+    seconds: Annotated[
+        float, typer.Option("--probe-time", min=1.0, help="Stop after so many seconds.")
+    ] = 60.0,
+    speed: Annotated[
+        float | None, typer.Option(help="Largest speed that you expect, beside the one measured.")
+    ] = None,
+    stretch: Annotated[
+        float, typer.Option(min=1e-9, help="Largest strain of an edge that you accept.")
+    ] = 0.01,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the findings here too.")
+    ] = None,
+) -> None:
+    """Run a script for a short time and say what the scene needs, and what it does not."""
+    from sphcloth.advice.command import advise as find_advice
+    from sphcloth.advice.probe import Probe
+    from sphcloth.examples import parse_settings
+
+    probe = Probe(script, parse_settings(settings or [], "--var"), ranks, steps, seconds)
+    found = find_advice(probe, Console(), speed=speed, stretch=stretch)
+    found.show(Console())
+    if json_file is not None:
+        found.write(json_file)
+
+
+@app.command()
+def report(
+    folders: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="FOLDER ...", help="Where results are.", show_default="here"),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="The page.")] = Path("sphcloth-report.html"),
+    title: Annotated[str, typer.Option(help="Title of the page.")] = "SPHCLOTH report",
+    viewers: Annotated[
+        int, typer.Option("--trajectories", min=0, help="Show so many trajectories at most.")
+    ] = 2,
+) -> None:
+    """Write one HTML page of what runs have shown: tables, plots, and scenes to turn."""
+    from sphcloth.report.command import report as write_report
+
+    write_report(folders or [Path()], out, title, viewers, Console())
 
 
 def main() -> None:

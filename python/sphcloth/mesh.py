@@ -46,6 +46,14 @@ def read_sections(data: Path) -> dict[str, list[str]]:
     return sections
 
 
+def read_masses(data: str | Path) -> dict[int, float]:
+    """Return atom type -> mass of a data file; UserError if it has no section Masses."""
+    lines = read_sections(Path(data)).get("Masses")
+    if not lines:
+        raise UserError(f"{data} has no section Masses: each atom has a mass of its own there")
+    return {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
+
+
 @dataclass(frozen=True)
 class ClothMesh:
     """Triangles over the vertices of the cloth.
@@ -60,9 +68,7 @@ class ClothMesh:
 
     def __post_init__(self) -> None:
         """Raise UserError if two neighbouring triangles are wound in opposite senses."""
-        corners = self.triangles
-        edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-        if len(np.unique(edges, axis=0)) < len(edges):
+        if len(np.unique(self._sides, axis=0)) < len(self._sides):
             raise UserError("neighbouring cloth triangles are wound in opposite senses")
 
     @classmethod
@@ -94,6 +100,22 @@ class ClothMesh:
                 f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
             ) from error
         return cls(ids, triangles.reshape(-1, 3))
+
+    @cached_property
+    def edges(self) -> NDArray[np.int64]:
+        """Edges of the triangles, each once, as indices into ``ids``, shape (E, 2)."""
+        return np.unique(np.sort(self._sides, axis=1), axis=0)
+
+    @property
+    def border_edges(self) -> int:
+        """Number of edges with a triangle on one side only; 0 for a closed mesh."""
+        return 2 * len(self.edges) - len(self._sides)
+
+    @cached_property
+    def _sides(self) -> NDArray[np.int64]:
+        """The three sides of each triangle in its sense, shape (3 T, 2)."""
+        a, b, c = self.triangles.T
+        return np.stack([np.concatenate([a, b, c]), np.concatenate([b, c, a])], axis=1)
 
     @cached_property
     def pieces(self) -> NDArray[np.int64]:
@@ -133,3 +155,8 @@ class ClothMesh:
     def corners(self, frame: Frame) -> NDArray[np.float64]:
         """Return the corners of each triangle in a frame, shape (T, 3 corners, 3)."""
         return self.positions(frame)[self.triangles]
+
+    def edge_lengths(self, frame: Frame) -> NDArray[np.float64]:
+        """Return the lengths of the edges in a frame, shape (E,)."""
+        start, end = np.moveaxis(self.positions(frame)[self.edges], 1, 0)
+        return np.linalg.norm(end - start, axis=1)

@@ -12,6 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth import metrics, plots
+from sphcloth.advice.evidence import Evidence
+from sphcloth.advice.unused import Finding, unused
 from sphcloth.log import ThermoTable
 from sphcloth.programs import installed_version
 from sphcloth.rendering.cast import Cast, Choice
@@ -44,6 +46,7 @@ class Summary:
         updates_per_second: the same per second of wall time in the loop.
         pictures: all PNG files, the contact sheet and the plot first.
         versions: package -> version.
+        unused: what is switched on in the script and was never needed.
     """
 
     time: float
@@ -61,6 +64,7 @@ class Summary:
     updates_per_second: float | None
     pictures: list[str]
     versions: dict[str, str]
+    unused: list[Finding]
 
     @property
     def passed(self) -> bool:
@@ -102,6 +106,8 @@ class Summary:
             rows = [row for row in rows if "n/a" not in row[1]]
         if self.crossing_steps:
             rows.append(("crossings seen at steps", ", ".join(map(str, self.crossing_steps[:8]))))
+        if self.unused:
+            rows.append(("never needed", "; ".join(each.topic for each in self.unused)))
         rows += [("", picture) for picture in self.pictures[:2]]
         return rows
 
@@ -142,6 +148,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
         pictures=[] if frames is None else draw(trajectory, cast, table, folder, frames),
         versions={package: installed_version(package) for package in VERSIONED},
+        unused=unused(Evidence.of_log(folder / "log.lammps")),
     )
 
 

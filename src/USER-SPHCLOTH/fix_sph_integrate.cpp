@@ -526,7 +526,9 @@ void FixSPHIntegrate::count_blocks()
 
 void FixSPHIntegrate::count(const StepLimit &own)
 {
-  particles_limited[static_cast<int>(own.dt < ceiling ? own.by : Limit::CEILING)]++;
+  const Limit by = own.dt < ceiling ? own.by : Limit::CEILING;
+  // in blocks floor and growth bound a particle as well: then none of its own limits does
+  if (by <= Limit::CEILING) particles_limited[static_cast<int>(by)]++;
 }
 
 // what every kind of particle has; returns its mass

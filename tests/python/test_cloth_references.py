@@ -9,17 +9,15 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import j0
 
+from sphcloth.references import folded_chain, light_cloth, stiffness
+from sphcloth.references.cantilever import HeavyElastica
+from sphcloth.references.catenary import HangingPolygon
+from sphcloth.references.chain import LinkedPendulum
+from sphcloth.references.hanging_chain import HangingChain
+from sphcloth.references.pendulum import pendulum_period
+from sphcloth.references.rest_angle import hinge_angles
+from sphcloth.references.xpbd_oscillator import Oscillator
 from sphcloth.validation import cloth
-from sphcloth.validation.cases.cantilever.reference import HeavyElastica
-from sphcloth.validation.cases.catenary.reference import HangingPolygon
-from sphcloth.validation.cases.folded_chain import reference as folded_chain
-from sphcloth.validation.cases.hanging_chain.reference import HangingChain
-from sphcloth.validation.cases.light_cloth import reference as light_cloth
-from sphcloth.validation.cases.pendulum.reference import period
-from sphcloth.validation.cases.rest_angle.reference import hinge_angles
-from sphcloth.validation.cases.stiffness import reference as stiffness
-from sphcloth.validation.cases.xpbd_oscillator.reference import Oscillator
-from sphcloth.validation.chain import LinkedPendulum
 
 G = 9.81
 
@@ -84,13 +82,13 @@ def test_elastic_polygon_balances_and_has_an_odd_number_of_links() -> None:
 
 @pytest.mark.parametrize(("degrees", "known"), [(10, 2.009893), (90, 2.367842), (170, 4.893524)])
 def test_period_of_the_simple_pendulum(degrees: float, known: float) -> None:
-    assert period(1.0, G, math.radians(degrees)) == pytest.approx(known, abs=5e-7)
+    assert pendulum_period(1.0, G, math.radians(degrees)) == pytest.approx(known, abs=5e-7)
 
 
 def test_a_single_link_swings_with_its_period() -> None:
     length, angle = 0.7, 2.0
     pendulum = LinkedPendulum.uniform(1, length, angle, 3.0)
-    after = pendulum.positions(period(length, 3.0, angle))[0]
+    after = pendulum.positions(pendulum_period(length, 3.0, angle))[0]
     np.testing.assert_allclose(after, pendulum.positions(0.0)[0], atol=1e-8)
 
 

@@ -11,12 +11,12 @@ import pytest
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.references.added_mass_piston import Piston
+from sphcloth.references.blob_on_free_sheet import Collision
+from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.validation import validate
 from sphcloth.validation.cases.added_mass_piston import Swing
-from sphcloth.validation.cases.added_mass_piston.reference import Piston
 from sphcloth.validation.cases.blob_on_free_sheet import rise
-from sphcloth.validation.cases.blob_on_free_sheet.reference import Collision
-from sphcloth.validation.cases.jet_on_sheet.reference import TurnedJet
 from sphcloth.validation.cases.lintearia import modes
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum
 

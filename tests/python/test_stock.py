@@ -9,8 +9,8 @@ import pytest
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.references.dam_break import Column
 from sphcloth.validation.cases.dam_break import Front
-from sphcloth.validation.cases.dam_break.reference import Column
 from sphcloth.validation.stock import CODES, StockBench, compare_stock, find, pairs
 
 SMALL = {"across": "16", "gap": "1e-3"}

@@ -19,23 +19,23 @@ from scipy.special import erfc
 
 from sphcloth.cli import main
 from sphcloth.errors import UserError
+from sphcloth.references import dam_break
+from sphcloth.references.couette import CouetteStart
+from sphcloth.references.hydrostatic import TaitColumn
+from sphcloth.references.jet import Jet
+from sphcloth.references.lintearia import HeavyLintearia, Lintearia
+from sphcloth.references.oscillating_drop import EllipticDrop
+from sphcloth.references.pinned_weight import Load
+from sphcloth.references.poiseuille import PoiseuilleStart
+from sphcloth.references.standing_wave import StandingWave
+from sphcloth.references.taylor_green import TaylorGreen
 from sphcloth.validation import compare, validate
 from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
-from sphcloth.validation.cases.couette.reference import CouetteStart
 from sphcloth.validation.cases.dam_break import Front
-from sphcloth.validation.cases.dam_break import reference as dam_break
-from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
-from sphcloth.validation.cases.jet.reference import Jet
-from sphcloth.validation.cases.lintearia.reference import HeavyLintearia, Lintearia
 from sphcloth.validation.cases.oscillating_drop import Motion
-from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
-from sphcloth.validation.cases.pinned_weight.reference import Load
-from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
-from sphcloth.validation.cases.standing_wave.reference import StandingWave
 from sphcloth.validation.cases.taylor_green import Decay
-from sphcloth.validation.cases.taylor_green.reference import TaylorGreen
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
 
 

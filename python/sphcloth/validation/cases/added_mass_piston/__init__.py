@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
+from sphcloth.references.added_mass_piston import Piston
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.added_mass_piston.reference import Piston
 from sphcloth.validation.common import numerics
 
 # time in which the water settles on the sheet, which is held, and rate of its damping: h/c0, c0/h

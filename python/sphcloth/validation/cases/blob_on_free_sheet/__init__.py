@@ -12,10 +12,10 @@ from scipy.spatial import cKDTree
 
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
+from sphcloth.references.blob_on_free_sheet import Collision
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.blob_on_free_sheet.reference import Collision
 from sphcloth.validation.common import lattice_density_in_space, numerics
 
 # the run goes on until the drop would have gone so far across the sheet; radii of the drop

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.cantilever.reference import HeavyElastica
 
 # of the lowest mode of a cantilever: omega = 3.516 sqrt(B / (mass per area * L^4))
 LOWEST_MODE = 3.516

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.catenary import HangingPolygon
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.catenary.reference import HangingPolygon
 
 # rate of the drag in sqrt(g / length)
 DRAG = 4.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from sphcloth.references.couette import CouetteStart
 from sphcloth.validation import channel
 from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Value
-from sphcloth.validation.cases.couette.reference import CouetteStart
 
 PARAMETERS = channel.parameters(
     Parameter("lid", 1.25e-5, "m/s", "velocity V of the upper plate", 1e-9, 10.0),

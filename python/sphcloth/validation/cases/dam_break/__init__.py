@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references import dam_break
+from sphcloth.references.dam_break import Column
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.dam_break import reference
-from sphcloth.validation.cases.dam_break.reference import Column
 from sphcloth.validation.common import lattice_density, numerics
 
 # shares of the particles over the width, from the coarsest run to the finest
@@ -41,7 +41,7 @@ QUANTITIES = (
     Quantity("front", "1", "largest excess of the front over the band of experiments", 0.05, 0.05),
     Quantity("front_rms", "1", "the same, rms"),
     Quantity("front_unshifted", "1", "largest excess without the shift of time"),
-    Quantity("shift", "sqrt(a/2g)", "shift of time that fits best", reference.LARGEST_SHIFT),
+    Quantity("shift", "sqrt(a/2g)", "shift of time that fits best", dam_break.LARGEST_SHIFT),
     Quantity("front_middle", "a", "rms difference of the half resolution from the finest run"),
     Quantity("front_coarse", "a", "the same of a quarter of the resolution"),
     Quantity("energy_loss", "1", "loss of all energy over the potential energy at first"),
@@ -71,7 +71,7 @@ class Front:
 
     def difference(self, other: Front) -> float:
         """Return the rms difference of two fronts at the times that experiments cover."""
-        times = reference.COMPARED
+        times = dam_break.COMPARED
         mine = np.interp(times, self.times, self.places)
         return compare.rms(mine - np.interp(times, other.times, other.places))
 
@@ -83,9 +83,9 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     runs = [_run(column, values, bench, label, n) for label, n in zip(SHARES, across, strict=True)]
     fronts = [Front.of(run, column) for run in runs]
     coarse, middle, fine = fronts
-    shift = reference.best_shift(fine.times, fine.places)
-    excess = reference.outside(fine.times, fine.places, shift)
-    unshifted = reference.outside(fine.times, fine.places, 0.0)
+    shift = dam_break.best_shift(fine.times, fine.places)
+    excess = dam_break.outside(fine.times, fine.places, shift)
+    unshifted = dam_break.outside(fine.times, fine.places, 0.0)
     seen = dict(zip(SHARES, fronts, strict=True))
     _plot(column, seen, runs[-1], shift, bench.out / f"{bench.name}.png")
     return {
@@ -151,10 +151,10 @@ def _plot(column: Column, seen: Mapping[str, Front], run: Run, shift: float, pat
         front.plot(each.times, each.places, style, color="C0", lw=1, label=label)
     fine = seen["fine"]
     front.plot(fine.times + shift, fine.places, "C3-", lw=1, label=f"fine, shifted by {shift:.2f}")
-    times = reference.COMPARED
-    lower, upper = reference.band(times)
+    times = dam_break.COMPARED
+    lower, upper = dam_break.band(times)
     front.fill_between(times, 0.95 * lower, 1.05 * upper, color="grey", alpha=0.2, label="limit")
-    for marker, (name, points) in zip("os", reference.EXPERIMENTS.items(), strict=True):
+    for marker, (name, points) in zip("os", dam_break.EXPERIMENTS.items(), strict=True):
         front.plot(*points.T, marker, color="k", ms=4, label=name)
     front.set(xlabel="t sqrt(2 g / a)", ylabel="x / a")
     front.legend(fontsize="small")

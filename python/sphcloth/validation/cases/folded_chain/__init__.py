@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from sphcloth.references import folded_chain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.folded_chain import reference
 
 # the coarse run of the order of convergence: share of the links
 COARSE = 0.5
@@ -47,11 +47,11 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
         _run({**values, "links": n}, bench, label)
         for n, label in zip(links, ("coarse", "fine"), strict=True)
     ]
-    free = reference.free_fall(values["length"], values["gravity"])
+    free = folded_chain.free_fall(values["length"], values["gravity"])
     falls = [_time_of_fall(run) / free for run in runs]
-    ideal = reference.fall_over_free_fall()
-    chain = reference.folded(links[-1], values["length"], values["gravity"])
-    exact_fall = reference.time_of_fall(chain)
+    ideal = folded_chain.fall_over_free_fall()
+    chain = folded_chain.folded(links[-1], values["length"], values["gravity"])
+    exact_fall = folded_chain.time_of_fall(chain)
     fallen = runs[-1].trajectory.times <= exact_fall
     exact = chain.positions(runs[-1].trajectory.times[fallen])[:, -1]
     error = np.linalg.norm(_tip(runs[-1])[fallen] - exact, axis=1) / values["length"]
@@ -72,8 +72,8 @@ def _odd(links: float) -> int:
 
 
 def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
-    free = reference.free_fall(values["length"], values["gravity"])
-    time = UNTIL * reference.fall_over_free_fall() * free
+    free = folded_chain.free_fall(values["length"], values["gravity"])
+    time = UNTIL * folded_chain.fall_over_free_fall() * free
     return bench.run(label, time, {**values, **cloth.stepping(time, values["dt"], FRAMES)})
 
 
@@ -86,7 +86,7 @@ def _time_of_fall(run: Run) -> float:
     """Return when the free end is lowest for the first time, s."""
     heights, times = _tip(run)[:, 1], run.trajectory.times
     turns = CubicSpline(times, heights).derivative().roots(extrapolate=False)
-    first = times[reference.first_lowest(heights)]
+    first = times[folded_chain.first_lowest(heights)]
     return float(turns[np.argmin(np.abs(turns - first))])
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.hanging_chain.reference import HangingChain
 
 # drag that calms the slowest motion along the chain without a swing, in its angular frequency
 DRAG = 2.0

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.hydrostatic.reference import TaitColumn
 from sphcloth.validation.common import WALL, lattice_density, numerics
 
 # rate of the damping while the column settles, in c0 / H

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.jet import Jet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.jet.reference import Jet
 from sphcloth.validation.common import lattice_density, numerics
 
 # share of the particles over the thickness in the coarse run

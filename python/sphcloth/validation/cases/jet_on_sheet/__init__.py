@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.jet_on_sheet.reference import TurnedJet
 from sphcloth.validation.common import lattice_density_in_space, numerics
 
 # share of the particles over the thickness in the coarse run

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references import light_cloth
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.light_cloth import reference
 
 FRAMES = 20
 # the runs of the order of convergence: time steps in that of the case
@@ -44,7 +44,7 @@ QUANTITIES = (
 
 def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     """Run all stiffnesses, and the largest one with half the time step."""
-    deepest = reference.lowest(values["rows"], values["size"], values["gravity"], values["time"])
+    deepest = light_cloth.lowest(values["rows"], values["size"], values["gravity"], values["time"])
     stiffnesses = np.geomspace(values["softest"], values["stiffest"], values["runs"])
     runs = [
         _run({**values, "stiffness": float(stiffness)}, bench, f"stiffness_{stiffness:.3g}")
@@ -82,7 +82,7 @@ def _rows(run: Run, values: Mapping[str, Value]) -> float:
     first, last = run.trajectory[0].positions, run.trajectory[-1].positions
     by_row = np.argsort(first[:, 0], kind="stable").reshape(values["rows"], -1)
     middles = last[by_row].mean(axis=1)[1:, [0, 2]] + [values["size"] / 2, 0]
-    chain = reference.falling_sheet(values["rows"], values["size"], values["gravity"])
+    chain = light_cloth.falling_sheet(values["rows"], values["size"], values["gravity"])
     return (
         compare.rms(np.linalg.norm(middles - chain.positions(values["time"]), axis=1))
         / values["size"]
@@ -108,7 +108,7 @@ def _plot(
 ) -> None:
     """Draw the sheets from the side in the end, and their lowest vertices over time."""
     figure, (side, lowest) = compare.panels(1, 2)
-    chain = reference.falling_sheet(values["rows"], values["size"], values["gravity"])
+    chain = light_cloth.falling_sheet(values["rows"], values["size"], values["gravity"])
     exact = chain.positions(values["time"])
     side.plot(exact[:, 0] - values["size"] / 2, exact[:, 1], "k-", label="chain of the rows")
     for run, stiffness in zip(runs, stiffnesses, strict=True):

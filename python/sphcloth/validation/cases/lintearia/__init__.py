@@ -15,11 +15,11 @@ from scipy.spatial import cKDTree
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
+from sphcloth.references.lintearia import HeavyLintearia, Lintearia
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.lintearia.reference import HeavyLintearia, Lintearia
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.oscillating_drop.reference import EllipticDrop
 from sphcloth.validation.common import lattice_density, numerics
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega

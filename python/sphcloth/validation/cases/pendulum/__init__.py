@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from sphcloth.references.chain import LinkedPendulum
+from sphcloth.references.pendulum import pendulum_period
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.pendulum.reference import period
-from sphcloth.validation.chain import LinkedPendulum
 
 # time steps of the coarse runs of the order of convergence, in that of the fine ones
 COARSE = 2.0
@@ -46,7 +46,7 @@ QUANTITIES = (
 
 def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     """Run one link and the chain with two time steps each."""
-    expected = period(values["length"], values["gravity"], math.radians(values["angle"]))
+    expected = pendulum_period(values["length"], values["gravity"], math.radians(values["angle"]))
     single = {**values, "links": 1, "time": 1.05 * expected}
     swings = [run_pendulum(coarser(single), bench, "period_coarse")]
     swings.append(run_pendulum(single, bench, "period_fine"))

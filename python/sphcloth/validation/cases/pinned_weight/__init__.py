@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import above_sheet, crossings
+from sphcloth.references.pinned_weight import Load
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.pinned_weight.reference import Load
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
 

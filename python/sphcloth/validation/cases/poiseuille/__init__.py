@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from sphcloth.references.poiseuille import PoiseuilleStart
 from sphcloth.validation import channel
 from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Value
-from sphcloth.validation.cases.poiseuille.reference import PoiseuilleStart
 
 PARAMETERS = channel.parameters(
     Parameter("drive", 1e-4, "m/s^2", "acceleration along the plates", 1e-9, 100.0),

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from sphcloth.errors import UserError
+from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.standing_wave.reference import StandingWave
 from sphcloth.validation.common import WALL, lattice_density, numerics
 
 # rate of the damping while the water settles, in c0 / H

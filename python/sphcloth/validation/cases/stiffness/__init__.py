@@ -10,10 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
+from sphcloth.references import stiffness
 from sphcloth.validation import cloth
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.stiffness import reference
 
 STIFFNESSES = (0.0, 0.3, 1.0)
 FRAMES = (0, 5, 15)
@@ -52,7 +52,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     doubled = _sheet(doubled, bench, "twice_the_sweeps", 0.3)
     step = cloth.substep(_stepped(values))
     steps = round(FRAMES[-1] * values["frame"] / step)
-    fall = reference.free_fall(values["gravity"], step, steps, cloth.first_kick(values))
+    fall = stiffness.free_fall(values["gravity"], step, steps, cloth.first_kick(values))
     _picture(runs, values, bench.out / f"{bench.name}.png")
     return {
         "sag_middle": sags[0.3] / sags[0.0],
@@ -89,7 +89,7 @@ def _edge(values: Mapping[str, Value], bench: Bench, sweeps: int, k: float = 0.3
     # sweeps do not divide the step here, whatever the solver of the sheet
     changed["solver"] = "gs" if values["solver"] == "substeps" else values["solver"]
     run = bench.run(f"edge_{sweeps}", step, shared | changed)
-    exact = reference.first_stretch(k, values["gravity"], step, cloth.first_kick(values))
+    exact = stiffness.first_stretch(k, values["gravity"], step, cloth.first_kick(values))
     stretch = -float(run.trajectory[-1].positions[1, 2]) - values["size"]
     return abs(stretch / exact - 1)
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.taylor_green import TaylorGreen
 from sphcloth.validation import compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.taylor_green.reference import TaylorGreen
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import density_sum
 
@@ -81,7 +81,7 @@ class Decay:
             mode = flow.mode(frame.positions)
             square = np.sum(velocities**2, axis=1)
             strength = np.sum(mode * velocities) / np.sum(mode**2)
-            exact = math.exp(-flow.rate * frame.time) * mode
+            exact = flow.velocity(frame.positions, frame.time)
             error = math.sqrt(np.mean(np.sum((velocities - exact) ** 2, axis=1)))
             rows.append((math.sqrt(square.max()), square.mean(), strength, error))
         largest, energy, strength, errors = np.transpose(rows)

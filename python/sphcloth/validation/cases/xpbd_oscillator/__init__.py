@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.references.xpbd_oscillator import Oscillator
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.cases.xpbd_oscillator.reference import Oscillator
 
 # sweeps of the second run, in those of the first
 MORE = 10

@@ -1,0 +1,1 @@
+"""What a scene needs and what it never used, from a short run of its script."""

@@ -1,0 +1,155 @@
+"""The commands of a run as LAMMPS has echoed them into the log, variables filled in."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sphcloth.errors import UserError
+
+# what fix sph/integrate prints at the end of a run
+STEPS_BY_LIMIT = "sph/integrate: steps by limit:"
+
+
+@dataclass(frozen=True)
+class Fluid:
+    """One type of water.
+
+    Attributes:
+        kind: atom type, or the range, as in the script.
+        words: all arguments of ``pair_coeff``.
+        sound: speed of sound at rest.
+        speed: reference speed of ``fluctuation``; None if the script gives the speed of sound.
+        alpha, nu: artificial and kinematic viscosity.
+        support: radius of the kernel.
+    """
+
+    kind: str
+    words: tuple[str, ...]
+    sound: float
+    speed: float | None
+    alpha: float
+    nu: float
+    support: float
+
+    @classmethod
+    def of(cls, words: Sequence[str], support: float) -> Fluid:
+        """Read the arguments of ``pair_coeff I I fluid rho0 ...``."""
+        given = {word: words[n + 1 : n + 3] for n, word in enumerate(words) if n > 3}
+        number = {word: float(rest[0]) for word, rest in given.items() if _is_number(rest[:1])}
+        speed = None
+        if "fluctuation" in given:
+            share, speed = map(float, given["fluctuation"])
+            sound = speed / math.sqrt(share)
+        else:
+            sound = number["c0"] if "c0" in number else math.sqrt(number["k"])
+        viscosity = number.get("alpha", 0.0), number.get("nu", 0.0)
+        own = number.get("support", support)
+        return cls(words[0], tuple(words), sound, speed, *viscosity, own)
+
+
+@dataclass(frozen=True)
+class Fix:
+    """One fix: its ID, group, style and what follows."""
+
+    id: str
+    group: str
+    style: str
+    arguments: tuple[str, ...]
+
+    def value(self, keyword: str, default: str) -> str:
+        """Return the word behind a keyword, the last one if it is there twice."""
+        found = [n for n, word in enumerate(self.arguments[:-1]) if word == keyword]
+        return self.arguments[found[-1] + 1] if found else default
+
+    @property
+    def line(self) -> str:
+        """The command without its keywords."""
+        return f"fix {self.id} {self.group} {self.style}"
+
+
+@dataclass(frozen=True)
+class Commands:
+    """What a script has told LAMMPS, later commands in the place of earlier ones.
+
+    Attributes:
+        fixes: by ID, those deleted by ``unfix`` as well: they were there for a while.
+        fluids: by type.
+        pair_style, neighbor, dihedral_style, run_style: arguments; empty without the command.
+        bonds, hinges: by type, the arguments behind it.
+        variables: equal-style variables, name -> formula.
+        steps_by_limit: name of a limit -> steps that it set, over all runs of one fix.
+    """
+
+    fixes: dict[str, Fix] = field(default_factory=dict)
+    fluids: dict[str, Fluid] = field(default_factory=dict)
+    pair_style: tuple[str, ...] = ()
+    neighbor: tuple[str, ...] = ()
+    dihedral_style: tuple[str, ...] = ()
+    run_style: tuple[str, ...] = ()
+    bonds: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    hinges: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    variables: dict[str, str] = field(default_factory=dict)
+    steps_by_limit: dict[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, log: Path) -> Commands:
+        """Read the commands from a log; UserError if there is none."""
+        if not log.is_file():
+            raise UserError(f"no log file {log}")
+        text = log.read_text(encoding="utf-8", errors="replace")
+        said: dict[str, list[list[str]]] = {}
+        limits: dict[str, int] = {}
+        for line in text.splitlines():
+            if STEPS_BY_LIMIT in line:
+                # the fix goes on counting in the next run
+                counts = line.partition(STEPS_BY_LIMIT)[2].split()
+                limits = dict(zip(counts[::2], map(int, counts[1::2]), strict=True))
+                continue
+            # what still has a $ is echoed again with its value
+            words = [] if "$" in line else line.partition("#")[0].split()
+            if words:
+                said.setdefault(words[0], []).append(words[1:])
+        return cls._of(said, limits)
+
+    @classmethod
+    def _of(cls, said: dict[str, list[list[str]]], limits: dict[str, int]) -> Commands:
+        def last(command: str) -> tuple[str, ...]:
+            return tuple(said.get(command, [[]])[-1])
+
+        def by_type(command: str) -> dict[str, tuple[str, ...]]:
+            return {words[0]: tuple(words[1:]) for words in said.get(command, []) if words}
+
+        fixes = [words for words in said.get("fix", []) if len(words) > 2]
+        style = last("pair_style")
+        support = float(style[1]) if style[:1] == ("sph/tait",) else math.nan
+        coefficients = [words for words in said.get("pair_coeff", []) if words[2:3] == ["fluid"]]
+        formulas = [w for w in said.get("variable", []) if len(w) > 2 and w[1] == "equal"]
+        return cls(
+            {words[0]: Fix(*words[:3], tuple(words[3:])) for words in fixes},
+            {words[0]: Fluid.of(words, support) for words in coefficients},
+            style,
+            last("neighbor"),
+            last("dihedral_style"),
+            last("run_style"),
+            by_type("bond_coeff"),
+            by_type("dihedral_coeff"),
+            {words[0]: "".join(words[2:]) for words in formulas},
+            limits,
+        )
+
+    def styled(self, style: str) -> list[Fix]:
+        """Return all fixes of a style, in order."""
+        return [fix for fix in self.fixes.values() if fix.style == style]
+
+    @property
+    def stepper(self) -> Fix | None:
+        """The fix sph/integrate."""
+        return next(iter(self.styled("sph/integrate")), None)
+
+
+def _is_number(words: Sequence[str]) -> bool:
+    return bool(words) and re.fullmatch(r"[-+]?[\d.]+(e[-+]?\d+)?", words[0], re.I) is not None

@@ -1,0 +1,61 @@
+"""What was measured in a run: columns by the name of the fix's value, and the commands."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sphcloth.advice.commands import Commands
+from sphcloth.log import ThermoTable
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A run as far as it went.
+
+    Attributes:
+        commands: what the script said.
+        columns: ``f_contact[1]`` and the like -> values over the run, shape (rows,).
+        whole: whether the run went to the end of the script.
+        steps: number of time steps.
+        time: physical time reached.
+    """
+
+    commands: Commands
+    columns: Mapping[str, NDArray[np.float64]]
+    whole: bool
+    steps: int
+    time: float
+
+    @classmethod
+    def of_log(cls, log: Path) -> Evidence:
+        """Take a finished run from its log; a column ``v_x`` counts as what x stands for."""
+        commands, table = Commands.read(log), ThermoTable.read(log)
+        columns = dict(table.columns)
+        for name, formula in commands.variables.items():
+            if f"v_{name}" in columns and re.fullmatch(r"f_\w+(\[\d+\])?", formula):
+                columns[formula] = columns[f"v_{name}"]
+        steps = int(table["Step"][-1] - table["Step"][0])
+        return cls(commands, columns, True, steps, float(table["Time"][-1]))
+
+    def largest(self, name: str, until: float = math.inf) -> float | None:
+        """Return the largest value of a column up to a time of the probe.
+
+        None if there is no such column, or no number in it.
+        """
+        values = self.columns.get(name, np.empty(0))
+        if until < math.inf:
+            values = values[self.columns["v_advise_time"] <= until]
+        values = values[np.isfinite(values)]
+        return float(values.max()) if len(values) else None
+
+    def last(self, name: str) -> float | None:
+        """Return the last value of a column, None if there is no such column."""
+        values = self.columns.get(name, np.empty(0))
+        return float(values[-1]) if len(values) else None

@@ -1,0 +1,79 @@
+"""Strain, elastic energy and volume of the cloth in a frame, and the forces of its pins."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sphcloth.errors import UserError
+from sphcloth.mesh import ClothMesh
+from sphcloth.trajectory import Frame
+
+Array = NDArray[np.float64]
+
+
+def edge_strain(mesh: ClothMesh, frame: Frame, rest: Frame) -> Array:
+    """Return length / rest length - 1 of each edge of the triangles, shape (E,).
+
+    Args:
+        mesh: the sheet; the order is that of :attr:`ClothMesh.edges`.
+        frame: the sheet as it is.
+        rest: the sheet as it was when ``fix pbd/cloth`` was defined.
+
+    Raises:
+        UserError: an edge without length at rest.
+    """
+    before = mesh.edge_lengths(rest)
+    if not np.all(before > 0):
+        raise UserError(f"an edge has no length at step {rest.step}: that is no rest shape")
+    return mesh.edge_lengths(frame) / before - 1
+
+
+def elastic_energy(mesh: ClothMesh, frame: Frame, rest: Frame, compliance: ArrayLike) -> float:
+    """Return sum (l - d)^2 / (2 A) over the edges of the triangles.
+
+    Args:
+        mesh: the sheet.
+        frame: the sheet as it is.
+        rest: the sheet with its rest lengths d.
+        compliance: A of ``bond_coeff``, distance over force; one for all, or shape (E,).
+
+    Raises:
+        UserError: a compliance that is not above 0: rigid edges store nothing.
+    """
+    compliance = np.asarray(compliance, dtype=np.float64)
+    if not np.all(compliance > 0):
+        raise UserError(f"elastic_energy: compliance {np.min(compliance):g}: it must be above 0")
+    longer = mesh.edge_lengths(frame) - mesh.edge_lengths(rest)
+    return float(np.sum(longer**2 / (2 * compliance)))
+
+
+def enclosed_volume(mesh: ClothMesh, frame: Frame) -> float:
+    """Return the volume inside closed meshes, positive if triangles run counter-clockwise outside.
+
+    The sum of the tetrahedra from the mean of the vertices to the triangles.
+
+    Raises:
+        UserError: the mesh has a border.
+    """
+    if mesh.border_edges:
+        raise UserError(
+            f"enclosed_volume: the mesh has a border of {mesh.border_edges} edges: it encloses "
+            "nothing"
+        )
+    corners = mesh.corners(frame) - mesh.positions(frame).mean(axis=0)
+    return float(np.sum(np.linalg.det(corners)) / 6)
+
+
+def pin_force(mesh: ClothMesh, frame: Frame, *columns: str) -> Array:
+    """Return the sum of the forces that hold the vertices, shape (3,).
+
+    Args:
+        mesh: the sheet.
+        frame: dumped with the forces of ``compute pbd/atom ... fx fy fz``.
+        columns: names of the three columns, such as ``c_hold[1]``, ``c_hold[2]``, ``c_hold[3]``.
+
+    Raises:
+        UserError: a column is missing.
+    """
+    return mesh.vectors(frame, *columns).sum(axis=0)

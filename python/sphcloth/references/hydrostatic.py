@@ -1,0 +1,60 @@
+"""A column of Tait fluid at rest under its own weight.
+
+A particle that starts at depth d0 in a column of uniform density rho0 always carries the mass
+above it, so its pressure at rest is rho0 g d0 for any equation of state. Its height follows from
+the Tait density at that pressure: dy = (rho0 / rho) dd0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sphcloth.references.checks import check, check_positive
+
+
+@dataclass(frozen=True)
+class TaitColumn:
+    """A column that started with density rho0 everywhere.
+
+    Attributes:
+        height: undisturbed height, m.
+        rho0: rest density, kg/m^3.
+        gravity: acceleration, m/s^2.
+        sound: speed of sound at rest, m/s.
+        gamma: exponent of the equation of state, > 1.
+
+    Raises:
+        UserError: a value for which there is no such scene.
+    """
+
+    height: float
+    rho0: float
+    gravity: float
+    sound: float
+    gamma: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "height", "rho0", "sound")
+        check(self, "gamma", self.gamma > 1, "it must be above 1")
+
+    def pressure(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Return the pressure in Pa of what started at a depth in m."""
+        return self.rho0 * self.gravity * np.asarray(depth, dtype=np.float64)
+
+    def level(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Return the height above the base in m at which it comes to rest."""
+        return self._thickness(self.height) - self._thickness(depth)
+
+    @property
+    def settlement(self) -> float:
+        """How far the surface sinks, m."""
+        return float(self.height - self.level(0.0))
+
+    def _thickness(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Return the thickness at rest of what lay above a depth: the integral of rho0 / rho."""
+        rate = self.gamma * self.gravity / self.sound**2
+        power = 1 - 1 / self.gamma
+        return np.expm1(power * np.log1p(rate * np.asarray(depth))) / (rate * power)

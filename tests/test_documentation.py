@@ -156,6 +156,15 @@ def test_every_command_ends_a_mistake_with_exit_code_2(
 
 # links
 
+# functions that the walk-through of CONTRIBUTING lets the reader write
+TO_BE_WRITTEN = ("project_areas", "material_of_area", "channel_of_area_colour")
+CODE = "".join(
+    path.read_text()
+    for folder, kinds in (("src", "*.[hc]*"), ("python", "*.py"))
+    for path in (ROOT / folder).rglob(kinds)
+    if path.is_file()
+)
+
 
 def anchors(page: Path) -> set[str]:
     """The anchors of a page's heads, as a forge makes them."""
@@ -178,6 +187,8 @@ def test_every_link_leads_somewhere(page: Path) -> None:
     for source in re.findall(r"`((?:core/)?\w+\.(?:h|cpp))`", prose):
         ours = [path for folder in ("src", "tests/core") for path in (ROOT / folder).rglob(source)]
         assert ours or source in ("fix_nve.cpp", "version.h"), source
+    for function in re.findall(r"`(?:\w+::)?(\w+)\(\)`", prose):
+        assert re.search(rf"\b{function}(<\w+>)?\(", CODE) or function in TO_BE_WRITTEN, function
 
 
 # LAMMPS input

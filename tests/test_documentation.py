@@ -1,7 +1,8 @@
 """The documentation is complete and true: styles, commands, links, and all code that it shows.
 
 A code block without a language is LAMMPS input, `sh` is for a shell, `python` for Python and `text`
-for what nobody types: syntax, output, trees of files.
+for what nobody types: syntax, output, trees of files. A comment `<!-- run by tests/FILE -->` above
+a block says which other test runs it, `<!-- not run: REASON -->` why nothing does.
 """
 
 from __future__ import annotations
@@ -39,36 +40,48 @@ HEADS = ["Syntax", "Examples", "Description", ".*[Oo]utput", "Restrictions", "Re
 
 @dataclass(frozen=True)
 class Block:
-    """A block of code: its page, the line where it stands, its language and its text."""
+    """A block of code: its page and line, its language and text, and what is said above it."""
 
     page: str
     line: int
     language: str
     text: str
+    remark: str | None
 
     @property
     def place(self) -> str:
         return f"{self.page}:{self.line}"
 
 
+BLOCK = r"(?:^<!-- ((?:run by|not run:) .*?) -->\n)?^```(\w*)\n(.*?)^```$"
+
+
 def blocks_of(page: Path) -> Iterator[Block]:
     text = page.read_text()
-    for found in re.finditer(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+    for found in re.finditer(BLOCK, text, re.MULTILINE | re.DOTALL):
         line = text.count("\n", 0, found.start()) + 1
-        yield Block(str(page.relative_to(ROOT)), line, found[1], found[2])
+        yield Block(str(page.relative_to(ROOT)), line, found[2], found[3], found[1])
 
 
 BLOCKS = [block for page in PAGES for block in blocks_of(page)]
 
 
 def blocks(language: str) -> list:
-    return [pytest.param(b, id=b.place) for b in BLOCKS if b.language == language]
+    chosen = [block for block in BLOCKS if block.language == language and not block.remark]
+    return [pytest.param(block, id=block.place) for block in chosen]
 
 
 def test_every_block_is_of_a_language_that_is_checked() -> None:
     assert {block.language for block in BLOCKS} == {"", "sh", "python", "text"}
     fences = sum(len(re.findall(r"^ *```", page.read_text(), re.MULTILINE)) for page in PAGES)
     assert fences == 2 * len(BLOCKS)
+
+
+def test_tests_that_run_blocks_are_there() -> None:
+    remarks = [block.remark for block in BLOCKS if block.remark]
+    runners = [remark.removeprefix("run by ") for remark in remarks if remark.startswith("run by")]
+    assert runners
+    assert all((ROOT / runner).is_file() for runner in runners)
 
 
 # styles
@@ -135,7 +148,7 @@ def test_every_command_has_help_and_is_in_the_documentation(verb: str) -> None:
     without = [option.name for option in command.params if not getattr(option, "help", "help")]
     assert not without
     shells = "".join(block.text for block in BLOCKS if block.language == "sh")
-    assert re.search(rf"\bsphcloth {verb}\b", shells + (ROOT / "docs/install.md").read_text())
+    assert re.search(rf"\bsphcloth {verb}\b", shells)
 
 
 @pytest.mark.parametrize("verb", COMMANDS)
@@ -237,30 +250,13 @@ fix             sheet cloth pbd/cloth pin pins
 fix             contact water cloth/contact 0.01
 dump            frames all custom 100 frames.lammpstrj id type x y z
 """
-# blocks that need a file, and the tests that run them
-NOT_HERE = {
-    "docs/from_a_mesh_to_a_scene.md: bowl.data": "tests/python/test_mesh_guide.py",
-    "docs/styles/fix_pbd_cloth.md: sheet.data": "tests/styles/test_cloth_extremes.py",
-    "docs/install.md: /path/to": "tests/test_package.py",
-}
-
-
-def runs_elsewhere(block: Block) -> bool:
-    for key, test in NOT_HERE.items():
-        page, _, file = key.partition(": ")
-        if block.page == page and file in block.text:
-            assert (ROOT / test).is_file()
-            return True
-    return False
 
 
 def is_script(block: Block) -> bool:
     return "create_box" in block.text and "\nrun " in block.text
 
 
-@pytest.mark.parametrize(
-    "block", [param for param in blocks("") if not runs_elsewhere(param.values[0])]
-)
+@pytest.mark.parametrize("block", blocks(""))
 def test_input_is_read_and_starts(
     block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -370,7 +366,7 @@ def command_lines() -> list:
     """Every line of every shell block, lines that go on joined."""
     lines = []
     for block in BLOCKS:
-        if block.language == "sh":
+        if block.language == "sh" and not block.remark:
             for line in block.text.replace("\\\n", " ").splitlines():
                 words = shlex.split(line, comments=True)
                 if words:
@@ -475,12 +471,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-GUIDE = "docs/from_a_mesh_to_a_scene.md"  # in tests/python/test_mesh_guide.py
-
-
-@pytest.mark.parametrize(
-    "block", [param for param in blocks("python") if param.values[0].page != GUIDE]
-)
+@pytest.mark.parametrize("block", blocks("python"))
 def test_python_runs(
     block: Block, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -35,7 +35,11 @@ PAGES = [
     *sorted((ROOT / "docs").rglob("*.md")),
     *sorted((ROOT / "examples").glob("*/README.md")),
 ]
+TUTORIAL = ROOT / "docs" / "tutorial.ipynb"
 HEADS = ["Syntax", "Examples", "Description", ".*[Oo]utput", "Restrictions", "Related", "Default"]
+
+
+BLOCK = r"(?:^<!-- ((?:run by|not run:) .*?) -->\n)?^```(\w*)\n(.*?)^```$"
 
 
 @dataclass(frozen=True)
@@ -51,9 +55,6 @@ class Block:
     @property
     def place(self) -> str:
         return f"{self.page}:{self.line}"
-
-
-BLOCK = r"(?:^<!-- ((?:run by|not run:) .*?) -->\n)?^```(\w*)\n(.*?)^```$"
 
 
 def blocks_of(page: Path) -> Iterator[Block]:
@@ -186,9 +187,17 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", head).replace(" ", "-") for head in plain}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def prose_of(page: Path) -> str:
+    """A page or a notebook without its code."""
+    if page == TUTORIAL:
+        cells = json.loads(page.read_text())["cells"]
+        return "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
+    return re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("page", [*PAGES, TUTORIAL], ids=lambda page: str(page.relative_to(ROOT)))
 def test_every_link_leads_somewhere(page: Path) -> None:
-    prose = re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    prose = prose_of(page)
     for target in re.findall(r"\]\(([^)\s]+)\)", prose):
         if re.match(r"\w+:", target):
             continue
@@ -482,7 +491,7 @@ def test_python_runs(
 
 def test_the_tutorial_runs_and_finds_what_it_says(tmp_path: Path) -> None:
     """Its code as one program; `make docs` runs it as a notebook."""
-    cells = json.loads((ROOT / "docs" / "tutorial.ipynb").read_text())["cells"]
+    cells = json.loads(TUTORIAL.read_text())["cells"]
     assert not any(cell.get("outputs") for cell in cells)
     code = "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
     checks = """

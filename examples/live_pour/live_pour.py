@@ -52,7 +52,7 @@ fix             gravity all gravity 9.81 vector 0 0 -1
 fix             drain water sph/drain
 fix             step water sph/integrate global
 run_style       sph/adaptive block
-fix             sheet cloth pbd/cloth pin pins damping 5.0
+fix             sheet cloth pbd/cloth solver gs pin pins damping 5.0
 fix             contact water cloth/contact 0.01
 compute         water water sph/atom density dt active
 """

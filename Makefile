@@ -7,7 +7,7 @@ RANKS  ?= 2
 SIZE   ?= small
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
-.PHONY: demo test validate lint pictures clean
+.PHONY: demo test validate lint docs wheel-check pictures clean
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -29,6 +29,22 @@ validate: $(VENV)/installed
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
+
+# the documentation as HTML, build/docs/index.html; a warning is an error
+docs: $(VENV)/installed
+	$(BIN)/pip install --quiet 'sphcloth[docs]'
+	rm -rf build/reference
+	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/docs
+
+# source archive, the wheel that it makes, and the wheel alone in an environment and a folder of its own
+wheel-check: $(VENV)/bin/python
+	rm -rf dist
+	$(BIN)/pip install --quiet build
+	$(BIN)/python -m build --outdir dist .
+	alone=$$(mktemp -d) && $(PYTHON) -m venv $$alone/venv && \
+	  $$alone/venv/bin/pip install --quiet dist/sphcloth-*.whl && cd $$alone && \
+	  venv/bin/sphcloth doctor && \
+	  venv/bin/sphcloth run pour --size tiny --ranks 2 --no-pictures --out pour && rm -r $$alone
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

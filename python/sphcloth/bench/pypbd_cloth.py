@@ -80,4 +80,5 @@ def main() -> None:
     json.dump({"seconds": seconds, "threads": process / max(thread, 1e-9)}, sys.stdout)
 
 
-main()
+if __name__ == "__main__":
+    main()

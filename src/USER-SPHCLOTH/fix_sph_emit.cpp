@@ -121,7 +121,7 @@ void FixSPHEmit::init()
     error->all(FLERR,
                "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
                label, itype, mass);
-  const double excess = (atom->rmass ? mass : atom->mass[itype]) / at_rest - 1.0;
+  const double excess = mass_of_one() / at_rest - 1.0;
   if (comm->me == 0 && excess > 0.01)
     error->warning(
         FLERR,
@@ -182,8 +182,8 @@ void FixSPHEmit::emit_layer(double age)
                label, wanted - all, wanted);
   atom->natoms += all;
   refresh_map(atom);
-  const double each = atom->rmass ? mass : atom->mass[itype];
-  for (int d = 0; d < 3; d++) momentum[d] += static_cast<double>(all) * each * velocity[d];
+  const double more = static_cast<double>(all) * mass_of_one();
+  for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
   emitted += all;
   layers++;
 }
@@ -194,6 +194,14 @@ void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)
   if (i < 0) return;
   for (int d = 0; d < 3; d++) atom->v[i][d] = velocity[d];
   if (atom->rmass) atom->rmass[i] = mass;
+}
+
+double FixSPHEmit::mass_of_one() const { return atom->rmass ? mass : atom->mass[itype]; }
+
+FixSPHEmit::Poured FixSPHEmit::poured() const
+{
+  const Vec3 all(momentum[0], momentum[1], momentum[2]);
+  return {static_cast<double>(emitted) * mass_of_one(), all, 0.5 * all.dot(velocity)};
 }
 
 // particles that are still to come, then the momentum that came in

@@ -36,6 +36,16 @@ sphcloth tradeoff my.in --vary dt=1e-3,5e-4 --reference dt=1e-5 --quantity KinEn
 """
 
 
+STRESS_EXAMPLES = """
+Examples:
+
+sphcloth stress --quick
+
+sphcloth stress impact-3-normal --scheme global,block --ranks 1,2
+
+sphcloth stress --json stress.json
+"""
+
 RENDER_EXAMPLES = """
 Examples:
 
@@ -492,6 +502,52 @@ def tradeoff(
         result.write(json_file)
     show(result, console)
     console.print(*(str(file) for file in files), sep="\n", highlight=False, soft_wrap=True)
+
+
+@app.command(epilog=STRESS_EXAMPLES)
+def stress(
+    case: Annotated[
+        str | None,
+        typer.Argument(metavar="CASE", help="Name of a case; all without one; --list shows them."),
+    ] = None,
+    scheme: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,...",
+            help="Schemes: constant, global, individual, block.",
+            show_default="all that are meaningful",
+        ),
+    ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N,M,...", help="Numbers of MPI ranks.", show_default="1,2,4; quick 1,2"
+        ),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Run the smaller variants.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
+    ] = None,
+    show_list: Annotated[
+        bool, typer.Option("--list", help="Show all cases and what must happen.")
+    ] = False,
+) -> None:
+    """Run the extremes; exit code 1 if one of them does not do what it must."""
+    import time
+
+    from sphcloth.stress import command
+
+    console, start = Console(), time.monotonic()
+    if show_list:
+        command.show_cases(console)
+        return
+    found = command.stress(case, scheme, ranks, quick, out, console)
+    if json_file is not None:
+        command.write(found, json_file, start)
+    raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
 
 
 def main() -> None:

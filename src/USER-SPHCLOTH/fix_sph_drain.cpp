@@ -13,6 +13,7 @@
 #include "region.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -71,6 +72,11 @@ void FixSPHDrain::init()
 bool FixSPHDrain::leaves(int i) const
 {
   const double *x = atom->x[i];
+  if (!std::isfinite(0.0 * x[0] + 0.0 * x[1] + 0.0 * x[2]))
+    error->one(FLERR,
+               "{}: particle {} is at {} {} {}: it does not leave, the run has failed; look at the "
+               "forces on it, or take a smaller time step",
+               label, atom->tag[i], x[0], x[1], x[2]);
   double lamda[3];
   const double *place = x, *lo = domain->boxlo, *hi = domain->boxhi;
   if (domain->triclinic) {

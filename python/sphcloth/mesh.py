@@ -38,12 +38,24 @@ def read_sections(data: Path) -> dict[str, list[str]]:
         raise UserError(f"no data file {data}")
     try:
         with _Parser(data) as parser:
-            sections = parser.grab_datafile()[1]
+            header, sections = parser.grab_datafile()
     except (ValueError, IndexError):
         sections = {}
     if "Atoms" not in sections:
         raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
+    _check_counts(header, sections, data)
     return sections
+
+
+def _check_counts(header: dict[str, str], sections: dict[str, list[str]], data: Path) -> None:
+    """Raise UserError where a section does not have as many lines as the head of the file says."""
+    for section in ("Atoms", "Bonds", "Angles", "Dihedrals"):
+        told, there = header.get(section.lower(), "0").strip(), len(sections.get(section, []))
+        if told != str(there):
+            raise UserError(
+                f"{data}: {there} lines in the section {section}, the head of the file says "
+                f"'{told}': it was cut off or damaged, write it again"
+            )
 
 
 @dataclass(frozen=True)

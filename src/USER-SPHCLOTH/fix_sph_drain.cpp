@@ -11,6 +11,7 @@
 #include "error.h"
 #include "group.h"
 #include "region.h"
+#include "restart_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,18 +116,20 @@ void FixSPHDrain::pre_exchange()
   refresh_map(atom);
 }
 
+struct FixSPHDrain::Record {
+  bigint drained;
+  double taken[4];
+};
+
 void FixSPHDrain::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[5] = {static_cast<double>(drained), taken[0], taken[1], taken[2], taken[3]};
-  const int bytes = sizeof(list);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_record(fp, Record{drained, {taken[0], taken[1], taken[2], taken[3]}});
 }
 
 void FixSPHDrain::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  drained = static_cast<bigint>(list[0]);
-  std::copy(list + 1, list + 5, taken);
+  const auto record = read_record<Record>(buf, label, error);
+  drained = record.drained;
+  std::copy(record.taken, record.taken + 4, taken);
 }

@@ -14,6 +14,7 @@
 #include "force.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
+#include "restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -211,25 +212,22 @@ double FixSPHEmit::compute_vector(int n)
   return n == 0 ? static_cast<double>(total - emitted) : momentum[n - 1];
 }
 
+struct FixSPHEmit::Record {
+  bigint emitted, layers;
+  double start, momentum[3];
+};
+
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[6] = {static_cast<double>(emitted),
-                          static_cast<double>(layers),
-                          start,
-                          momentum[0],
-                          momentum[1],
-                          momentum[2]};
-  const int bytes = sizeof(list);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_record(fp, Record{emitted, layers, start, {momentum[0], momentum[1], momentum[2]}});
 }
 
 void FixSPHEmit::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  emitted = static_cast<bigint>(list[0]);
-  layers = static_cast<bigint>(list[1]);
-  start = list[2];
-  std::copy(list + 3, list + 6, momentum);
+  const auto record = read_record<Record>(buf, label, error);
+  emitted = record.emitted;
+  layers = record.layers;
+  start = record.start;
+  std::copy(record.momentum, record.momentum + 3, momentum);
 }

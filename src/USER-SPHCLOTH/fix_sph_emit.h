@@ -43,6 +43,7 @@ class FixSPHEmit : public Fix {
 
  private:
   using Vec3 = Eigen::Vector3d;
+  struct Record;    // in restart files
 
   std::string label;
   bigint total, emitted;

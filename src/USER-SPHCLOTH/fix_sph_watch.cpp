@@ -16,11 +16,11 @@
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
+#include "restart_record.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -382,15 +382,12 @@ void FixSPHWatch::write_restart(FILE *fp)
                       {begin.momentum[0], begin.momentum[1], begin.momentum[2]},
                       scale.mass,
                       scale.flow};
-  const int bytes = sizeof(record);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(&record, sizeof(record), 1, fp);
+  write_record(fp, record);
 }
 
 void FixSPHWatch::restart(char *buf)
 {
-  Record record;
-  std::memcpy(&record, buf, sizeof(record));
+  const auto record = read_record<Record>(buf, label, error);
   checks = record.checks;
   begun = record.begun != 0.0;
   begin.mass = record.mass;

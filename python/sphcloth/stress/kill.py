@@ -6,11 +6,8 @@ run that nobody killed ends.
 
 from __future__ import annotations
 
-import contextlib
 import json
-import os
 import random
-import signal
 import subprocess
 import tempfile
 import time
@@ -26,6 +23,7 @@ from rich.table import Table
 from sphcloth.errors import UserError
 from sphcloth.programs import program
 from sphcloth.stress.case import SCENES, SCHEMES
+from sphcloth.stress.processes import descendants, run_to_end, slay, start
 
 SCRIPT = SCENES / "in.kill"
 # seconds that the others have to end after one of them was killed, and a run at all
@@ -102,61 +100,31 @@ def _run_and_kill(
     folder: Path, scheme: str, ranks: int, killed: str, at: float
 ) -> tuple[bool, str]:
     """Return whether the run was still there when it was killed, and what went wrong."""
-    run = subprocess.Popen(
-        _command(scheme, ranks, "no"),
-        cwd=folder,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    run = start(_command(scheme, ranks, "no"), folder)
     time.sleep(at)
     in_time = run.poll() is None
-    victims = _ranks_of(run.pid)
-    for pid in victims[:1] if killed == "one" else victims:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
+    family = descendants(run.pid)
+    # a launcher is not the program: ranks are those that have started nobody
+    victims = [pid for pid in family if not descendants(pid)] if killed == "one" else family
+    slay(victims[-1:] if killed == "one" else victims)
     try:
         # before it has started its ranks it comes to its end
         run.wait(GRACE if victims else PATIENCE)
     except subprocess.TimeoutExpired:
-        for pid in [*_ranks_of(run.pid), run.pid]:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
         return in_time, f"the other ranks went on for {GRACE:g} s"
+    finally:
+        slay([*family, *descendants(run.pid)])
+        slay([run.pid] if run.poll() is None else [])
+        run.wait()
     return in_time, ""
 
 
 def _finish(folder: Path, scheme: str, ranks: int, again: str) -> str:
     """Run to the end, from the beginning or the restart file; return what went wrong."""
-    try:
-        done = subprocess.run(
-            _command(scheme, ranks, again),
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE,
-        )
-    except subprocess.TimeoutExpired:
+    code, text = run_to_end(_command(scheme, ranks, again), folder, PATIENCE)
+    if code is None:
         return "it did not end"
-    return "" if done.returncode == 0 else f"ended with {(done.stdout + done.stderr)[-300:]}"
-
-
-def _ranks_of(root: int) -> list[int]:
-    """Return the processes below one that are LAMMPS, by their IDs."""
-    parents, names = {}, {}
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        with contextlib.suppress(OSError):
-            head, _, tail = (entry / "stat").read_text().rpartition(")")
-            parents[int(entry.name)] = int(tail.split()[1])
-            names[int(entry.name)] = head.split("(", 1)[1]
-
-    def is_below(pid: int) -> bool:
-        while pid in parents and pid != root:
-            pid = parents[pid]
-        return pid == root
-
-    return sorted(pid for pid, name in names.items() if name == "lmp" and is_below(pid))
+    return "" if code == 0 else f"ended with {text[-300:]}"
 
 
 def show(found: Sequence[Trial], console: Console) -> bool:

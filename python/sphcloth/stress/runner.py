@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from sphcloth.programs import program
 from sphcloth.stress.case import Case, Outcome
+from sphcloth.stress.processes import run_to_end
 
 # seconds after which a run counts as hung
 PATIENCE = 300.0
@@ -75,10 +75,5 @@ def run_script(script: Path, folder: Path, settings: Mapping[str, object], ranks
     words = [word for name, value in settings.items() for word in ("-var", name, str(value))]
     command = [program("mpiexec"), "-n", str(ranks)] if ranks > 1 else []
     command += [program("lmp"), "-in", script.name, *words]
-    try:
-        done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=PATIENCE
-        )
-    except subprocess.TimeoutExpired as late:
-        return Outcome(folder, settings, None, str(late))
-    return Outcome(folder, settings, done.returncode, done.stdout + done.stderr)
+    code, text = run_to_end(command, folder, PATIENCE)
+    return Outcome(folder, settings, code, text)

@@ -59,6 +59,7 @@ def _cloth() -> list[Case]:
             "sheet",
             (*ON_SHEET, momentum(1e-11)),
             FREE | {"areal": ratio * PARTICLE / SPACING**2, "fixed": dt, "height": 0.11, "vz": -2},
+            {"time": 0.03},
         )
         for ratio, dt in ((1e-3, 3e-5), (1e-1, 2e-4), (1.0, 3e-4), (1e3, 3e-4))
     ]

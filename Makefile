@@ -7,7 +7,7 @@ RANKS  ?= 2
 SIZE   ?= small
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
-.PHONY: demo test validate lint docs wheel-check pictures clean
+.PHONY: demo test validate stress fuzz mutate lint docs wheel-check pictures clean
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -25,6 +25,20 @@ validate: $(VENV)/installed
 	failed=0; for case in $$($(BIN)/python -c \
 	  "from sphcloth.validation.validate import all_cases; print(*all_cases())"); do \
 	  $(BIN)/sphcloth validate $$case --out build/validate/$$case || failed=1; done; exit $$failed
+
+# every extreme with every scheme on 1, 2 and 4 ranks: ten minutes
+stress: $(VENV)/installed
+	mkdir -p build
+	$(BIN)/sphcloth stress --json build/stress.json
+
+# thousands of commands and damaged files, and killed runs
+fuzz: $(VENV)/installed
+	SPHCLOTH_EXAMPLES=3000 $(BIN)/python -m pytest tests/styles/test_fuzz.py tests/python/test_faults.py
+	$(BIN)/python -m sphcloth.stress.kill --times 100
+
+# deliberate bugs, each of which a test must catch
+mutate: $(VENV)/installed
+	$(BIN)/python tests/mutate.py
 
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests

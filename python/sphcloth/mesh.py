@@ -38,11 +38,12 @@ def read_sections(data: Path) -> dict[str, list[str]]:
         raise UserError(f"no data file {data}")
     try:
         with _Parser(data) as parser:
-            sections = parser.grab_datafile()[1]
+            header, sections = parser.grab_datafile()
     except (ValueError, IndexError):
         sections = {}
     if "Atoms" not in sections:
         raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")
+    _check_counts(header, sections, data)
     return sections
 
 
@@ -52,6 +53,17 @@ def read_masses(data: str | Path) -> dict[int, float]:
     if not lines:
         raise UserError(f"{data} has no section Masses: each atom has a mass of its own there")
     return {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
+
+
+def _check_counts(header: dict[str, str], sections: dict[str, list[str]], data: Path) -> None:
+    """Raise UserError where a section does not have as many lines as the head of the file says."""
+    for section in ("Atoms", "Bonds", "Angles", "Dihedrals"):
+        told, there = header.get(section.lower(), "0").strip(), len(sections.get(section, []))
+        if told != str(there):
+            raise UserError(
+                f"{data}: {there} lines in the section {section}, the head of the file says "
+                f"'{told}': it was cut off or damaged, write it again"
+            )
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ STYLES = (
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),
     ("fix", "sph/shift"),
+    ("fix", "sph/watch"),
     ("fix", "wall/sph"),
     ("compute", "pbd/atom"),
     ("compute", "pbd/local"),

@@ -167,14 +167,16 @@ class Trajectory(Sequence[Frame]):
 def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
     """Yield the place of each complete frame; warn about an incomplete last one."""
     line, offset = 1, 0
-    while header := [text.decode() for text in itertools.islice(file, _HEADER_LINES)]:
+    while header := [
+        text.decode(errors="replace") for text in itertools.islice(file, _HEADER_LINES)
+    ]:
         _check_header(header, path, line)
         is_whole = len(header) == _HEADER_LINES and header[-1].endswith("\n")
         natoms = int(header[3]) if is_whole else 0
         if not is_whole or _skip_lines(file, natoms) < natoms:
             warnings.warn(f"{path}: the frame at line {line} is cut off: left out", stacklevel=3)
             return
-        bounds = np.array([row.split() for row in header[5:8]], dtype=np.float64)
+        bounds = _read_bounds(header[5:8], path, line + 5)
         end = file.tell()
         columns, about_box = header[8].split()[2:], header[4].split()[3:]
         periodic = tuple(flags == "pp" for flags in about_box[-3:])
@@ -182,6 +184,17 @@ def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
         size, box = end - offset, bounds[:, :2].T
         yield _Entry(offset, size, line, int(header[1]), natoms, box, columns, periodic, tilt)
         line, offset = line + _HEADER_LINES + natoms, end
+
+
+def _read_bounds(rows: list[str], path: Path, line: int) -> NDArray[np.float64]:
+    """Return the numbers in the lines about the box, shape (3, 2), or (3, 3) if it is tilted."""
+    try:
+        bounds = np.array([row.split() for row in rows], dtype=np.float64)
+    except ValueError as error:
+        raise UserError(f"{path}, line {line}: not the bounds of a box") from error
+    if bounds.shape not in ((3, 2), (3, 3)):
+        raise UserError(f"{path}, line {line}: not the bounds of a box")
+    return bounds
 
 
 def _skip_lines(file: BinaryIO, wanted: int) -> int:
@@ -222,7 +235,7 @@ def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
     """
     with path.open("rb") as file:
         file.seek(entry.offset)
-        text = file.read(entry.size).decode()
+        text = file.read(entry.size).decode(errors="replace")
     stream = NamedStream(io.StringIO(text), f"{path.name}.lammpsdump")
     try:
         reader = DumpReader(stream, "unscaled", additional_columns=entry.columns, dt=1.0)

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -73,6 +74,22 @@ class ArgReader : protected Pointers {
         std::stoll(text) > high)
       fail(what, text, fmt::format("give a whole number from {} to {}", low, high));
     return std::stoi(text);
+  }
+
+  // first and last of the types 1 to n that a number, or a range with an asterisk, names
+  std::pair<int, int> range(const std::string &what, int n)
+  {
+    const std::string text = word(what);
+    const auto star = text.find('*');
+    const auto end = [star](const std::string &digits, int open) {
+      if (digits.empty() && star != std::string::npos) return open;
+      return utils::is_integer(digits) && digits.size() < 10 ? std::stoi(digits) : 0;
+    };
+    const int low = end(text.substr(0, star), 1);
+    const int high = star == std::string::npos ? low : end(text.substr(star + 1), n);
+    if (low < 1 || high > n || low > high)
+      fail(what, text, fmt::format("give a number from 1 to {}, or a range as in * or 1*{}", n, n));
+    return {low, high};
   }
 
   // nothing may be left

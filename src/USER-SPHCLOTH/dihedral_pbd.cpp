@@ -39,9 +39,8 @@ void DihedralPBD::coeff(int narg, char **arg)
 {
   if (narg < 1) utils::missing_cmd_args(FLERR, COEFF, error);
   if (!allocated) allocate();
-  int ilo, ihi;
-  utils::bounds(FLERR, arg[0], 1, atom->ndihedraltypes, ilo, ihi, error);
-  ArgReader args(lmp, COEFF, narg, arg, 1);
+  ArgReader args(lmp, COEFF, narg, arg);
+  const auto [ilo, ihi] = args.range("dihedral type", atom->ndihedraltypes);
   const PBDMaterial material = PBDMaterial::read(args, false);
   for (int i = ilo; i <= ihi; i++) {
     materials[i] = material;

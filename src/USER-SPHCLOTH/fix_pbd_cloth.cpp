@@ -16,6 +16,7 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -785,12 +786,10 @@ int FixPBDCloth::maxsize_restart() { return 4 + (hold ? HOLD : 0) + (lent ? 3 : 
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const int bytes = sizeof(int), value = started;
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(&value, sizeof(int), 1, fp);
+  write_record(fp, static_cast<int>(started));
 }
 
-void FixPBDCloth::restart(char *buf) { started = *reinterpret_cast<const int *>(buf); }
+void FixPBDCloth::restart(char *buf) { started = read_record<int>(buf, label, error); }
 
 double FixPBDCloth::memory_usage()
 {

@@ -11,8 +11,10 @@
 #include "error.h"
 #include "group.h"
 #include "region.h"
+#include "restart_record.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -71,6 +73,11 @@ void FixSPHDrain::init()
 bool FixSPHDrain::leaves(int i) const
 {
   const double *x = atom->x[i];
+  if (!std::isfinite(0.0 * x[0] + 0.0 * x[1] + 0.0 * x[2]))
+    error->one(FLERR,
+               "{}: particle {} is at {} {} {}: it does not leave, the run has failed; look at the "
+               "forces on it, or take a smaller time step",
+               label, atom->tag[i], x[0], x[1], x[2]);
   double lamda[3];
   const double *place = x, *lo = domain->boxlo, *hi = domain->boxhi;
   if (domain->triclinic) {
@@ -109,18 +116,20 @@ void FixSPHDrain::pre_exchange()
   refresh_map(atom);
 }
 
+struct FixSPHDrain::Record {
+  bigint drained;
+  double taken[4];
+};
+
 void FixSPHDrain::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[5] = {static_cast<double>(drained), taken[0], taken[1], taken[2], taken[3]};
-  const int bytes = sizeof(list);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_record(fp, Record{drained, {taken[0], taken[1], taken[2], taken[3]}});
 }
 
 void FixSPHDrain::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  drained = static_cast<bigint>(list[0]);
-  std::copy(list + 1, list + 5, taken);
+  const auto record = read_record<Record>(buf, label, error);
+  drained = record.drained;
+  std::copy(record.taken, record.taken + 4, taken);
 }

@@ -28,6 +28,8 @@ class FixSPHDrain : public Fix {
   void restart(char *) override;
 
  private:
+  struct Record;    // in restart files
+
   std::string label, region_name;
   class Region *region;
   bigint drained;

@@ -14,6 +14,7 @@
 #include "force.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
+#include "restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -121,7 +122,7 @@ void FixSPHEmit::init()
     error->all(FLERR,
                "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
                label, itype, mass);
-  const double excess = (atom->rmass ? mass : atom->mass[itype]) / at_rest - 1.0;
+  const double excess = mass_of_one() / at_rest - 1.0;
   if (comm->me == 0 && excess > 0.01)
     error->warning(
         FLERR,
@@ -182,8 +183,8 @@ void FixSPHEmit::emit_layer(double age)
                label, wanted - all, wanted);
   atom->natoms += all;
   refresh_map(atom);
-  const double each = atom->rmass ? mass : atom->mass[itype];
-  for (int d = 0; d < 3; d++) momentum[d] += static_cast<double>(all) * each * velocity[d];
+  const double more = static_cast<double>(all) * mass_of_one();
+  for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
   emitted += all;
   layers++;
 }
@@ -196,6 +197,14 @@ void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)
   if (atom->rmass) atom->rmass[i] = mass;
 }
 
+double FixSPHEmit::mass_of_one() const { return atom->rmass ? mass : atom->mass[itype]; }
+
+FixSPHEmit::Poured FixSPHEmit::poured() const
+{
+  const Vec3 all(momentum[0], momentum[1], momentum[2]);
+  return {static_cast<double>(emitted) * mass_of_one(), all, 0.5 * all.dot(velocity)};
+}
+
 // particles that are still to come, then the momentum that came in
 
 double FixSPHEmit::compute_vector(int n)
@@ -203,25 +212,22 @@ double FixSPHEmit::compute_vector(int n)
   return n == 0 ? static_cast<double>(total - emitted) : momentum[n - 1];
 }
 
+struct FixSPHEmit::Record {
+  bigint emitted, layers;
+  double start, momentum[3];
+};
+
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[6] = {static_cast<double>(emitted),
-                          static_cast<double>(layers),
-                          start,
-                          momentum[0],
-                          momentum[1],
-                          momentum[2]};
-  const int bytes = sizeof(list);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_record(fp, Record{emitted, layers, start, {momentum[0], momentum[1], momentum[2]}});
 }
 
 void FixSPHEmit::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  emitted = static_cast<bigint>(list[0]);
-  layers = static_cast<bigint>(list[1]);
-  start = list[2];
-  std::copy(list + 3, list + 6, momentum);
+  const auto record = read_record<Record>(buf, label, error);
+  emitted = record.emitted;
+  layers = record.layers;
+  start = record.start;
+  std::copy(record.momentum, record.momentum + 3, momentum);
 }

@@ -33,8 +33,17 @@ class FixSPHEmit : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
+  // what came in so far; energy: kinetic, of mass times velocity squared
+  struct Poured {
+    double mass;
+    Eigen::Vector3d momentum;
+    double energy;
+  };
+  Poured poured() const;
+
  private:
   using Vec3 = Eigen::Vector3d;
+  struct Record;    // in restart files
 
   std::string label;
   bigint total, emitted;
@@ -54,6 +63,7 @@ class FixSPHEmit : public Fix {
   void make_pattern();
   double due() const { return start + static_cast<double>(layers) * layer_time; }
   bool layer_is_due() const;
+  double mass_of_one() const;
   void emit_layer(double);
   void add_particle(const Vec3 &, tagint);
 };

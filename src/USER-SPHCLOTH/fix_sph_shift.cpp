@@ -13,6 +13,7 @@
 #include "group.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
+#include "restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -247,15 +248,13 @@ void FixSPHShift::write_restart(FILE *fp)
   double all = 0.0;
   MPI_Reduce(&counts[MOVED], &all, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me) return;
-  const int bytes = sizeof(double);
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(&all, sizeof(double), 1, fp);
+  write_record(fp, all);
 }
 
 void FixSPHShift::restart(char *buf)
 {
-  const auto *list = reinterpret_cast<const double *>(buf);
-  counts[MOVED] = comm->me == 0 ? list[0] : 0.0;
+  const auto moved = read_record<double>(buf, label, error);
+  counts[MOVED] = comm->me == 0 ? moved : 0.0;
 }
 
 double FixSPHShift::memory_usage()

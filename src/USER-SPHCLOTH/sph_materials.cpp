@@ -41,11 +41,10 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
   unsettle();
   if (narg < 3) utils::missing_cmd_args(FLERR, COEFF, error);
   const int n = atom->ntypes + 1;
-  int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
+  ArgReader args(lmp, COEFF, narg, arg);
+  const auto [ilo, ihi] = args.range("first type", atom->ntypes);
+  const auto [jlo, jhi] = args.range("second type", atom->ntypes);
 
-  ArgReader args(lmp, COEFF, narg, arg, 2);
   const std::string role = arg[2];
   const bool of_type = role == "fluid" || role == "boundary" || role == "none";
   TypeData data;

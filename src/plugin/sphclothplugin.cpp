@@ -17,6 +17,7 @@
 #include "fix_sph_emit.h"
 #include "fix_sph_integrate.h"
 #include "fix_sph_shift.h"
+#include "fix_sph_watch.h"
 #include "fix_wall_sph.h"
 #include "pair_sph_tait.h"
 #include "sph_adaptive.h"
@@ -92,6 +93,8 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "sph/drain", "outflow of SPH particles");
   plugin.creator.v2 = &create_with_args<FixSPHShift>;
   add("fix", "sph/shift", "particle shifting");
+  plugin.creator.v2 = &create_with_args<FixSPHWatch>;
+  add("fix", "sph/watch", "limits at which a run ends");
   plugin.creator.v2 = &create_with_args<FixWallSPH>;
   add("fix", "wall/sph", "plane walls without particles");
   plugin.creator.v2 = &create_with_args<ComputePBDAtom>;

@@ -40,7 +40,7 @@ def test_a_data_file_of_another_form_says_how_to_write_it(cloth_data: Path) -> N
 
 
 def test_a_scene_without_triangles_is_refused(cloth_data: Path) -> None:
-    text = cloth_data.read_text()
+    text = re.sub(r"\d+ (angles|dihedrals)", r"0 \1", cloth_data.read_text())
     cloth_data.write_text(text[: text.index("Angles\n")])
     with pytest.raises(UserError, match="holds no cloth"):
         ClothMesh.read(cloth_data)
@@ -53,7 +53,7 @@ def test_triangles_wound_in_opposite_senses_are_refused() -> None:
 
 @pytest.mark.parametrize("rows", ["1 1 2 3", "1 1 2 3 x", "1 1 2"])
 def test_bad_rows_of_triangles_are_refused(cloth_data: Path, rows: str) -> None:
-    text = cloth_data.read_text()
+    text = cloth_data.read_text().replace("2 angles", "1 angles")
     before, behind = text.split("Angles\n")
     cloth_data.write_text(f"{before}Angles\n\n{rows}\n\nDihedrals\n{behind.split('Dihedrals')[1]}")
     with pytest.raises(UserError, match="section Angles cannot be read"):

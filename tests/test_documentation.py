@@ -120,6 +120,7 @@ WRONG = {
     ("fix", "sph/emit"): "fix x water sph/emit 9 1 0.1 nonsense 1",
     ("fix", "sph/drain"): "fix x water sph/drain nonsense 1",
     ("fix", "sph/shift"): "fix x water sph/shift nonsense 1",
+    ("fix", "sph/watch"): "fix x all sph/watch nonsense 1",
     ("fix", "wall/sph"): "fix x all wall/sph nonsense 1",
     ("compute", "pbd/atom"): "fix s cloth pbd/cloth\ncompute x all pbd/atom s nonsense",
     ("compute", "pbd/local"): "fix s cloth pbd/cloth\ncompute x all pbd/local s edge nonsense",

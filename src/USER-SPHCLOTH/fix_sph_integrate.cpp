@@ -18,6 +18,7 @@
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
+#include "restart_record.h"
 #include "sph_adaptive.h"
 #include "timer.h"
 #include "update.h"
@@ -25,7 +26,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -783,15 +783,12 @@ void FixSPHIntegrate::write_restart(FILE *fp)
   if (comm->me) return;
   const Record record{previous,       ceiling,    all[0],        all[1],
                       largest_before, limited_by, steps_limited, blocks->place()};
-  const int bytes = static_cast<int>(sizeof(record));
-  fwrite(&bytes, sizeof(int), 1, fp);
-  fwrite(&record, sizeof(record), 1, fp);
+  write_record(fp, record);
 }
 
 void FixSPHIntegrate::restart(char *buf)
 {
-  Record record;
-  std::memcpy(&record, buf, sizeof(record));
+  const auto record = read_record<Record>(buf, label, error);
   previous = record.previous;
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
   if (!ceiling_given) ceiling = record.ceiling;

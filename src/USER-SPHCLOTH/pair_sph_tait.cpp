@@ -685,6 +685,13 @@ void PairSPHTait::read_restart_settings(FILE *fp)
 {
   if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
   MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
+  if (std::find(std::begin(ALL_KERNELS), std::end(ALL_KERNELS), options.kernel) ==
+          std::end(ALL_KERNELS) ||
+      !(options.support > 0.0))
+    error->all(FLERR,
+               "{}: its settings in the restart file are damaged, or of another release of "
+               "sphcloth: take another file",
+               STYLE);
   forget_evaluation();
   materials.default_support = options.support;
 }

@@ -212,6 +212,15 @@ double PairSPHTait::init_one(int i, int j)
                "and {}: raise it to the support plus the skin",
                STYLE, comm->cutghostuser, radius, i, j);
 
+  // LAMMPS counts the images of a box within the cut-off in an int
+  constexpr double MOST_BOXES = 1000.0;
+  const double box = std::max({domain->prd[0], domain->prd[1], domain->prd[2]});
+  if (radius > MOST_BOXES * box)
+    error->all(FLERR,
+               "{}: the support {} of types {} and {} is more than {:.0f} times the box, {}: give H "
+               "and 'support' in the units of the box",
+               STYLE, radius, i, j, MOST_BOXES, box);
+
   FluidModel &model = fluid->model;
   PairTerms t = materials.mix(i, j, options.kernel);
   // density diffuses within a fluid, not across the step between two

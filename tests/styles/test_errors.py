@@ -90,6 +90,11 @@ CASES = [
         r"ghost cut-off 0.05.*smaller than the support 0.1.*raise it",
     ),
     case(
+        "init: support in other units than the box",
+        SHEET.replace("sph/tait 0.1", "sph/tait 1e300") + "run 0",
+        r"support 1e\+300 of types 1 and 1 is more than 1000 times the box, 2.*units",
+    ),
+    case(
         "init: atom style without density",
         SHEET.replace("hybrid sph molecular", "molecular") + "run 0",
         r"atom_style molecular has no density.*hybrid sph molecular",

@@ -12,7 +12,6 @@
 #include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
-#include "input.h"
 #include "integrate.h"
 #include "memory.h"
 #include "modify.h"
@@ -20,9 +19,7 @@
 #include "pair_sph_tait.h"
 #include "restart_record.h"
 #include "sph_adaptive.h"
-#include "timer.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +29,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace sphcloth;
 
-// share of a step by which a time may miss what it is taken for
-static constexpr double SLACK = 1e-6;
-
 /* ----------------------------------------------------------------------
    fix ID group sph/integrate constant|global keyword value ...
 ------------------------------------------------------------------------- */
@@ -42,10 +36,9 @@ static constexpr double SLACK = 1e-6;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
-    ceiling(update->dt), growth(2.0), interval(0.0), until(0.0), ceiling_given(false),
-    clamp_at_floor(false), state(nullptr), blocks(std::make_unique<BlockSteps>(lmp, this, rows)),
-    previous(0.0), largest_before(0.0), uncut(0.0), arrives(false), limited_by(Limit::NONE),
-    updates(0.0), steps_limited{}, particles_limited{}
+    ceiling(update->dt), growth(2.0), times(lmp), ceiling_given(false), clamp_at_floor(false),
+    state(nullptr), blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0),
+    largest_before(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
@@ -95,9 +88,9 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     else if (keyword == "fluctuation")
       control.eta = args.at_least(keyword, 0.0);
     else if (keyword == "output")
-      interval = args.at_least(keyword, 0.0);
+      times.interval = args.at_least(keyword, 0.0);
     else if (keyword == "until")
-      until = args.positive(keyword);
+      times.until = args.positive(keyword);
     else if (keyword == "ratio") {
       blocks->options.ratio = args.integer(keyword, 2, 4);
       if (blocks->options.ratio == 3) args.fail(keyword, "3", "steps differ by 2 or 4");
@@ -176,11 +169,11 @@ void FixSPHIntegrate::init()
 
 void FixSPHIntegrate::check_scheme()
 {
-  if (interval > 0.0 && scheme == SteppingScheme::CONSTANT)
+  if (times.interval > 0.0 && scheme == SteppingScheme::CONSTANT)
     error->all(FLERR,
                "{}: output {} would shorten steps that are constant: use the scheme global, or a "
                "timestep that divides {}",
-               label, interval, interval);
+               label, times.interval, times.interval);
   const bool individual = scheme == SteppingScheme::INDIVIDUAL;
   if (!individual && scheme != SteppingScheme::BLOCK) return forget_rows();
   if (pair->integrates_density())
@@ -226,7 +219,7 @@ void FixSPHIntegrate::forget_rows()
 void FixSPHIntegrate::setup(int)
 {
   if (scheme != SteppingScheme::CONSTANT) choose_step();
-  look_for_end();
+  times.look_for_end();
 }
 
 /* ----------------------------------------------------------------------
@@ -331,7 +324,7 @@ void FixSPHIntegrate::end_of_step()
 
 void FixSPHIntegrate::finish_step()
 {
-  previous = uncut > 0.0 ? uncut : update->dt;
+  previous = times.uncut() > 0.0 ? times.uncut() : update->dt;
   largest_before = compression.largest;
   steps_limited[static_cast<int>(limited_by)]++;
   if (scheme == SteppingScheme::BLOCK) {
@@ -339,7 +332,7 @@ void FixSPHIntegrate::finish_step()
     limit_vertices();
   }
   if (scheme != SteppingScheme::CONSTANT) choose_step();
-  look_for_end();
+  times.look_for_end();
 }
 
 /* ----------------------------------------------------------------------
@@ -355,16 +348,23 @@ void FixSPHIntegrate::choose_step()
     wanted.tighten(control.step(previous, compression, largest_before), Limit::FLUCTUATION);
   }
   StepLimit step = bounded_step(wanted, previous, growth, floor, ceiling);
-  if (step.by == Limit::FLOOR && !clamp_at_floor)
-    error->all(
-        FLERR,
-        "{}: the {} limit asks for a step of {}, below min {}: lower min, or use 'below clamp' "
-        "to go on with min and count",
-        label, limit_name(wanted.by), wanted.dt, floor);
-  if (interval > 0.0 || until > 0.0) head_for_output(step);
+  if (is_too_short(step)) error->all(FLERR, too_short(wanted, ""));
+  if (times.any()) times.head_for(step);
   limited_by = step.by;
   if (step.dt != update->dt) apply(step.dt);
-  if (arrives) announce_thermo();
+  if (times.arrives()) times.announce_thermo();
+}
+
+bool FixSPHIntegrate::is_too_short(const StepLimit &step) const
+{
+  return step.by == Limit::FLOOR && !clamp_at_floor;
+}
+
+std::string FixSPHIntegrate::too_short(const StepLimit &wanted, const std::string &whom) const
+{
+  return fmt::format("{}: the {} limit asks for a step of {}{}, below min {}: lower min, or use "
+                     "'below clamp' to go on with min and count",
+                     label, limit_name(wanted.by), wanted.dt, whom, floor);
 }
 
 // The pair style had it chosen, with the impulses that act in it.
@@ -372,9 +372,9 @@ void FixSPHIntegrate::choose_step()
 void FixSPHIntegrate::take_block_step()
 {
   limited_by = blocks->limited_by();
-  arrives = blocks->arrives();
+  times.set_arrives(blocks->arrives());
   if (const double dt = blocks->next_step(); dt != update->dt) apply(dt);
-  if (arrives) announce_thermo();
+  if (times.arrives()) times.announce_thermo();
 }
 
 StepLimit FixSPHIntegrate::tightest_anywhere()
@@ -440,12 +440,8 @@ StepLimit FixSPHIntegrate::bounded_limit(int i, const std::array<double, 3> &ext
   const double total[3] = {f[0] + external[0], f[1] + external[1], f[2] + external[2]};
   const StepLimit wanted = particle_limit(lambda, particle_state(i, total));
   const StepLimit step = bounded_step(wanted, before, growth, floor, ceiling);
-  if (step.by == Limit::FLOOR && !clamp_at_floor)
-    error->one(
-        FLERR,
-        "{}: the {} limit asks for a step of {} for particle {}, below min {}: lower min, or "
-        "use 'below clamp' to go on with min and count",
-        label, limit_name(wanted.by), wanted.dt, atom->tag[i], floor);
+  if (is_too_short(step))
+    error->one(FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
   return step;
 }
 
@@ -604,81 +600,12 @@ void FixSPHIntegrate::reschedule_dumps()
 }
 
 /* ----------------------------------------------------------------------
-   output times
-------------------------------------------------------------------------- */
-
-// infinite if there is none; what is nearer than a small part of a step of dt has passed
-
-double FixSPHIntegrate::next_output_time(double dt) const
-{
-  const double now = physical_time(update), slack = SLACK * dt;
-  double next = std::numeric_limits<double>::infinity();
-  if (interval > 0.0) next = output_time(output_times_until(now, interval, slack) + 1.0, interval);
-  if (now + slack < until) next = std::min(next, output_time(1.0, until));
-  return next;
-}
-
-void FixSPHIntegrate::head_for_output(StepLimit &step)
-{
-  const double remaining = next_output_time(step.dt) - physical_time(update);
-  const double dt = step_towards(remaining, step.dt);
-  arrives = dt == remaining;
-  uncut = step.dt;
-  if (dt < (1.0 - SLACK) * step.dt) step.by = Limit::OUTPUT;
-  step.dt = dt;
-}
-
-bool FixSPHIntegrate::at_output_time() const
-{
-  if (interval == 0.0) return false;
-  const double now = physical_time(update), slack = SLACK * std::min(update->dt, interval);
-  return now - output_time(output_times_until(now, interval, slack), interval) < slack;
-}
-
-// the step that comes next if it ends at an output time, otherwise one that never comes
-
-bigint FixSPHIntegrate::next_thermo() const
-{
-  const bigint next = update->ntimestep + 1;
-  return arrives ? next : std::max(next, update->laststep + 1);
-}
-
-// A variable that says when thermodynamic output is due was asked when it was not yet known that
-// the next step ends at an output time.
-
-void FixSPHIntegrate::announce_thermo()
-{
-  const bigint next = update->ntimestep + 1;
-  if (!output->var_thermo || output->next_thermo <= next) return;
-  modify->clearstep_compute();
-  const double asked = input->variable->compute_equal(output->ivar_thermo);
-  if (static_cast<bigint>(asked) != next) return;
-  modify->addstep_compute_all(next);
-  output->next_thermo = next;
-  output->next = std::min(output->next, next);
-}
-
-// A run that has arrived ends as by the command timer, its last step with thermodynamic output.
-
-void FixSPHIntegrate::look_for_end()
-{
-  if (until == 0.0) return;
-  const double now = physical_time(update), slack = SLACK * update->dt;
-  if (now + slack >= until) return timer->force_timeout();
-  const bigint next = update->ntimestep + 1;
-  if (now + update->dt + slack < until || output->next_thermo == next) return;
-  modify->addstep_compute_all(next);
-  output->next_thermo = next;
-  output->next = std::min(output->next, next);
-}
-
-/* ----------------------------------------------------------------------
    output
 ------------------------------------------------------------------------- */
 
 void FixSPHIntegrate::post_run()
 {
-  if (until > 0.0) timer->reset_timeout();
+  times.end_run();
   if (comm->me || scheme == SteppingScheme::CONSTANT) return;
   std::string line;
   for (int k = 1; k < N_LIMITS; k++)
@@ -702,8 +629,8 @@ double FixSPHIntegrate::compute_scalar() { return update->dt; }
 double FixSPHIntegrate::compute_vector(int n)
 {
   constexpr int PARTICLES = 5 + N_LIMITS - 1, TIMES = PARTICLES + N_OF_PARTICLES;
-  if (n == TIMES) return at_output_time();
-  if (n == TIMES + 1) return static_cast<double>(next_thermo());
+  if (n == TIMES) return times.is_now();
+  if (n == TIMES + 1) return static_cast<double>(times.next_thermo());
   if (n > TIMES && !blocks->begun()) return 0.0;
   if (n == TIMES + 2) return sum_over_ranks(blocks->sleepers());
   if (n == TIMES + 3) return sum_over_ranks(blocks->ideal_updates());

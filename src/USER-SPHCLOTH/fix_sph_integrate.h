@@ -13,6 +13,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include "core/criteria.h"
 #include "core/tait.h"
+#include "output_times.h"
 #include "particle_columns.h"
 
 #include <array>
@@ -78,7 +79,7 @@ class FixSPHIntegrate : public Fix {
   double sound_time(int i) const;
   double acceleration(int i, double by) const;
   double longest_step() const { return ceiling; }
-  double next_output_time(double dt) const;
+  double next_output_time(double dt) const { return times.next(dt); }
   sphcloth::StepLimit tightest_vertex() const;
   double vertex_step(int i) const;
   int count_vertices() const;
@@ -95,8 +96,7 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepCoefficients lambda;
   sphcloth::FluctuationControl control;
   double floor, ceiling, growth;
-  double interval;    // of output times, 0: none
-  double until;       // physical time at which a run ends, 0: never
+  OutputTimes times;
   bool ceiling_given, clamp_at_floor;
 
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
@@ -111,8 +111,6 @@ class FixSPHIntegrate : public Fix {
   double previous;      // the last step, before an output time cut it; 0 before the first
   double largest_before;    // compression when that step was chosen
   sphcloth::Compression compression;    // when the step that comes next was chosen
-  double uncut;         // that step, had no output time cut it; 0 without output times
-  bool arrives;         // does it end at an output time?
   sphcloth::Limit limited_by;
   double updates;       // particle updates of this rank
   std::array<double, sphcloth::N_LIMITS> steps_limited;
@@ -131,6 +129,8 @@ class FixSPHIntegrate : public Fix {
   void select_due();
   void hold(int i, const sphcloth::StepLimit &own);
   void choose_step();
+  bool is_too_short(const sphcloth::StepLimit &step) const;
+  std::string too_short(const sphcloth::StepLimit &wanted, const std::string &whom) const;
   void take_block_step();
   sphcloth::StepLimit tightest_anywhere();
   sphcloth::StepLimit tightest_particle();
@@ -139,11 +139,6 @@ class FixSPHIntegrate : public Fix {
   void limit_vertices();
   template <class Do> void for_vertices(Do something) const;
   sphcloth::StepLimit limit_of_vertex(int i, const FixPBDCloth &) const;
-  void head_for_output(sphcloth::StepLimit &);
-  bool at_output_time() const;
-  bigint next_thermo() const;
-  void announce_thermo();
-  void look_for_end();
   double speed_and_force(int, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int, const double *force) const;
   static double until_pressed(const sphcloth::Tait &, double rho, double drho);

@@ -180,7 +180,7 @@ def nothing_crosses(outcome: Outcome) -> str:
 
 
 def momentum(relative: float) -> Check:
-    """Return a check of the sum of m v over that of m |v|, from the second frame on.
+    """Return a check of the sum of m v over that of m times the speed, from the second frame on.
 
     Velocities of cloth are those of half a step ago from its first step on. Individual steps do not
     keep momentum, and are not looked at.

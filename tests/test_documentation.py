@@ -147,6 +147,7 @@ COMMANDS = typer.main.get_command(app).commands
 def test_every_command_has_help_and_is_in_the_documentation(verb: str) -> None:
     command = COMMANDS[verb]
     assert command.help
+    assert f"sphcloth {verb}" in (command.epilog or "")
     without = [option.name for option in command.params if not getattr(option, "help", "help")]
     assert not without
     shells = "".join(block.text for block in BLOCKS if block.language == "sh")

@@ -15,6 +15,48 @@ app = typer.Typer(
     help="SPH water on cloth in LAMMPS.", no_args_is_help=True, pretty_exceptions_enable=False
 )
 
+DOCTOR_EXAMPLES = """
+Examples:
+
+sphcloth doctor
+
+sphcloth doctor --json doctor.json
+"""
+
+RUN_EXAMPLES = """
+Examples:
+
+sphcloth run pour --size small --ranks 2
+
+sphcloth run pour --set hold=corners --set scheme=block --out corners
+"""
+
+VALIDATE_EXAMPLES = """
+Examples:
+
+sphcloth validate --list
+
+sphcloth validate hydrostatic --quick
+
+sphcloth validate oscillating-drop --set sigma=0.3 --ranks 2 --json drop.json
+"""
+
+BENCH_EXAMPLES = """
+Examples:
+
+sphcloth bench pair
+
+sphcloth bench cloth --rounds 3 --json cloth.json
+"""
+
+REPORT_EXAMPLES = """
+Examples:
+
+sphcloth report
+
+sphcloth report pour build/validate --out report.html --title "Water on a sheet"
+"""
+
 MESH_EXAMPLES = """
 Examples:
 
@@ -71,7 +113,7 @@ def sphcloth() -> None:
     """Keep the names of the commands, however few there are."""
 
 
-@app.command()
+@app.command(epilog=DOCTOR_EXAMPLES)
 def doctor(
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write the findings here too.")
@@ -87,7 +129,7 @@ def doctor(
     raise typer.Exit(0 if findings.passed else 1)
 
 
-@app.command()
+@app.command(epilog=RUN_EXAMPLES)
 def run(
     example: Annotated[str, typer.Argument(metavar="EXAMPLE", help="Name of a packaged example.")],
     size: Annotated[
@@ -103,6 +145,9 @@ def run(
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw pictures afterwards.")] = True,
     frames: Annotated[int, typer.Option(min=1, help="Number of pictures.")] = 12,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the summary here too.")
+    ] = None,
 ) -> None:
     """Run an example, draw it and print a summary of what went right or wrong."""
     from sphcloth.examples import parse_settings
@@ -116,11 +161,12 @@ def run(
         parse_settings(settings or []),
         frames if pictures else None,
         Console(),
+        json_file,
     )
     raise typer.Exit(code)
 
 
-@app.command()
+@app.command(epilog=VALIDATE_EXAMPLES)
 def validate(
     case: Annotated[
         str | None, typer.Argument(metavar="CASE", help="Name of a case; --list shows them.")
@@ -365,7 +411,7 @@ def render(
         command.write_report(report, json_file)
 
 
-@app.command()
+@app.command(epilog=BENCH_EXAMPLES)
 def bench(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth, coupling.")
@@ -547,7 +593,7 @@ def advise(
         found.write(json_file)
 
 
-@app.command()
+@app.command(epilog=REPORT_EXAMPLES)
 def report(
     folders: Annotated[
         list[Path] | None,

@@ -42,6 +42,7 @@ def run_example(
     settings: Mapping[str, str],
     frames: int | None,
     console: Console,
+    json_file: Path | None = None,
 ) -> int:
     """Run an example, draw it and print its summary.
 
@@ -53,6 +54,7 @@ def run_example(
         settings: script variables that differ from the size's.
         frames: number of pictures; None draws nothing.
         console: where progress and summary appear.
+        json_file: where the summary is written beside ``summary.json``.
 
     Returns:
         Exit code: 0 if LAMMPS ended well, nothing crossed the sheet and the mass balance is
@@ -75,7 +77,9 @@ def run_example(
         return 1
     with console.status("measuring and drawing"):
         summary = summarise(out, name, frames)
-    summary.write(out / "summary.json")
+    for file in (out / "summary.json", json_file):
+        if file is not None:
+            summary.write(file)
     summary.show(console)
     return 0 if summary.passed and not outcome.interrupted else 1
 

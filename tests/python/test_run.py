@@ -95,8 +95,9 @@ def test_a_scene_of_cloth_alone_has_nothing_to_fail(drop: Path) -> None:
 
 def test_pictures_are_drawn(drop: Path) -> None:
     console = Console(file=io.StringIO())
-    code = run_example("drop", "tiny", 1, drop, {}, 1, console)
+    code = run_example("drop", "tiny", 1, drop, {}, 1, console, drop / "copy.json")
     assert code == 0
+    assert (drop / "copy.json").read_text() == (drop / "summary.json").read_text()
     names = ["contact_sheet.png", "history.png", "pictures/frame_0000.png"]
     assert all((drop / name).stat().st_size > 1000 for name in names)
 

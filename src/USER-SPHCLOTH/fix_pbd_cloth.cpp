@@ -10,6 +10,7 @@
 #include "atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
+#include "dihedral_pbd.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -17,6 +18,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "restart_record.h"
+#include "sph_adaptive.h"
 #include "update.h"
 
 #include <algorithm>
@@ -209,6 +211,7 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
+  warn_of_hinges();
   constraints.measure_rest(groupbit, rest_x);
   constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
 }
@@ -243,6 +246,24 @@ void FixPBDCloth::check_styles()
   if (!force->bond || !dynamic_cast<BondPBD *>(force->bond_match("pbd")))
     error->all(FLERR, "{}: bond_style {} holds no stiffness: use 'bond_style pbd'", label,
                force->bond_style ? force->bond_style : "none");
+}
+
+// A stiffness acts once in each substep: that of bending jumps with steps in powers of two.
+
+void FixPBDCloth::warn_of_hinges() const
+{
+  const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
+  const auto *hinges =
+      dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
+  if (!adaptive || adaptive->scheme() != SteppingScheme::BLOCK || !hinges) return;
+  if (solver != Solver::SUBSTEPS || comm->me) return;
+  for (int t = 1; t <= atom->ndihedraltypes; t++)
+    if (hinges->owns(t) && !hinges->material(t).compliant && hinges->material(t).k > 0.0)
+      return error->warning(
+          FLERR,
+          "{}: hinges of type {} have k {}, which block steps and substeps may "
+          "feed until the sheet tears: give them a compliance, or use 'solver gs'",
+          label, t, hinges->material(t).k);
 }
 
 /* ----------------------------------------------------------------------

@@ -126,6 +126,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   bool is_held(int atom) const;
   bool is_pinned(int atom) const;
   void check_styles();
+  void warn_of_hinges() const;
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
   void move_pins();
   void load();

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
 from scenes import DROP, END, FREE_SHEET, MAKE_DROP
+from test_errors import SHEET_FIX
 from test_individual import MAKE, fall
 
 # Two drops of different water, fine and coarse, collide in empty space.  Nothing else acts.
@@ -317,3 +318,23 @@ def test_until_ends_a_run_at_its_time(scheme):
     steps = lmp.extract_global("ntimestep")
     lmp.command("run 1000")
     assert lmp.extract_global("ntimestep") == steps
+
+
+@pytest.mark.parametrize(
+    ("hinge", "solver", "scheme", "warned"),
+    [
+        ("0.1", "substeps", "block", True),
+        ("0", "substeps", "block", False),
+        ("compliance 1", "substeps", "block", False),
+        ("0.1", "gs", "block", False),
+        ("0.1", "substeps", "global", False),
+    ],
+)
+def test_hinges_that_block_steps_would_feed_are_told_of(tmp_path, hinge, solver, scheme, warned):
+    script = SHEET_FIX.replace("dihedral_coeff 1 0.1", f"dihedral_coeff 1 {hinge}")
+    script = script.replace("pbd/cloth", f"pbd/cloth solver {solver}")
+    script += f"fix step water sph/integrate global\nrun_style sph/adaptive {scheme}\nrun 0\n"
+    with instance() as lmp:
+        lmp.commands_string(f"log {tmp_path}/log.lammps\n{script}")
+    said = (tmp_path / "log.lammps").read_text()
+    assert ("hinges of type 1 have k 0.1" in said) == warned

@@ -370,7 +370,10 @@ def test_message_is_what_lammps_says(head: str, tmp_path: Path) -> None:
 
 TARGETS = set(re.findall(r"^([\w/-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-SCRIPTS = {path.name: path for path in ROOT.rglob("in.*") if path.suffix != ".py"}
+# scripts by name, that of an example before that of a case
+SCRIPTS = {
+    path.name: path for folder in ("python", "examples") for path in (ROOT / folder).rglob("in.*")
+}
 
 
 def command_lines() -> list:

@@ -85,7 +85,7 @@ def test_a_record_of_another_release_names_the_fix(kept, tmp_path):
         code, text = lammps(tmp_path, SCRIPT.read_text(), again="yes", parts=4)
         assert code == 1
         styles.update(re.findall(r"ERROR: fix \w+ (\S+): its record in the restart", text))
-    assert styles == {"sph/emit", "sph/drain", "sph/watch", "pbd/cloth"}
+    assert styles == {"sph/emit", "sph/drain", "sph/watch", "sph/integrate", "pbd/cloth"}
 
 
 # ---- files that the package reads ----------------------------------------------------------------

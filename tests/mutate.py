@@ -113,7 +113,7 @@ BUGS = [
     Bug("contact: out on the other side", "core/contact.h",
         "gap_start >= 0.0 ? 1.0 : -1.0", "gap_start >= 0.0 ? -1.0 : 1.0", CONTACT),
     Bug("contact: two vertices take each other's part", "core/contact.h",
-        "return {1.0 - w2 - w3, w2, w3}", "return {1.0 - w2 - w3, w3, w2}", CONTACT),
+        "return {1.0 - w2 - w3, w2, w3}", "return {1.0 - w2 - w3, w3, w2}", CORE),
 ]  # fmt: skip
 
 
@@ -159,7 +159,7 @@ class Tree:
         self._install(self.build / "sphclothplugin.so")
 
     def make_core(self) -> None:
-        """Build the tests of the lists."""
+        """Build the tests of headers."""
         self._must("cmake", "--build", self.core, "-j2", "--target", "test_core_plain")
 
     def _install(self, library: Path) -> None:

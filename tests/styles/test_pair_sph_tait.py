@@ -92,6 +92,16 @@ def test_two_particles(r):
     assert np.all(by_id(lmp, "f")[:, 1:] == 0)
 
 
+def test_particles_of_one_type_count_with_masses_of_their_own():
+    masses = "fix mass all property/atom rmass ghost yes\nset atom 1 mass 1\nset atom 2 mass 2.5"
+    lmp = two_particles(0.05, second=f"set type 2 type 1\n{masses}")
+    mass = np.array([1.0, 2.5])
+    rho = mass * wendland(0) + mass[::-1] * wendland(0.05)
+    np.testing.assert_allclose(by_id(lmp, "rho"), rho, rtol=1e-12)
+    along = mass.prod() * wendland_slope(0.05) * (tait(rho) / rho**2).sum()
+    np.testing.assert_allclose(by_id(lmp, "f")[:, 0], [along, -along], rtol=1e-10)
+
+
 def test_outside_the_support_nothing_acts():
     lmp = two_particles(0.1)
     assert np.all(by_id(lmp, "f") == 0)

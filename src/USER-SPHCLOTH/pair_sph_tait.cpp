@@ -216,10 +216,11 @@ double PairSPHTait::init_one(int i, int j)
   constexpr double MOST_BOXES = 1000.0;
   const double box = std::max({domain->prd[0], domain->prd[1], domain->prd[2]});
   if (radius > MOST_BOXES * box)
-    error->all(FLERR,
-               "{}: the support {} of types {} and {} is more than {:.0f} times the box, {}: give H "
-               "and 'support' in the units of the box",
-               STYLE, radius, i, j, MOST_BOXES, box);
+    error->all(
+        FLERR,
+        "{}: the support {} of types {} and {} is more than {:.0f} times the box, {}: give H "
+        "and 'support' in the units of the box",
+        STYLE, radius, i, j, MOST_BOXES, box);
 
   FluidModel &model = fluid->model;
   PairTerms t = materials.mix(i, j, options.kernel);

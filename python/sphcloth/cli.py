@@ -15,6 +15,12 @@ app = typer.Typer(
     help="SPH water on cloth in LAMMPS.", no_args_is_help=True, pretty_exceptions_enable=False
 )
 
+# options that several commands share
+JsonFile = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
+]
+Ranks = Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")]
+
 DOCTOR_EXAMPLES = """
 Examples:
 
@@ -115,9 +121,7 @@ def sphcloth() -> None:
 
 @app.command(epilog=DOCTOR_EXAMPLES)
 def doctor(
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the findings here too.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Check that LAMMPS, MPI and the styles work together on this machine."""
     from sphcloth.doctor import examine
@@ -135,7 +139,7 @@ def run(
     size: Annotated[
         str, typer.Option(help="One of the sizes in the example's sizes.toml.")
     ] = "small",
-    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
+    ranks: Ranks = 1,
     out: Annotated[
         Path | None, typer.Option(help="Output folder.", show_default="sphcloth-EXAMPLE-SIZE")
     ] = None,
@@ -145,9 +149,7 @@ def run(
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw pictures afterwards.")] = True,
     frames: Annotated[int, typer.Option(min=1, help="Number of pictures.")] = 12,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the summary here too.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Run an example, draw it and print a summary of what went right or wrong."""
     from sphcloth.examples import parse_settings
@@ -175,16 +177,14 @@ def validate(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case."),
     ] = None,
-    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
+    ranks: Ranks = 1,
     quick: Annotated[
         bool, typer.Option("--quick", help="Run the smaller variant with its own limits.")
     ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Output folder.", show_default="sphcloth-validate-CASE")
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
-    ] = None,
+    json_file: JsonFile = None,
     show_list: Annotated[
         bool, typer.Option("--list", help="Show all cases and their parameters.")
     ] = False,
@@ -226,9 +226,7 @@ def mesh(
         Path | None,
         typer.Option(help="Script of groups to write.", show_default="DATA with .groups"),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the summary here too.")
-    ] = None,
+    json_file: JsonFile = None,
     areal_mass: Annotated[
         list[float] | None,
         typer.Option(help="Mass per area; once, or once for each file, as the types below."),
@@ -389,9 +387,7 @@ def render(
             show_default="all triangles that ever move",
         ),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write what was drawn here.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Draw a dump: water as a surface, cloth, walls; pictures or a film."""
     from sphcloth.rendering import command
@@ -431,9 +427,7 @@ def bench(
         int | None,
         typer.Option(min=5, help="Length of a timed run.", show_default="30, 40 or 60"),
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the figures here.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Measure speed as ratios, side by side in one run, with the spread."""
     import json
@@ -520,9 +514,7 @@ def tradeoff(
     out: Annotated[
         Path | None, typer.Option(help="Output folder.", show_default="sphcloth-tradeoff-SCENE")
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
-    ] = None,
+    json_file: JsonFile = None,
     show_list: Annotated[bool, typer.Option("--list", help="Show the packaged scenes.")] = False,
 ) -> None:
     """Run a scene with many settings: error against particle updates and wall time."""
@@ -564,7 +556,7 @@ def advise(
         list[str] | None,
         typer.Option("--var", "--set", metavar="NAME=VALUE", help="Set a variable of the script."),
     ] = None,
-    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")] = 1,
+    ranks: Ranks = 1,
     steps: Annotated[
         int, typer.Option("--probe-steps", min=1, help="Stop after so many steps.")
     ] = 1000,
@@ -577,9 +569,7 @@ def advise(
     stretch: Annotated[
         float, typer.Option(min=1e-9, help="Largest strain of an edge that you accept.")
     ] = 0.01,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the findings here too.")
-    ] = None,
+    json_file: JsonFile = None,
 ) -> None:
     """Run a script for a short time and say what the scene needs, and what it does not."""
     from sphcloth.advice.command import advise as find_advice
@@ -635,9 +625,7 @@ def stress(
     out: Annotated[
         Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
     ] = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
-    ] = None,
+    json_file: JsonFile = None,
     show_list: Annotated[
         bool, typer.Option("--list", help="Show all cases and what must happen.")
     ] = False,

@@ -143,8 +143,6 @@ void FixSPHIntegrate::init()
   scheme = adaptive ? adaptive->scheme() : said;
   check_scheme();
   pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
-  if (scheme != SteppingScheme::CONSTANT) pair->want_density_rate();
-  if (scheme != SteppingScheme::CONSTANT && lambda.relative > 0.0) pair->want_approach();
   control.sound_time = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
     if (pair->is_fluid(t))
@@ -153,7 +151,11 @@ void FixSPHIntegrate::init()
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
-  if (scheme != SteppingScheme::CONSTANT && !cloths.empty()) pair->want_wetting();
+  if (scheme != SteppingScheme::CONSTANT) {
+    pair->want_density_rate();
+    if (lambda.relative > 0.0) pair->want_approach();
+    if (!cloths.empty()) pair->want_wetting();
+  }
 
   int wrong = 0, any_wrong = 0;
   for (int i = 0; i < atom->nlocal; i++)

@@ -36,7 +36,7 @@ static int face_of(const std::string &name)
 
 FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
-    any_variable(false), reflection(1.0), last_time(-1.0), summed(false)
+    any_variable(false), any_moves(false), reflection(1.0), last_time(-1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
@@ -168,6 +168,7 @@ void FixWallSPH::begin()
   const double elapsed = last_time < 0.0 ? 0.0 : now - last_time;
   if (any_variable) modify->clearstep_compute();
   for (Wall &wall : walls) locate(wall, elapsed);
+  any_moves = std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.moves(); });
   if (any_variable) modify->addstep_compute(update->ntimestep + 1);
   find_open_space();
   last_time = now;
@@ -352,13 +353,9 @@ double FixWallSPH::approach(int i)
 
 bool FixWallSPH::moves_beside(int i)
 {
-  const auto moves = [](const Wall &wall) {
-    const double *u = wall.velocity;
-    return u[0] != 0.0 || u[1] != 0.0 || u[2] != 0.0;
-  };
-  if (std::none_of(walls.begin(), walls.end(), moves) || !look(i)) return false;
+  if (!any_moves || !look(i)) return false;
   return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
-    return moves(wall) && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
+    return wall.moves() && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
   });
 }
 

@@ -60,6 +60,7 @@ class FixWallSPH : public Fix, public FluidWall {
     double velocity[3];    // along the plane as given, across it from the motion of the plane
 
     int axis() const { return face / 2; }
+    bool moves() const { return velocity[0] != 0.0 || velocity[1] != 0.0 || velocity[2] != 0.0; }
     double inwards() const { return face % 2 == 0 ? 1.0 : -1.0; }
     double distance(const double *x) const { return inwards() * (x[axis()] - position); }
   };
@@ -72,7 +73,7 @@ class FixWallSPH : public Fix, public FluidWall {
   std::string label;
   PairSPHTait *pair;
   std::vector<Wall> walls;
-  bool slip, any_variable;
+  bool slip, any_variable, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
   std::array<double, 3> open_low, open_high;    // out of reach of all walls
   double last_time;    // of the positions, < 0: none yet

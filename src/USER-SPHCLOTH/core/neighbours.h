@@ -100,6 +100,12 @@ class Stretches {
   {
     int *end = room(0);
     std::fill(end, end + SLACK, 0);
+    const std::size_t need = first.back() + SLACK;
+    if (entries.capacity() <= need + need / 32) return;
+    std::vector<int> trimmed;
+    trimmed.reserve(need + need / 128);
+    trimmed.assign(entries.begin(), entries.begin() + need);
+    entries.swap(trimmed);
   }
   double bytes() const
   {

@@ -190,6 +190,7 @@ template <class K, class P> void FluidLoops<K, P>::place(const Particles &p, con
     }
   }
   place_all(p, origin, per_quantum);
+  lists.follow(p.x, p.n_all);
 }
 
 template <class K, class P>
@@ -337,7 +338,6 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
 template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
 {
   settle();
-  lists.follow(p.x, p.n_all);
   sum_up(p, sum);
 }
 
@@ -351,7 +351,8 @@ void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
   Columns c;
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);
-    const double sum = shape_sum<false>(i, lists.all(slot, type), terms, {}, c);
+    lists.refresh(slot);
+    const double sum = shape_sum<false>(i, lists(slot, type), terms, {}, c);
     amount[i] = 1.0 / (whole.kernel.w * (K::shape(0.0) + sum));
   }
 }
@@ -517,7 +518,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
   int met = 0;
   for (int other = 1; other <= model.n_types; other++) {
     const Stretch found = lists(slot, other);
-    if (found.n == 0) continue;
+    if (found.n == 0 || !(fluid || is_fluid(other))) continue;
     met += found.n;
     const Terms &of_pair = pair(t, other);
     if (fluid && is_fluid(other))

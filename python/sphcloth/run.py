@@ -18,7 +18,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from sphcloth.errors import UserError
 from sphcloth.examples import find_example
 from sphcloth.log import error_lines
-from sphcloth.programs import program
+from sphcloth.programs import lammps_on
 from sphcloth.summary import summarise
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -104,9 +104,8 @@ def _remove_old_results(out: Path, name: str) -> None:
 
 def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
     """Return the command line that runs a script with these variables."""
-    launch = [str(program("mpiexec")), "-n", str(ranks), str(program("lmp"))]
     values = [text for name, value in variables.items() for text in ("-var", name, value)]
-    return [*launch, "-in", str(script), "-log", LOG, *values]
+    return [*lammps_on(ranks), "-in", str(script), "-log", LOG, *values]
 
 
 def run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:

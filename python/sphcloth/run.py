@@ -96,10 +96,17 @@ def _end_time(variables: Mapping[str, str]) -> float:
 
 def _remove_old_results(out: Path, name: str) -> None:
     """Remove what an earlier run left, lest a run that fails early shows its numbers."""
+    check_no_link(out / "pictures")
     stale = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", "summary.json"]
     pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
     for path in [*(out / file for file in stale), *pictures]:
         path.unlink(missing_ok=True)
+
+
+def check_no_link(folder: Path) -> None:
+    """Raise UserError where a folder of the output is a link: what is removed would be elsewhere."""
+    if folder.is_symlink():
+        raise UserError(f"{folder} is a link to {folder.readlink()}: remove it first")
 
 
 def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:

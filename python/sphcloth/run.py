@@ -104,7 +104,7 @@ def _remove_old_results(out: Path, name: str) -> None:
 
 
 def check_no_link(folder: Path) -> None:
-    """Raise UserError where a folder of the output is a link: what is removed would be elsewhere."""
+    """Raise UserError where a folder of the output is a link: what goes would be elsewhere."""
     if folder.is_symlink():
         raise UserError(f"{folder} is a link to {folder.readlink()}: remove it first")
 

@@ -1,4 +1,4 @@
-"""Files that somebody made to do harm: refused by name, in little memory, nothing written elsewhere."""
+"""Files made to do harm: refused by name, in little memory, and nothing is written elsewhere."""
 
 import json
 import resource
@@ -199,5 +199,5 @@ def test_what_a_study_has_kept(tmp_path, text):
     folder = workshop.folder(setting)
     written(folder / runs.RECORD, text)
     written(folder / runs.LOG, LOG)
-    with pytest.raises(UserError, match="result.json: not what a run keeps"):
+    with pytest.raises(UserError, match="not what a run keeps"):
         workshop.find(setting)

@@ -1,7 +1,7 @@
 """Tables of ``docs/reliability.md`` from what the runs wrote.
 
 ``python -m sphcloth.stress.page build/reliability docs/reliability.md`` replaces what stands
-between ``<!-- table NAME -->`` and ``<!-- end -->``. A table whose file is not there stays as it is.
+between ``<!-- table NAME -->`` and ``<!-- end -->``. A table whose file is not there stays.
 """
 
 from __future__ import annotations

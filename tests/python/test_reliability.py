@@ -102,6 +102,10 @@ EXAMPLES = {
 XML = """<testsuite><testcase name="test_each[bond]"><properties><property name="tried" value="7"/>
 <property name="refused" value="4"/></properties></testcase></testsuite>"""
 ROWS = [
+    "**3 runs of 1 cases, 1 breaches.**",
+    "**1 ends compared, 0 differ.**",
+    "**7 commands and files.**",
+    "**1 of 1 bugs caught.**",
     "| block | 1 runs, 0 breaches | 1 runs, 0 breaches | 1 runs, 1 breaches |",
     "* `a`, block, 4 ranks: slow",
     "| 2 ranks | 1e-14 |",

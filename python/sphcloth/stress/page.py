@@ -51,7 +51,13 @@ def extremes(path: Path) -> str:
         for r in runs
         if not r["passed"]
     ]
-    return "\n".join([table(heads, rows), *([""] if bad else []), *bad])
+    told = f"{len(runs)} runs of {len(_by(runs, 'case'))} cases, {len(bad)} breaches."
+    return _told(told, "\n".join([table(heads, rows), *([""] if bad else []), *bad]))
+
+
+def _told(line: str, rows: str) -> str:
+    """Return a table below a line that sums it up."""
+    return f"**{line}**\n\n{rows}"
 
 
 def _breaches(runs: Sequence[dict]) -> str:
@@ -66,7 +72,9 @@ def equality(path: Path) -> str:
     for way, here in _by(found, "way", "ranks").items():
         by_kind = {(one["box"], one["scheme"]): one for one in here}
         rows.append([_way(*way), *(_difference(by_kind.get(kind)) for kind in kinds)])
-    return table(["way", *(f"{box}, `{scheme}`" for box, scheme in kinds)], rows)
+    wrong = sum(not one["passed"] for one in found)
+    heads = ["way", *(f"{box}, `{scheme}`" for box, scheme in kinds)]
+    return _told(f"{len(found)} ends compared, {wrong} differ.", table(heads, rows))
 
 
 def _way(name: str, ranks: int) -> str:
@@ -84,6 +92,7 @@ def _difference(one: dict | None) -> str:
 
 def kills(path: Path) -> str:
     """Killed runs by scheme and ranks."""
+    found = json.loads(path.read_text())
     rows = [
         [
             f"`{scheme}`",
@@ -93,21 +102,19 @@ def kills(path: Path) -> str:
             sum(one["had_file"] for one in here),
             sum(not one["complaint"] for one in here),
         ]
-        for (scheme, ranks), here in _by(json.loads(path.read_text()), "scheme", "ranks").items()
+        for (scheme, ranks), here in _by(found, "scheme", "ranks").items()
     ]
+    wrong = sum(bool(one["complaint"]) for one in found)
     heads = ["scheme", "ranks", "runs", "killed in time", "had a restart file", "same to the bit"]
-    return table(heads, rows)
+    return _told(f"{len(found)} runs killed, {wrong} ended otherwise.", table(heads, rows))
 
 
 def bugs(path: Path) -> str:
     """Deliberate bugs, and the test that sees each."""
-    return table(
-        ["bug", "caught by", "s"],
-        [
-            [one["bug"], _test(one["caught"]), one["seconds"]]
-            for one in json.loads(path.read_text())
-        ],
-    )
+    found = json.loads(path.read_text())
+    told = f"{sum(bool(one['caught']) for one in found)} of {len(found)} bugs caught."
+    rows = [[one["bug"], _test(one["caught"]), one["seconds"]] for one in found]
+    return _told(told, table(["bug", "caught by", "s"], rows))
 
 
 def _test(caught: str) -> str:
@@ -127,8 +134,9 @@ def fuzz(path: Path) -> str:
             wrong = "**yes**" if case.find("failure") is not None else "0"
             rows.append([kind, counts["tried"], counts["refused"], wrong])
         elif case.find("failure") is not None:
-            rows.append([case.get("name"), "", "", "**yes**"])
-    return table(["kind", "tried", "refused by name", "wrong"], rows)
+            rows.append([case.get("name"), 0, 0, "**yes**"])
+    told = f"{sum(row[1] for row in rows)} commands and files."
+    return _told(told, table(["kind", "tried", "refused by name", "wrong"], rows))
 
 
 def steps(path: Path) -> str:

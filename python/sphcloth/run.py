@@ -19,7 +19,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from sphcloth.errors import UserError
 from sphcloth.examples import find_example
 from sphcloth.log import error_lines
-from sphcloth.programs import program
+from sphcloth.programs import lammps_on
 from sphcloth.summary import summarise
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -100,6 +100,7 @@ def _end_time(variables: Mapping[str, str]) -> float:
 
 def _remove_old_results(out: Path, name: str) -> None:
     """Remove what an earlier run left, lest a run that fails early shows its numbers."""
+    check_no_link(out / "pictures")
     stale = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", "summary.json"]
     pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
     for path in [*(out / file for file in stale), *pictures]:
@@ -123,11 +124,16 @@ def companions(script: Path) -> list[Path]:
     return [file for file in found if file.is_file()]
 
 
+def check_no_link(folder: Path) -> None:
+    """Raise UserError where a folder of the output is a link: what goes would be elsewhere."""
+    if folder.is_symlink():
+        raise UserError(f"{folder} is a link to {folder.readlink()}: remove it first")
+
+
 def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
     """Return the command line that runs a script with these variables."""
-    launch = [str(program("mpiexec")), "-n", str(ranks), str(program("lmp"))]
     values = [text for name, value in variables.items() for text in ("-var", name, value)]
-    return [*launch, "-in", str(script), "-log", LOG, *values]
+    return [*lammps_on(ranks), "-in", str(script), "-log", LOG, *values]
 
 
 def run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:

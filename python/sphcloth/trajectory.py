@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import itertools
+import re
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -33,6 +34,10 @@ _HEADER = {
     8: "ITEM: ATOMS",
 }
 _HEADER_LINES = 9
+# what LAMMPS counts has 64 bits
+_COUNT = re.compile(r"[0-9]{1,18}")
+# and is exact as a number of double precision up to here
+_MOST = 2.0**53
 
 
 @dataclass(frozen=True)
@@ -192,7 +197,7 @@ def _read_bounds(rows: list[str], path: Path, line: int) -> NDArray[np.float64]:
         bounds = np.array([row.split() for row in rows], dtype=np.float64)
     except ValueError as error:
         raise UserError(f"{path}, line {line}: not the bounds of a box") from error
-    if bounds.shape not in ((3, 2), (3, 3)):
+    if bounds.shape not in ((3, 2), (3, 3)) or not np.isfinite(bounds).all():
         raise UserError(f"{path}, line {line}: not the bounds of a box")
     return bounds
 
@@ -212,7 +217,7 @@ def _check_header(header: list[str], path: Path, line: int) -> None:
                 f"{path}, line {line + number}: expected '{expected}', found "
                 f"'{text.strip()[:60]}': a text dump without 'dump_modify time' or 'units' is read"
             )
-        if number in (1, 3) and not text.strip().isdigit():
+        if number in (1, 3) and not _COUNT.fullmatch(text.strip()):
             raise UserError(f"{path}, line {line + number}: '{text.strip()[:60]}' is no count")
     if len(complete) == _HEADER_LINES:
         _check_columns(complete[8].split()[2:], path)
@@ -225,6 +230,8 @@ def _check_columns(columns: list[str], path: Path) -> None:
             f"{path} lacks the column {' '.join(absent)}: write it with "
             "'dump ID all custom N FILE id type x y z vx vy vz rho'"
         )
+    if len(set(columns)) < len(columns):
+        raise UserError(f"{path} has two columns of one name: {' '.join(columns)}")
 
 
 def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
@@ -241,7 +248,21 @@ def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
         reader = DumpReader(stream, "unscaled", additional_columns=entry.columns, dt=1.0)
     except (ValueError, IndexError) as error:
         raise UserError(f"{path}, line {_bad_line(text, entry)}: not a row of numbers") from error
-    return {name: reader.ts.data[name] for name in entry.columns}
+    columns = {name: reader.ts.data[name] for name in entry.columns}
+    _check_atoms(columns, path, entry)
+    return columns
+
+
+def _check_atoms(columns: dict[str, NDArray[np.float64]], path: Path, entry: _Entry) -> None:
+    """Raise UserError where an atom is there twice, or has an ID or type that none can have."""
+    where = f"{path}, frame at line {entry.line}"
+    for name in ("id", "type"):
+        wrong = ~((columns[name] >= 1) & (columns[name] < _MOST))
+        if wrong.any():
+            raise UserError(f"{where}: {columns[name][wrong][0]:g} is no {name} of an atom")
+    twice = columns["id"][1:][np.diff(columns["id"]) == 0]
+    if len(twice):
+        raise UserError(f"{where}: atom {twice[0]:.0f} is there twice")
 
 
 def _bad_line(text: str, entry: _Entry) -> int:

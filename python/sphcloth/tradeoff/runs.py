@@ -128,8 +128,11 @@ class Workshop:
         path = self.folder(setting) / RECORD
         if not path.is_file() or not path.with_name(LOG).is_file():
             return None
-        kept = json.loads(path.read_text(encoding="utf-8"))
-        return Record(**kept | {"walls_s": tuple(kept["walls_s"])})
+        try:
+            kept = json.loads(path.read_text(encoding="utf-8"))
+            return Record(**kept | {"walls_s": tuple(kept["walls_s"])})
+        except (ValueError, LookupError, TypeError) as error:
+            raise UserError(f"{path}: not what a run keeps ({error}): remove its folder") from error
 
     def run(
         self, settings: list[Setting], repeat: int = 1, patience: float = math.inf

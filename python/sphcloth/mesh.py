@@ -52,7 +52,12 @@ def read_masses(data: str | Path) -> dict[int, float]:
     lines = read_sections(Path(data)).get("Masses")
     if not lines:
         raise UserError(f"{data} has no section Masses: each atom has a mass of its own there")
-    return {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
+    try:
+        return {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
+    except ValueError as error:
+        raise UserError(
+            f"{data}: the section Masses is not a type and a mass in each line"
+        ) from error
 
 
 def _check_counts(header: dict[str, str], sections: dict[str, list[str]], data: Path) -> None:

@@ -20,8 +20,8 @@ using namespace sphcloth;
 
 static const std::string STYLE = "create_cloth";
 
-CreateCloth::CreateCloth(LAMMPS *lmp) :
-    Command(lmp), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
+CreateCloth::CreateCloth(LAMMPS *lmp_) :
+    Command(lmp_), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
     axis_v(Vec3::UnitY()), length(0.0), width(0.0), radius(0.0), spacing(0.0), bond_type(1),
     shear_type(0), triangle_type(1), hinge_type(1), groupbit(0), first_id(0)
 {

@@ -27,8 +27,8 @@ using namespace FixConst;
    fix ID group sph/emit N type spacing keyword values ...
 ------------------------------------------------------------------------- */
 
-FixSPHEmit::FixSPHEmit(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
+FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
     spacing(0.0), mass(0.0), centre(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
     disc(false), start(0.0), layer_time(0.0), layers(0), momentum{}
 {

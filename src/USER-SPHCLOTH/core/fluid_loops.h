@@ -107,9 +107,9 @@ template <class K, class P> class FluidLoops : public Fluid {
   struct Terms {
     Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
     explicit Terms(const PairTerms &t) :
-        inv_support(t.kernel.inv_support), support_sq(t.kernel.support_sq), f(t.kernel.f), nu(t.nu),
-        monaghan(t.monaghan), soft(t.soft), rho0(t.rho0), stiffness(t.stiffness),
-        diffusion(t.diffusion)
+        inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
+        f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
+        rho0(Real(t.rho0)), stiffness(Real(t.stiffness)), diffusion(Real(t.diffusion))
     {
     }
   };

@@ -147,7 +147,8 @@ void BlockSteps::fit_root(double best, double least)
   while (best > remaining && best > least) best *= 0.5;
   const double root = best <= least ? step_towards(remaining, best) : best;
   for (const int i : pair->active_particles())
-    rows[UNTIL][i] = (rows[UNTIL][i] - static_cast<double>(TimeLine::ticks(0))) * at.line.root / root;
+    rows[UNTIL][i] =
+        (rows[UNTIL][i] - static_cast<double>(TimeLine::ticks(0))) * at.line.root / root;
   at.line = {root, 0};
   coarsest = 0;
   at.reaches_output = root == remaining;

@@ -18,7 +18,8 @@ using namespace sphcloth;
 ------------------------------------------------------------------------- */
 
 ComputePBDLocal::ComputePBDLocal(LAMMPS *lmp_, int narg, char **arg) :
-    Compute(lmp_, narg, arg), label(fmt::format("compute {} pbd/local", id)), room(0), cloth(nullptr)
+    Compute(lmp_, narg, arg), label(fmt::format("compute {} pbd/local", id)), room(0),
+    cloth(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   cloth_id = args.word("ID of a fix pbd/cloth");
@@ -120,5 +121,6 @@ std::array<double, 3> ComputePBDLocal::measure_hinge(int m, int i) const
 
 double ComputePBDLocal::memory_usage()
 {
-  return static_cast<double>(room * columns.size() * sizeof(double) + rows.capacity() * sizeof(Row));
+  return static_cast<double>(room * columns.size() * sizeof(double) +
+                             rows.capacity() * sizeof(Row));
 }

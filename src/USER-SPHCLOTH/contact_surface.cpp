@@ -35,8 +35,8 @@ Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
 
 ContactSurface::ContactSurface(LAMMPS *lmp_, ContactMesh *mesh_, Fix *contact, int meets_,
                                const ContactRules *rules_, ContactCounts *counts_) :
-    TriangleSet(lmp_, mesh_, contact, fmt::format("fix {} cloth/contact", contact->id)), meets(meets_),
-    rules(rules_), counts(counts_), last_places(nullptr), substep_dt(0.0)
+    TriangleSet(lmp_, mesh_, contact, fmt::format("fix {} cloth/contact", contact->id)),
+    meets(meets_), rules(rules_), counts(counts_), last_places(nullptr), substep_dt(0.0)
 {
 }
 

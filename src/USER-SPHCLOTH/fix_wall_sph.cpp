@@ -388,7 +388,9 @@ void FixWallSPH::post_force(int vflag)
 
 double FixWallSPH::output(int n)
 {
-  if (!summed) MPI_Allreduce(mine.data(), all.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, world);
+  if (!summed)
+    MPI_Allreduce(mine.data(), all.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM,
+                  world);
   summed = true;
   return all[n];
 }

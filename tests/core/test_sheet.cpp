@@ -50,7 +50,8 @@ CASE("disc: counts of rings, an area once, the border on the circle, every inner
     CHECK(3 * t == e + mesh.hinges.size());
     const std::vector<double> area = vertex_areas(disc);
     CHECK_NEAR(std::accumulate(area.begin(), area.end(), 0.0),
-               3.0 * rings * radius * radius * std::sin(PI / (3.0 * rings)), 1e-12 * radius * radius);
+               3.0 * rings * radius * radius * std::sin(PI / (3.0 * rings)),
+               1e-12 * radius * radius);
     for (std::size_t k = v - 6 * n; k < v; k++)
       CHECK_NEAR(disc.vertices[k].norm(), radius, 1e-15 * radius);
     for (const auto &c : disc.triangles) {

@@ -19,7 +19,7 @@ void Fluid::list(const Particles &p, const double *reach)
   std::vector<double> support(n * n, 0.0);
   for (int i = 1; i < n; i++)
     for (int j = 1; j < n; j++)
-      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID)
+      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID || i == j)
         support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
   everyone = false;
   lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),

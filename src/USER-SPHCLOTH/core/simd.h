@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
@@ -75,19 +76,23 @@ template <class Lane> inline constexpr int GROUP = 32 / sizeof(Lane);
 
 // Columns of GROUP records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k].
 // The last lane of a record may be of another type than the first three, or is left out if w is
-// null.
+// null; then records may lie three lanes apart, if there is room for one lane behind the last.
 
-template <class Lane, class Last>
+template <int APART = 4, class Lane, class Last>
 SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lane *y, Lane *z,
                              Last *w)
 {
   static_assert(sizeof(Lane) == sizeof(Last));
-  const auto record = [&](int k) { return records + 4 * static_cast<std::ptrdiff_t>(index[k]); };
+  const auto record = [&](int k) {
+    return records + APART * static_cast<std::ptrdiff_t>(index[k]);
+  };
 #ifdef SPHCLOTH_X86_TARGETS
   // written in whole vectors: a load that spans two recent stores would wait for both
   typedef __int128 Half __attribute__((aligned(sizeof(Lane)), may_alias));
   typedef __int128 Halves __attribute__((vector_size(32)));
-  typedef Lane Group __attribute__((vector_size(32), aligned(sizeof(Lane)), may_alias));
+  // also of integers: shuffles of numbers have more units that can do them
+  using Number = std::conditional_t<sizeof(Lane) == 4, float, double>;
+  typedef Number Group __attribute__((vector_size(32), aligned(sizeof(Lane)), may_alias));
   // as two integers: the form of which GCC makes one load and one insertion
   const auto both = [&](Group &g, int k, int l, int first) {
     g = reinterpret_cast<Group>(Halves{*reinterpret_cast<const Half *>(record(k) + first),

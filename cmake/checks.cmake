@@ -10,7 +10,7 @@ target_compile_options(sphcloth_checks INTERFACE -Wall -Wextra -Wshadow -Wconver
 if(SPHCLOTH_SANITIZE)
   # null pointers are bad addresses too, and what need not be aligned says so in its type: left out,
   # they make the loops over neighbours compile five times as long
-  set(_sanitizers -fsanitize=address,undefined -fno-sanitize=null,alignment
+  set(_sanitizers -fsanitize=address,undefined,float-cast-overflow -fno-sanitize=null,alignment
     -fno-sanitize-recover=undefined)
   target_compile_options(sphcloth_checks INTERFACE ${_sanitizers} -O1 -g1 -fno-omit-frame-pointer)
   target_compile_definitions(sphcloth_checks INTERFACE _GLIBCXX_ASSERTIONS)

@@ -23,6 +23,9 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
+// their places are kept by every rank
+static constexpr double MOST_IN_LAYER = 1e8;
+
 /* ----------------------------------------------------------------------
    fix ID group sph/emit N type spacing keyword values ...
 ------------------------------------------------------------------------- */
@@ -96,6 +99,10 @@ void FixSPHEmit::make_pattern()
   const Vec3 second = normal.cross(first);
   const double reach_a = disc ? 2.0 * extent[0] : extent[0];
   const double reach_b = disc ? 2.0 * extent[0] : extent[1];
+  const double cells = (reach_a / spacing) * (reach_b / spacing);
+  if (cells > MOST_IN_LAYER)
+    error->all(FLERR, "{}: spacing {} makes {:.3g} particles in a layer, more than {:g}: raise it",
+               label, spacing, cells, MOST_IN_LAYER);
   const int na = std::max(1, static_cast<int>(std::lround(reach_a / spacing)));
   const int nb = std::max(1, static_cast<int>(std::lround(reach_b / spacing)));
   for (int b = 0; b < nb; b++)

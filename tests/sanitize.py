@@ -16,7 +16,8 @@ from pathlib import Path
 # Python and LAMMPS keep what they have until they end; a request for too much memory fails as it
 # does without sanitizers
 OPTIONS = {
-    "ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=6144",
+    "ASAN_OPTIONS": "detect_leaks=0:handle_abort=1:allocator_may_return_null=1"
+    ":max_allocation_size_mb=6144",
     "UBSAN_OPTIONS": "print_stacktrace=1",
 }
 
@@ -43,9 +44,12 @@ def main() -> int:
         "PYTHONPATH": str(site),
         "PYTHONMALLOC": "malloc",
     }
-    code = subprocess.run(
-        [sys.executable, "-m", "pytest", *sys.argv[2:]], env=environment
-    ).returncode
+    # undefined behaviour is reported there alone
+    command = [sys.executable, "-m", "pytest", "-s", *sys.argv[2:]]
+    done = subprocess.run(command, env=environment, stderr=subprocess.PIPE, text=True)
+    code = done.returncode
+    if "runtime error:" in done.stderr:
+        (reports / "undefined").write_text(done.stderr)
     found = sorted(reports.iterdir())
     for report in found:
         print(f"{report}:\n{report.read_text(errors='replace')[:4000]}")

@@ -211,7 +211,7 @@ void BlockSteps::respect_neighbours()
   comm->forward_comm(fix, 1);
   NearLists &lists = pair->order();
   for (const int i : pair->active_particles())
-    if (lists.greatest(lists.slot(i), level.data()) - apart > level[i])
+    if (lists.greatest(lists.slot(i), level.data()) > level[i] + apart)
       rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
 }

@@ -34,10 +34,10 @@ Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
   return size > most ? Eigen::Vector3d(most / size * v) : v;
 }
 
-ContactSurface::ContactSurface(LAMMPS *lmp, ContactMesh *mesh, Fix *contact, int meets,
-                               const ContactRules *rules, ContactCounts *counts) :
-    TriangleSet(lmp, mesh, contact, fmt::format("fix {} cloth/contact", contact->id)), meets(meets),
-    rules(rules), counts(counts), last_places(nullptr), substep_dt(0.0)
+ContactSurface::ContactSurface(LAMMPS *lmp_, ContactMesh *mesh_, Fix *contact, int meets_,
+                               const ContactRules *rules_, ContactCounts *counts_) :
+    TriangleSet(lmp_, mesh_, contact, fmt::format("fix {} cloth/contact", contact->id)),
+    meets(meets_), rules(rules_), counts(counts_), last_places(nullptr), substep_dt(0.0)
 {
 }
 
@@ -332,11 +332,11 @@ int ContactSurface::side_at(const Vec3 &p, double reach)
     if ((p - spheres[t].centre).squaredNorm() > far * far) return;
     const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
     Vec3 weight;
-    const Vec3 from = distance_vector(p, a, b, c, weight);
-    const double distance = from.norm();
+    const Vec3 out = distance_vector(p, a, b, c, weight);
+    const double distance = out.norm();
     if (distance > nearest * (1.0 + SEAM) || distance > reach) return;
     const Vec3 normal = (b - a).cross(c - a).normalized();
-    const double over = normal.dot(from);
+    const double over = normal.dot(out);
     if (distance < nearest * (1.0 - SEAM)) {
       height = 0.0;
       beyond = false;

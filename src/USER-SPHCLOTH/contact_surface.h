@@ -35,7 +35,7 @@ struct ContactRules {
 
 class Clock {
  public:
-  explicit Clock(double &sum) : sum(sum), begin(platform::walltime()) {}
+  explicit Clock(double &sum_) : sum(sum_), begin(platform::walltime()) {}
   ~Clock() { sum += platform::walltime() - begin; }
 
  private:

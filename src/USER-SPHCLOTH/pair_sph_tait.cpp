@@ -30,8 +30,8 @@ static const std::string STYLE = "pair_style sph/tait";
 
 /* ---------------------------------------------------------------------- */
 
-PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
+PairSPHTait::PairSPHTait(LAMMPS *lmp_) :
+    Pair(lmp_), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
     measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
     elapsed(0.0), stage(Stage::DENSITY)
 {
@@ -741,8 +741,8 @@ void PairSPHTait::write_data_all(FILE *fp)
 double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
-      sizeof(double) *
-      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity() +
-       approach.capacity()) +
-      sizeof(int) * static_cast<double>(active_fluid.capacity());
+      static_cast<double>(sizeof(double) *
+                              (amount.capacity() + pressure.capacity() + rate.capacity() +
+                               gradient.capacity() + approach.capacity()) +
+                          sizeof(int) * active_fluid.capacity());
 }

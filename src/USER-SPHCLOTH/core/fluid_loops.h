@@ -112,9 +112,10 @@ template <class K, class P> class FluidLoops : public Fluid {
     Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
     Coordinate far;    // a distance along x outside the support
     Terms(const PairTerms &t, Real quantum) :
-        inv_support(t.kernel.inv_support), support_sq(t.kernel.support_sq), f(t.kernel.f), nu(t.nu),
-        monaghan(t.monaghan), soft(t.soft), rho0(t.rho0), stiffness(t.stiffness),
-        diffusion(t.diffusion), far(static_cast<Coordinate>(Real(2) / (inv_support * quantum)))
+        inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
+        f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
+        rho0(Real(t.rho0)), stiffness(Real(t.stiffness)), diffusion(Real(t.diffusion)),
+        far(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
     {
     }
   };
@@ -347,12 +348,12 @@ template <class K, class P>
 void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
 {
   const PairTerms &whole = model.pair(type, type);
-  const Terms terms(whole, quantum[0]);
+  const Terms among_each_other(whole, quantum[0]);
   Columns c;
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);
     lists.refresh(slot);
-    const double sum = shape_sum<false>(i, lists(slot, type), terms, {}, c);
+    const double sum = shape_sum<false>(i, lists(slot, type), among_each_other, {}, c);
     amount[i] = 1.0 / (whole.kernel.w * (K::shape(0.0) + sum));
   }
 }
@@ -781,11 +782,11 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch found = lists(slot, other);
-        const PairTerms &terms = model.pair(t, other);
+        const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
-          const double w = p.amount[j] * weight(p, i, j, terms.kernel);
-          mass += is_fluid(other) ? w : terms.rho0 * w;
+          const double w = p.amount[j] * weight(p, i, j, of_pair.kernel);
+          mass += is_fluid(other) ? w : of_pair.rho0 * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }
       }

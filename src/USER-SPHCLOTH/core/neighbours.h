@@ -151,7 +151,7 @@ class NeighbourLists {
   int *open(int slot, int t) { return lists.open(slot, t); }
   double bytes() const
   {
-    return lists.bytes() + sizeof(float) * 3.0 * px.capacity() + sizeof(float) * key.capacity() +
+    return lists.bytes() + sizeof(float) * static_cast<double>(3 * px.capacity() + key.capacity()) +
         sizeof(int) *
         static_cast<double>(id.capacity() + order.capacity() + place.capacity() +
                             cell_start.capacity() + cell.capacity() + candidate.capacity());

@@ -233,11 +233,16 @@ inline int partition_plain(float *key, int *index, int n, float limit, int *spar
 
 #ifdef SPHCLOTH_X86_TARGETS
 
+inline __mmask16 first_lanes(int n)
+{
+  return static_cast<__mmask16>(n >= 16 ? 0xffffU : (1U << n) - 1U);
+}
+
 __attribute__((target("avx512f,avx512vl"))) inline void append_avx512(const int *from, int n,
                                                                       int *to)
 {
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     _mm512_mask_storeu_epi32(to + k, here, _mm512_loadu_si512(from + k));
   }
 }
@@ -247,15 +252,14 @@ partition_avx512(float *key, int *index, int n, float limit, int *spare)
 {
   int m = 0;
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     const __m512 x = _mm512_loadu_ps(key + k);
     const __m512i j = _mm512_maskz_loadu_epi32(here, index + k);
     const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);
     const int kept = __builtin_popcount(keep);
     _mm512_storeu_ps(key + m, _mm512_maskz_compress_ps(keep, x));
     _mm512_storeu_si512(spare + k - m, _mm512_maskz_compress_epi32(here & ~keep, j));
-    _mm512_mask_storeu_epi32(index + m, static_cast<__mmask16>((1u << kept) - 1),
-                             _mm512_maskz_compress_epi32(keep, j));
+    _mm512_mask_storeu_epi32(index + m, first_lanes(kept), _mm512_maskz_compress_epi32(keep, j));
     m += kept;
   }
   append_avx512(spare, n - m, index + m);
@@ -269,7 +273,7 @@ __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const floa
 {
   int m = 0;
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     const __m512 x = _mm512_loadu_ps(key + k);
     const __m512i j = _mm512_loadu_si512(index + k);
     const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);

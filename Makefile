@@ -7,6 +7,8 @@ RANKS  ?= 2
 TESTS  ?= tests/styles
 SECONDS_EACH ?= 60
 SIZE   ?= small
+# tests that run side by side
+WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
 CMAKE_HERE = $(BIN)/cmake -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
@@ -28,7 +30,7 @@ demo: $(VENV)/installed
 test: $(VENV)/installed build/core/test_core
 	build/core/test_core
 	build/core/test_core_plain
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
 

@@ -165,9 +165,9 @@ bool ContactSurface::near_holds() const
 double ContactSurface::farthest_vertex_sq() const
 {
   double farthest = 0.0;
-  for (const std::vector<Vec3> *now : {&start, &end})
-    for (std::size_t s = 0; s < now->size(); s++) {
-      const Vec3 from_start = (*now)[s] - start_then[s], from_end = (*now)[s] - end_then[s];
+  for (const std::vector<Vec3> *place : {&start, &end})
+    for (std::size_t s = 0; s < place->size(); s++) {
+      const Vec3 from_start = (*place)[s] - start_then[s], from_end = (*place)[s] - end_then[s];
       farthest = std::max(farthest, std::min(from_start.squaredNorm(), from_end.squaredNorm()));
     }
   return farthest;

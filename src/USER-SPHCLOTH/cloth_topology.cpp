@@ -32,6 +32,11 @@ static void canonical(std::array<int, 4> &h)
 
 int ClothTopology::index_of(tagint id) const
 {
+  // most often they are numbers in a row
+  if (!ids.empty() && id >= ids.front()) {
+    const std::size_t k = id - ids.front();
+    if (k < ids.size() && ids[k] == id) return static_cast<int>(k);
+  }
   const auto it = std::lower_bound(ids.begin(), ids.end(), id);
   return it != ids.end() && *it == id ? static_cast<int>(it - ids.begin()) : -1;
 }

@@ -4,11 +4,25 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(abspath $(VENV))/bin
 RANKS  ?= 2
+TESTS  ?= tests/styles
+SECONDS_EACH ?= 60
 SIZE   ?= small
+# tests that run side by side
+WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
+CMAKE_HERE = $(BIN)/cmake -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
+# $(call build_with,FOLDER,OPTION): the package in build/FOLDER/site, which goes before the installed
+# one where PYTHONPATH says so, and the tests of core/
+define build_with
+$(BIN)/pip install --quiet --no-deps --upgrade --target build/$(1)/site \
+  -C build-dir=build/$(1)/plugin -C cmake.define.$(2)=ON .
+$(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
+$(BIN)/cmake --build build/$(1)/core
+endef
+
 .PHONY: demo test validate stress equality endure fuzz mutate reliability-page lint docs \
-        wheel-check pictures clean
+        wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -16,7 +30,7 @@ demo: $(VENV)/installed
 test: $(VENV)/installed build/core/test_core
 	build/core/test_core
 	build/core/test_core_plain
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
 
@@ -64,6 +78,44 @@ lint: $(VENV)/installed
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
 
+# what the compiler and clang-tidy have to say of the C++; nothing is right
+warnings: $(VENV)/installed
+	$(CMAKE_HERE) -S . -B build/warnings -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+	$(BIN)/cmake --build build/warnings --clean-first
+	$(CMAKE_HERE) -S tests/core -B build/warnings/core -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+	$(BIN)/cmake --build build/warnings/core --clean-first
+
+tidy: $(VENV)/strict
+	$(CMAKE_HERE) -S . -B build/tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+	$(BIN)/clang-tidy --quiet -p build/tidy $(wildcard $(addsuffix /*.cpp, \
+	  src/USER-SPHCLOTH src/USER-SPHCLOTH/core src/plugin))
+
+# the tests with a plugin that looks at every address and at undefined behaviour: an hour
+sanitize: $(VENV)/installed
+	$(call build_with,sanitize,SPHCLOTH_SANITIZE)
+	build/sanitize/core/test_core
+	build/sanitize/core/test_core_plain
+	$(BIN)/python tests/sanitize.py build/sanitize/site $(TESTS)
+
+# parallel scenes under valgrind: what is used before it has a value
+memcheck: $(VENV)/installed
+	$(BIN)/python tests/styles/memcheck.py
+
+# which lines the tests of core/ and of the styles run, and those of the Python package
+coverage: $(VENV)/strict
+	$(call build_with,coverage,SPHCLOTH_COVERAGE)
+	find build/coverage -name '*.gcda' -delete
+	build/coverage/core/test_core
+	build/coverage/core/test_core_plain
+	PYTHONPATH=build/coverage/site $(BIN)/python -m pytest $(TESTS)
+	$(BIN)/gcovr --root src --object-directory build/coverage --exclude-throw-branches \
+	  --gcov-ignore-parse-errors=suspicious_hits.warn --txt build/coverage/cpp.txt --print-summary
+	$(BIN)/python -m pytest --cov --cov-report=term:skip-covered tests/python
+
+# files and words that a fuzzer makes of those that it found interesting
+fuzz-guided: $(VENV)/strict
+	$(BIN)/python tests/fuzz_guided.py --seconds $(SECONDS_EACH)
+
 # the documentation as HTML, build/docs/index.html; a warning is an error
 docs: $(VENV)/installed
 	$(BIN)/pip install --quiet 'sphcloth[docs]'
@@ -88,6 +140,10 @@ $(VENV)/installed: $(VENV)/bin/python $(SOURCES)
 	$(BIN)/pip install --quiet '.[test]'
 	touch $@
 
+$(VENV)/strict: $(VENV)/installed
+	$(BIN)/pip install --quiet 'sphcloth[strict]'
+	touch $@
+
 # the tests of core/, which need neither LAMMPS nor MPI
 build/core/test_core: $(VENV)/installed $(wildcard tests/core/*)
 	$(BIN)/cmake -S tests/core -B build/core -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
@@ -97,7 +153,8 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain cloth_on_water)
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain cloth_on_water hammock shower \
+  two_resolutions)
 pictures: $(EXAMPLE_PICTURES)
 
 $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed

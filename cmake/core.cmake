@@ -1,5 +1,6 @@
 # sphcloth::core: numerics without LAMMPS; the loops over neighbours are compiled once per kernel.
 
+include("${CMAKE_CURRENT_LIST_DIR}/checks.cmake")
 file(GLOB _core CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH/core/*.cpp")
 add_library(sphcloth_core STATIC ${_core})
 add_library(sphcloth::core ALIAS sphcloth_core)
@@ -8,7 +9,11 @@ set_target_properties(sphcloth_core PROPERTIES POSITION_INDEPENDENT_CODE ON
 target_compile_features(sphcloth_core PUBLIC cxx_std_17)
 target_include_directories(sphcloth_core PUBLIC "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH")
 target_link_libraries(sphcloth_core PUBLIC Eigen3::Eigen)
-target_compile_options(sphcloth_core PRIVATE -Wall -Wextra)
+target_link_libraries(sphcloth_core PRIVATE sphcloth_checks)
+if(SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE)
+  # loops compiled for several CPUs take minutes with checks in them
+  target_compile_definitions(sphcloth_core PUBLIC SPHCLOTH_SINGLE_TARGET)
+endif()
 # Vectors without a second OpenMP runtime; errno and trapping semantics would keep square roots
 # and branches out of vectors.  Results stay IEEE: no reassociation beyond `omp simd reduction`.
 target_compile_options(sphcloth_core PUBLIC

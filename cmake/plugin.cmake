@@ -31,5 +31,4 @@ file(GLOB _styles CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/USER-SPHCLOTH/*.c
 add_library(sphclothplugin MODULE src/plugin/sphclothplugin.cpp ${_styles})
 set_target_properties(sphclothplugin PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden)
 target_compile_definitions(sphclothplugin PRIVATE SPHCLOTH_LAMMPS_VERSION=${LAMMPS_VERSION})
-target_compile_options(sphclothplugin PRIVATE -Wall -Wextra)
-target_link_libraries(sphclothplugin PRIVATE sphcloth::core lammps_headers)
+target_link_libraries(sphclothplugin PRIVATE sphcloth::core lammps_headers sphcloth_checks)

@@ -105,7 +105,7 @@ BUGS = [
         "((r_sq + t.soft) * both)", "((r_sq + t.soft) * Real(2) * c.own[k])",
         f"{PAIR}::test_forces_against_a_direct_sum"),
     Bug("pair: twice the laminar viscosity", "core/fluid_loops.h",
-        "mean * slope * t.nu * both", "Real(2) * mean * slope * t.nu * both",
+        "mean * slope * t.nu", "Real(2) * mean * slope * t.nu",
         f"{PAIR}::test_forces_against_a_direct_sum"),
     Bug("lists: a cell too few is searched", "core/neighbours.h",
         "to[d] = grid.along(d, x + reach)",

@@ -55,7 +55,9 @@ def read_masses(data: str | Path) -> dict[int, float]:
     try:
         masses = {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
     except ValueError as error:
-        raise UserError(f"{data}: the section Masses cannot be read ({error})") from error
+        raise UserError(
+            f"{data}: the section Masses is not a type and a mass in each line"
+        ) from error
     for kind, mass in masses.items():
         if not 0 < mass < np.inf:
             raise UserError(f"{data}: the mass of type {kind} is {mass:g}")

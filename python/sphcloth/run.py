@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -24,6 +25,8 @@ from sphcloth.summary import summarise
 LOG, SCREEN = "log.lammps", "screen.txt"
 POLL_SECONDS = 0.2
 GRACE_SECONDS = 10.0
+# commands whose arguments may be files that LAMMPS reads
+READERS = ("read_data", "read_restart", "read_dump", "include", "molecule", "variable")
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,7 @@ def run_example(
     t_end = _end_time(example.defaults() | variables)
     out.mkdir(parents=True, exist_ok=True)
     _remove_old_results(out, name)
+    copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
     outcome = run_lammps(command, out, t_end, console)
     if outcome.interrupted:
@@ -101,6 +105,23 @@ def _remove_old_results(out: Path, name: str) -> None:
     pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
     for path in [*(out / file for file in stale), *pictures]:
         path.unlink(missing_ok=True)
+
+
+def copy_companions(script: Path, folder: Path) -> None:
+    """Copy the files beside a script that it reads to the folder in which it will run."""
+    for file in companions(script):
+        shutil.copy(file, folder)
+
+
+def companions(script: Path) -> list[Path]:
+    """Return the files beside a script that it names in a command that reads files."""
+    words = set()
+    for line in script.read_text(encoding="utf-8").splitlines():
+        command, *arguments = line.split() or [""]
+        if command in READERS:
+            words.update(arguments)
+    found = [script.parent / word for word in sorted(words) if "/" not in word]
+    return [file for file in found if file.is_file()]
 
 
 def check_no_link(folder: Path) -> None:

@@ -181,23 +181,24 @@ def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
         if not is_whole or _skip_lines(file, natoms) < natoms:
             warnings.warn(f"{path}: the frame at line {line} is cut off: left out", stacklevel=3)
             return
-        bounds = _read_bounds(header[5:8], path, line + 5)
-        end = file.tell()
         columns, about_box = header[8].split()[2:], header[4].split()[3:]
+        is_tilted = about_box[:3] == ["xy", "xz", "yz"]
+        bounds = _read_bounds(header[5:8], 3 if is_tilted else 2, path, line + 5)
+        end = file.tell()
         periodic = tuple(flags == "pp" for flags in about_box[-3:])
-        tilt = tuple(bounds[:, 2]) if "xy" in about_box else (0.0, 0.0, 0.0)
+        tilt = tuple(bounds[:, 2]) if is_tilted else (0.0, 0.0, 0.0)
         size, box = end - offset, bounds[:, :2].T
         yield _Entry(offset, size, line, int(header[1]), natoms, box, columns, periodic, tilt)
         line, offset = line + _HEADER_LINES + natoms, end
 
 
-def _read_bounds(rows: list[str], path: Path, line: int) -> NDArray[np.float64]:
-    """Return the numbers in the lines about the box, shape (3, 2), or (3, 3) if it is tilted."""
+def _read_bounds(rows: list[str], width: int, path: Path, line: int) -> NDArray[np.float64]:
+    """Return the numbers in the lines about the box, shape (3, width)."""
     try:
         bounds = np.array([row.split() for row in rows], dtype=np.float64)
     except ValueError as error:
         raise UserError(f"{path}, line {line}: not the bounds of a box") from error
-    if bounds.shape not in ((3, 2), (3, 3)) or not np.isfinite(bounds).all():
+    if bounds.shape != (3, width) or not np.isfinite(bounds).all():
         raise UserError(f"{path}, line {line}: not the bounds of a box")
     return bounds
 
@@ -219,6 +220,11 @@ def _check_header(header: list[str], path: Path, line: int) -> None:
             )
         if number in (1, 3) and not _COUNT.fullmatch(text.strip()):
             raise UserError(f"{path}, line {line + number}: '{text.strip()[:60]}' is no count")
+        if number == 4 and len(text.split()) not in (6, 9):
+            raise UserError(
+                f"{path}, line {line + number}: '{text.strip()[:60]}' does not say, as in "
+                "'xy xz yz pp pp ff', how a box along the axes is tilted and bounded"
+            )
     if len(complete) == _HEADER_LINES:
         _check_columns(complete[8].split()[2:], path)
 

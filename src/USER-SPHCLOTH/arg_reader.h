@@ -20,8 +20,8 @@ class ArgReader : protected Pointers {
  public:
   // style: as the user typed it, for example "fix sph/emit"; first: index of the next argument
 
-  ArgReader(LAMMPS *lmp, std::string style, int narg, char **arg, int first = 0) :
-      Pointers(lmp), style(std::move(style)), narg(narg), arg(arg), next(first)
+  ArgReader(LAMMPS *lmp_, std::string style_, int narg_, char **arg_, int first = 0) :
+      Pointers(lmp_), style(std::move(style_)), narg(narg_), arg(arg_), next(first)
   {
   }
 

@@ -9,6 +9,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -16,6 +17,16 @@ namespace LAMMPS_NS {
 inline double atom_mass(const Atom *atom, int i)
 {
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+// A number that changes when the owned atoms, or their places in the arrays, do (FNV-1a).
+
+inline std::uint64_t order_of_atoms(const Atom *atom)
+{
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (int i = 0; i < atom->nlocal; i++)
+    hash = (hash ^ static_cast<std::uint64_t>(atom->tag[i])) * 0x100000001b3U;
+  return hash;
 }
 
 // at the end of the current step

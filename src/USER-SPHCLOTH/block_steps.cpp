@@ -22,8 +22,8 @@ static constexpr double OVERHEAD = 0.1;
 // and what projection and contact of a vertex cost in it
 static constexpr int UPDATES_PER_VERTEX = 2;
 
-BlockSteps::BlockSteps(LAMMPS *lmp, FixSPHIntegrate *fix, ParticleColumns &rows) :
-    Pointers(lmp), fix(fix), pair(nullptr), rows(rows), apart(1), coarsest(0), finest_vertex(0),
+BlockSteps::BlockSteps(LAMMPS *lmp_, FixSPHIntegrate *fix_, ParticleColumns &rows_) :
+    Pointers(lmp_), fix(fix_), pair(nullptr), rows(rows_), apart(1), coarsest(0), finest_vertex(0),
     ideal(0.0), stage(LEVELS), known(false)
 {
 }
@@ -143,15 +143,16 @@ void BlockSteps::begin_root()
 
 void BlockSteps::fit_root(double best, double least)
 {
-  const double output = fix->next_output_time(least), remaining = output - physical_time(update);
+  const double next = fix->next_output_time(least), remaining = next - physical_time(update);
   while (best > remaining && best > least) best *= 0.5;
   const double root = best <= least ? step_towards(remaining, best) : best;
   for (const int i : pair->active_particles())
-    rows[UNTIL][i] = (rows[UNTIL][i] - TimeLine::ticks(0)) * at.line.root / root;
+    rows[UNTIL][i] =
+        (rows[UNTIL][i] - static_cast<double>(TimeLine::ticks(0))) * at.line.root / root;
   at.line = {root, 0};
   coarsest = 0;
   at.reaches_output = root == remaining;
-  at.output_time = output;
+  at.output_time = next;
 }
 
 void BlockSteps::choose_levels()
@@ -210,7 +211,7 @@ void BlockSteps::respect_neighbours()
   comm->forward_comm(fix, 1);
   NearLists &lists = pair->order();
   for (const int i : pair->active_particles())
-    if (lists.greatest(lists.slot(i), level.data()) - apart > level[i])
+    if (lists.greatest(lists.slot(i), level.data()) > level[i] + apart)
       rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
 }

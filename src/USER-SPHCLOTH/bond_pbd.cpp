@@ -13,7 +13,7 @@ using namespace LAMMPS_NS;
 
 static const std::string COEFF = "bond_coeff (pbd)";
 
-BondPBD::BondPBD(LAMMPS *lmp) : Bond(lmp)
+BondPBD::BondPBD(LAMMPS *lmp_) : Bond(lmp_)
 {
   writedata = 1;
   reinitflag = 0;

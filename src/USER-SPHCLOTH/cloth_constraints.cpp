@@ -78,7 +78,7 @@ void ClothConstraints::measure_rest(int groupbit, double **rest_x)
   edges.rest.clear();
   for (const auto &[a, b] : mesh.edges.vertices) {
     edges.rest.push_back(from(a, b).norm());
-    mean += edges.rest.back() / mesh.edges.size();
+    mean += edges.rest.back() / static_cast<double>(mesh.edges.size());
   }
   if (mean == 0.0) mean = 1.0;    // nothing has a size: residuals are lengths
   hinges.rest.clear();

@@ -20,8 +20,8 @@ class ClothConstraints : protected Pointers {
  public:
   // owner: the fix, for error messages
 
-  ClothConstraints(LAMMPS *lmp, std::string owner, const ClothTopology &mesh) :
-      Pointers(lmp), owner(std::move(owner)), mesh(mesh), edges(mesh.edges), hinges(mesh.hinges)
+  ClothConstraints(LAMMPS *lmp_, std::string owner_, const ClothTopology &mesh_) :
+      Pointers(lmp_), owner(std::move(owner_)), mesh(mesh_), edges(mesh.edges), hinges(mesh.hinges)
   {
   }
 
@@ -56,7 +56,7 @@ class ClothConstraints : protected Pointers {
 
  private:
   template <std::size_t N> struct Kind {
-    explicit Kind(const ClothElements<N> &elements) : elements(elements) {}
+    explicit Kind(const ClothElements<N> &elements_) : elements(elements_) {}
 
     const ClothElements<N> &elements;
     std::vector<double> rest;    // length or angle, by element

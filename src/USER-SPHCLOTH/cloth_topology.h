@@ -28,7 +28,7 @@ class ClothTopology : protected Pointers {
  public:
   // owner: the style that asks, for error messages
 
-  ClothTopology(LAMMPS *lmp, std::string owner) : Pointers(lmp), owner(std::move(owner)) {}
+  ClothTopology(LAMMPS *lmp_, std::string owner_) : Pointers(lmp_), owner(std::move(owner_)) {}
 
   // collective: collects what the atoms of the group carry; an element that leaves the group is
   // an error

@@ -18,8 +18,8 @@ using namespace LAMMPS_NS;
    compute ID group pbd/atom fix-ID keyword ...
 ------------------------------------------------------------------------- */
 
-ComputePBDAtom::ComputePBDAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), label(fmt::format("compute {} pbd/atom", id)), nmax(0), cloth(nullptr)
+ComputePBDAtom::ComputePBDAtom(LAMMPS *lmp_, int narg, char **arg) :
+    Compute(lmp_, narg, arg), label(fmt::format("compute {} pbd/atom", id)), nmax(0), cloth(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   cloth_id = args.word("ID of a fix pbd/cloth");

@@ -17,8 +17,9 @@ using namespace sphcloth;
    compute ID group pbd/local fix-ID edge|hinge keyword ...
 ------------------------------------------------------------------------- */
 
-ComputePBDLocal::ComputePBDLocal(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), label(fmt::format("compute {} pbd/local", id)), room(0), cloth(nullptr)
+ComputePBDLocal::ComputePBDLocal(LAMMPS *lmp_, int narg, char **arg) :
+    Compute(lmp_, narg, arg), label(fmt::format("compute {} pbd/local", id)), room(0),
+    cloth(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   cloth_id = args.word("ID of a fix pbd/cloth");
@@ -120,6 +121,6 @@ std::array<double, 3> ComputePBDLocal::measure_hinge(int m, int i) const
 
 double ComputePBDLocal::memory_usage()
 {
-  return static_cast<double>(room) * columns.size() * sizeof(double) +
-      static_cast<double>(rows.capacity() * sizeof(Row));
+  return static_cast<double>(room * columns.size() * sizeof(double) +
+                             rows.capacity() * sizeof(Row));
 }

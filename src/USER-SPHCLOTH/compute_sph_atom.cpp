@@ -20,8 +20,8 @@ using namespace sphcloth;
    compute ID group sph/atom keyword ...
 ------------------------------------------------------------------------- */
 
-ComputeSPHAtom::ComputeSPHAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0), pair(nullptr),
+ComputeSPHAtom::ComputeSPHAtom(LAMMPS *lmp_, int narg, char **arg) :
+    Compute(lmp_, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0), pair(nullptr),
     stepper(nullptr), sheets(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);

@@ -19,9 +19,11 @@ using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 static const std::string STYLE = "create_cloth";
+// each has up to four edges, and these are counted by an int
+static constexpr double MOST_CELLS = 1e8;
 
-CreateCloth::CreateCloth(LAMMPS *lmp) :
-    Command(lmp), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
+CreateCloth::CreateCloth(LAMMPS *lmp_) :
+    Command(lmp_), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
     axis_v(Vec3::UnitY()), length(0.0), width(0.0), radius(0.0), spacing(0.0), bond_type(1),
     shear_type(0), triangle_type(1), hinge_type(1), groupbit(0), first_id(0)
 {
@@ -128,6 +130,11 @@ void CreateCloth::check_shape() const
                radius);
   if (!is_disc && spacing > std::min(length, width))
     error->all(FLERR, "{}: spacing {} is larger than the sheet: lower it", STYLE, spacing);
+  const double cells = is_disc ? 4.0 * (radius / spacing) * (radius / spacing)
+                               : (length / spacing) * (width / spacing);
+  if (cells > MOST_CELLS)
+    error->all(FLERR, "{}: spacing {} cuts the sheet into {:.3g} cells, more than {:g}: raise it",
+               STYLE, spacing, cells, MOST_CELLS);
 }
 
 Pattern CreateCloth::read_pattern(ArgReader &args) const

@@ -13,7 +13,7 @@ using namespace LAMMPS_NS;
 
 static const std::string COEFF = "dihedral_coeff (pbd)";
 
-DihedralPBD::DihedralPBD(LAMMPS *lmp) : Dihedral(lmp)
+DihedralPBD::DihedralPBD(LAMMPS *lmp_) : Dihedral(lmp_)
 {
   writedata = 1;
   reinitflag = 0;

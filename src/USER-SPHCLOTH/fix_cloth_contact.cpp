@@ -29,8 +29,8 @@ static constexpr int MOST_ROUNDS = 10;
    fix ID group cloth/contact thickness keyword value ...
 ------------------------------------------------------------------------- */
 
-FixClothContact::FixClothContact(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
+FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
     pushes(nullptr), beyond(nullptr), linking(nullptr), sight(0.0), vertex_bits(0)
 {
   vector_flag = 1;

@@ -43,8 +43,8 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
    fix ID group pbd/cloth keyword value ...
 ------------------------------------------------------------------------- */
 
-FixPBDCloth::FixPBDCloth(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
+FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
     iterations(10), there_and_back(false), from_start(true), tolerance(0.0), pinbit(0),
     pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr),
     lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0),
@@ -687,8 +687,8 @@ bool FixPBDCloth::converged() const
 double FixPBDCloth::shortest_edge(int i) const
 {
   double shortest = std::numeric_limits<double>::infinity();
-  const int v = mesh.index_of(atom->tag[i]);
-  for (int k = mesh.edges.first[v]; k < mesh.edges.first[v + 1]; k++) {
+  const int vertex = mesh.index_of(atom->tag[i]);
+  for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
     const double rest = rest_length(mesh.edges.incident[k]);
     if (rest > 0.0) shortest = std::min(shortest, rest);
   }
@@ -816,7 +816,8 @@ double FixPBDCloth::memory_usage()
 {
   return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax +
       constraints.distance.bytes() + constraints.bending.bytes() +
-      static_cast<double>(sizeof(Vertex)) *
-      (p.capacity() + v.capacity() + start.capacity() + way.capacity() + change.capacity()) +
+      static_cast<double>(sizeof(Vertex) *
+                          (p.capacity() + v.capacity() + start.capacity() + way.capacity() +
+                           change.capacity())) +
       halo.memory_usage();
 }

@@ -23,8 +23,8 @@ using namespace FixConst;
    fix ID group sph/drain keyword value ...
 ------------------------------------------------------------------------- */
 
-FixSPHDrain::FixSPHDrain(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/drain", id)), region(nullptr), drained(0),
+FixSPHDrain::FixSPHDrain(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/drain", id)), region(nullptr), drained(0),
     taken{}
 {
   restart_global = 1;

@@ -23,12 +23,15 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
+// their places are kept by every rank
+static constexpr double MOST_IN_LAYER = 1e8;
+
 /* ----------------------------------------------------------------------
    fix ID group sph/emit N type spacing keyword values ...
 ------------------------------------------------------------------------- */
 
-FixSPHEmit::FixSPHEmit(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
+FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
     spacing(0.0), mass(0.0), centre(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
     disc(false), start(0.0), layer_time(0.0), layers(0), momentum{}
 {
@@ -96,6 +99,10 @@ void FixSPHEmit::make_pattern()
   const Vec3 second = normal.cross(first);
   const double reach_a = disc ? 2.0 * extent[0] : extent[0];
   const double reach_b = disc ? 2.0 * extent[0] : extent[1];
+  const double cells = (reach_a / spacing) * (reach_b / spacing);
+  if (cells > MOST_IN_LAYER)
+    error->all(FLERR, "{}: spacing {} makes {:.3g} particles in a layer, more than {:g}: raise it",
+               label, spacing, cells, MOST_IN_LAYER);
   const int na = std::max(1, static_cast<int>(std::lround(reach_a / spacing)));
   const int nb = std::max(1, static_cast<int>(std::lround(reach_b / spacing)));
   for (int b = 0; b < nb; b++)

@@ -33,8 +33,8 @@ using namespace sphcloth;
    fix ID group sph/integrate constant|global keyword value ...
 ------------------------------------------------------------------------- */
 
-FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
+FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), times(lmp), ceiling_given(false), clamp_at_floor(false),
     state(nullptr), blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0),

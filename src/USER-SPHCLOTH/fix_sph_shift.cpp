@@ -27,8 +27,8 @@ using namespace sphcloth;
    fix ID group sph/shift keyword value ...
 ------------------------------------------------------------------------- */
 
-FixSPHShift::FixSPHShift(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/shift", id)), pair(nullptr), walls(nullptr),
+FixSPHShift::FixSPHShift(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/shift", id)), pair(nullptr), walls(nullptr),
     speed(Speed::LARGEST), correct_velocity(false), cloth_bits(0), reference(0.0), largest(0.0)
 {
   ArgReader args(lmp, label, narg, arg, 3);

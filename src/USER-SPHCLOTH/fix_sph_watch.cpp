@@ -37,8 +37,8 @@ static constexpr int PLACE = 1, VELOCITY = 2, FORCE = 4, RHO = 8;
    fix ID group sph/watch keyword value ...
 ------------------------------------------------------------------------- */
 
-FixSPHWatch::FixSPHWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} sph/watch", id)), interval(20), keep(1000),
+FixSPHWatch::FixSPHWatch(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/watch", id)), interval(20), keep(1000),
     pair(nullptr), begun(false), scale{0.0, 0.0}, checks(0.0), seen{}
 {
   nevery = 1;
@@ -291,8 +291,8 @@ void FixSPHWatch::take_off_guests(Balance &b) const
 void FixSPHWatch::end_run(Limit limit)
 {
   std::string blame;
-  for (const Suspect &atom : suspects(limit))
-    blame += (blame.empty() ? "; look at " : ", ") + describe(atom, limit);
+  for (const Suspect &suspect : suspects(limit))
+    blame += (blame.empty() ? "; look at " : ", ") + describe(suspect, limit);
   error->all(FLERR, "{}: {} in step {}, time {:.10g}{}; {}", label, breach(limit),
              update->ntimestep, physical_time(update), blame,
              saved.empty() ? "no restart file was written before: 'restart FILE' keeps one"

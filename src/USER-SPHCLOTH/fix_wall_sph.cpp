@@ -34,8 +34,8 @@ static int face_of(const std::string &name)
    fix ID group wall/sph face position ... keyword values ...
 ------------------------------------------------------------------------- */
 
-FixWallSPH::FixWallSPH(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
+FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
     any_variable(false), any_moves(false), reflection(1.0), last_time(-1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
@@ -388,7 +388,9 @@ void FixWallSPH::post_force(int vflag)
 
 double FixWallSPH::output(int n)
 {
-  if (!summed) MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  if (!summed)
+    MPI_Allreduce(mine.data(), all.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM,
+                  world);
   summed = true;
   return all[n];
 }

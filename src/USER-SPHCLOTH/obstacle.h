@@ -18,8 +18,8 @@ class FixPBDCloth;
 
 class Obstacle : public ContactMesh, protected Pointers {
  public:
-  Obstacle(LAMMPS *lmp, const std::string &owner, int groupbit) :
-      Pointers(lmp), groupbit(groupbit), mesh(lmp, owner)
+  Obstacle(LAMMPS *lmp_, const std::string &owner, int groupbit_) :
+      Pointers(lmp_), groupbit(groupbit_), mesh(lmp, owner)
   {
   }
   void gather() { mesh.gather(groupbit); }
@@ -44,9 +44,9 @@ class ObstacleGuest : public ClothGuest, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  ObstacleGuest(LAMMPS *lmp, FixPBDCloth *cloth, ContactSurface *surface,
-                const ContactRules *rules) :
-      Pointers(lmp), cloth(cloth), surface(surface), rules(rules)
+  ObstacleGuest(LAMMPS *lmp_, FixPBDCloth *cloth_, ContactSurface *surface_,
+                const ContactRules *rules_) :
+      Pointers(lmp_), cloth(cloth_), surface(surface_), rules(rules_)
   {
   }
 

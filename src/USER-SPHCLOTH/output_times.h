@@ -15,7 +15,7 @@ class OutputTimes : protected Pointers {
   double interval = 0.0;    // of output times, 0: none
   double until = 0.0;    // physical time at which a run ends, 0: never
 
-  explicit OutputTimes(LAMMPS *lmp) : Pointers(lmp) {}
+  explicit OutputTimes(LAMMPS *lmp_) : Pointers(lmp_) {}
 
   bool any() const { return interval > 0.0 || until > 0.0; }
   // when a step of dt is the next; infinite if there is none

@@ -30,8 +30,8 @@ static const std::string STYLE = "pair_style sph/tait";
 
 /* ---------------------------------------------------------------------- */
 
-PairSPHTait::PairSPHTait(LAMMPS *lmp) :
-    Pair(lmp), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
+PairSPHTait::PairSPHTait(LAMMPS *lmp_) :
+    Pair(lmp_), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
     measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
     elapsed(0.0), stage(Stage::DENSITY)
 {
@@ -293,6 +293,7 @@ void PairSPHTait::compute(int eflag, int vflag)
 void PairSPHTait::select(const Particles &p)
 {
   if (!fluid->select(p)) return;
+  if (!blocks) return;
   active_fluid.clear();
   for (int t = 1; t <= atom->ntypes; t++)
     if (materials.is_fluid(t))
@@ -401,7 +402,7 @@ void PairSPHTait::new_lists()
       error->one(FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
                  atom->tag[i], v[0], v[1], v[2]);
   }
-  evaluated_ids.assign(atom->tag, atom->tag + atom->nlocal);
+  evaluated_order = order_of_atoms(atom);
   Particles p = particles();
   if (sheets) p.sides = sheets->sides();
   fluid->list(p, reach.data());
@@ -591,8 +592,7 @@ double PairSPHTait::stored_energy(const Tait &eos, double rho) const
 
 bool PairSPHTait::evaluated() const
 {
-  return is_evaluated &&
-      std::equal(evaluated_ids.begin(), evaluated_ids.end(), atom->tag, atom->tag + atom->nlocal);
+  return is_evaluated && evaluated_order == order_of_atoms(atom);
 }
 
 double PairSPHTait::pressure_of(int i) const
@@ -741,7 +741,8 @@ void PairSPHTait::write_data_all(FILE *fp)
 double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
-      sizeof(double) *
-      (amount.capacity() + pressure.capacity() + rate.capacity() + gradient.capacity() +
-       approach.capacity());
+      static_cast<double>(sizeof(double) *
+                              (amount.capacity() + pressure.capacity() + rate.capacity() +
+                               gradient.capacity() + approach.capacity()) +
+                          sizeof(int) * active_fluid.capacity());
 }

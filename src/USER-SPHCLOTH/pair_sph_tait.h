@@ -121,7 +121,7 @@ class PairSPHTait : public Pair {
   sphcloth::NearLists &order() { return fluid->order(); }
   bool feels_moving_wall(int i) const;
   bool is_beside_mesh(int i) const;
-  // owned fluid particles that are updated in this evaluation
+  // owned fluid particles that are updated in this evaluation, with block steps
   const std::vector<int> &active_particles() const { return active_fluid; }
 
   // neighbours of an owned atom inside the support, and some a little outside
@@ -181,8 +181,8 @@ class PairSPHTait : public Pair {
   std::vector<double> rate;
   std::vector<double> approach;    // empty unless it is asked for
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
-  std::vector<int> active_fluid;    // in the order of the lists
-  std::vector<tagint> evaluated_ids;    // of the owned atoms, in the order of the arrays
+  std::vector<int> active_fluid;    // in the order of the lists, with block steps only
+  std::uint64_t evaluated_order = 0;    // of the owned atoms in the arrays
   Stage stage;
 
   void allocate();

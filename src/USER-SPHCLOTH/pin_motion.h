@@ -16,7 +16,7 @@ namespace LAMMPS_NS {
 
 class PinMotion : protected Pointers {
  public:
-  PinMotion(LAMMPS *lmp, std::string owner) : Pointers(lmp), owner(std::move(owner)) {}
+  PinMotion(LAMMPS *lmp_, std::string owner_) : Pointers(lmp_), owner(std::move(owner_)) {}
 
   void read(ArgReader &args)
   {

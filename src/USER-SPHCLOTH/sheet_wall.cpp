@@ -261,7 +261,7 @@ void SheetWalls::push_more(int i, double pressure_term, double times)
   push(i, pressure_term, times, false);
 }
 
-void SheetWalls::push(int i, double pressure_term, double times, bool first)
+void SheetWalls::push(int i, double pressure_term, double times, bool first_push)
 {
   const int type = atom->type[i];
   const Tait &eos = pair->equation_of_state(type);
@@ -276,7 +276,7 @@ void SheetWalls::push(int i, double pressure_term, double times, bool first)
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
     sheets[foot.sheet].give(foot, -force_on);
-    if (!first) return;
+    if (!first_push) return;
     atom->drho[i] += rise(foot) * away;
     pair->add_virial(i, foot.distance * foot.normal, force_on);
     if (wetting_wanted) {

@@ -33,7 +33,7 @@ class SheetWall : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  SheetWall(LAMMPS *lmp, TriangleSet *set) : Pointers(lmp), set(set) {}
+  SheetWall(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
 
   // After each list build: whom each particle may be nearest to until the next one.  reach(i): of the
   // kernel of an owned particle, 0 for one that does not feel this wall.
@@ -45,7 +45,7 @@ class SheetWall : protected Pointers {
   Vec3 velocity_at(const Foot &) const;
 
   // force on the mesh at a foot; handed over to owned vertices, take(atom, force)
-  void give(const Foot &foot, const Vec3 &force) { spread(foot, force, forces); }
+  void give(const Foot &foot, const Vec3 &push) { spread(foot, push, forces); }
   void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
 
   // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
@@ -86,8 +86,8 @@ class SheetWalls : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  SheetWalls(LAMMPS *lmp, const std::string &label, int groupbit) :
-      Pointers(lmp), label(label), groupbit(groupbit)
+  SheetWalls(LAMMPS *lmp_, const std::string &label_, int groupbit_) :
+      Pointers(lmp_), label(label_), groupbit(groupbit_)
   {
   }
 
@@ -132,7 +132,7 @@ class SheetWalls : protected Pointers {
   std::vector<Vec3> wetting;    // by owned atom
 
   template <class Do> void for_feet(int i, Do something);
-  void push(int i, double pressure_term, double times, bool first);
+  void push(int i, double pressure_term, double times, bool first_push);
   double support(int i) const;
   double rise(const Foot &) const;
   Vec3 velocity_from(const Foot &) const;

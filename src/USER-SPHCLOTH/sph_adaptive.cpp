@@ -26,8 +26,8 @@ static const std::string STYLE = "run_style sph/adaptive";
 
 // run_style sph/adaptive constant|global|individual|block
 
-SPHAdaptive::SPHAdaptive(LAMMPS *lmp, int narg, char **arg) :
-    Verlet(lmp, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
+SPHAdaptive::SPHAdaptive(LAMMPS *lmp_, int narg, char **arg) :
+    Verlet(lmp_, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
 {
   ArgReader args(lmp, STYLE, narg, arg);
   stepping = static_cast<SteppingScheme>(

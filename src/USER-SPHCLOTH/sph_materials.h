@@ -16,7 +16,7 @@ class ArgReader;
 
 class SPHMaterials : protected Pointers {
  public:
-  SPHMaterials(class LAMMPS *lmp) : Pointers(lmp) {}
+  SPHMaterials(class LAMMPS *lmp_) : Pointers(lmp_) {}
 
   // of a boundary: none of its own; as much as each fluid particle; the mean of the fluid around it
   enum class Pressure : int { OWN, MIRROR, EXTRAPOLATE };

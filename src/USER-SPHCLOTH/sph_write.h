@@ -20,7 +20,7 @@ class PairSPHTait;
 
 class SPHWrite : public Command {
  public:
-  SPHWrite(class LAMMPS *lmp) : Command(lmp), pair(nullptr) {}
+  SPHWrite(class LAMMPS *lmp_) : Command(lmp_), pair(nullptr) {}
   void command(int, char **) override;
 
  private:

@@ -12,8 +12,8 @@
 
 using namespace LAMMPS_NS;
 
-TriangleSet::TriangleSet(LAMMPS *lmp, ContactMesh *mesh, Fix *link, const std::string &label) :
-    Pointers(lmp), label(label), mesh(mesh), link(link), halo(lmp)
+TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_, const std::string &label_) :
+    Pointers(lmp_), label(label_), mesh(mesh_), link(link_), halo(lmp)
 {
 }
 

@@ -47,7 +47,7 @@ class TriangleSet : protected Pointers {
   std::vector<int> element;                     // of the mesh, of each triangle
 
   // nothing is beyond the edge of an element that is opposite to a vertex
-  bool is_border(int element, int opposite) const { return at_border[element][opposite]; }
+  bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
 
   // vertices as they are now, ghosts too
   Vec3 place(int slot) const;

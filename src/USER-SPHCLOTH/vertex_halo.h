@@ -23,7 +23,7 @@ class VertexHalo : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  explicit VertexHalo(LAMMPS *lmp) : Pointers(lmp) {}
+  explicit VertexHalo(LAMMPS *lmp_) : Pointers(lmp_) {}
 
   // 1. start anew after a list build, with the owned vertices
   void reset(int n_channels, const std::vector<int> &owned_atoms);

@@ -15,7 +15,7 @@ struct Walk {
   std::vector<int> type;
   int n;
 
-  explicit Walk(int n) : n(n)
+  explicit Walk(int n_) : n(n_)
   {
     std::uniform_real_distribution<> u(0.0, 1.0);
     for (int i = 0; i < 3 * n; i++) x.push_back(u(generator));

@@ -43,13 +43,15 @@ CASE("disc: counts of rings, an area once, the border on the circle, every inner
     const Sheet disc = make_disc(radius, 1.0);
     const MeshTopology mesh = mesh_topology(disc.triangles);
     const auto v = disc.vertices.size(), e = mesh.edges.size(), t = disc.triangles.size();
-    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(t / 6.0)));
+    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(t) / 6.0)));
+    const double rings = static_cast<double>(n);
     CHECK(t == 6 * n * n && v == 1 + 3 * n * (n + 1));
     CHECK(v + t == e + 1);
     CHECK(3 * t == e + mesh.hinges.size());
     const std::vector<double> area = vertex_areas(disc);
     CHECK_NEAR(std::accumulate(area.begin(), area.end(), 0.0),
-               3.0 * n * radius * radius * std::sin(PI / (3.0 * n)), 1e-12 * radius * radius);
+               3.0 * rings * radius * radius * std::sin(PI / (3.0 * rings)),
+               1e-12 * radius * radius);
     for (std::size_t k = v - 6 * n; k < v; k++)
       CHECK_NEAR(disc.vertices[k].norm(), radius, 1e-15 * radius);
     for (const auto &c : disc.triangles) {

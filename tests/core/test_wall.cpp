@@ -2,6 +2,7 @@
 #include "core/wall.h"
 
 #include <array>
+#include <limits>
 
 using namespace sphcloth;
 
@@ -119,6 +120,13 @@ CASE("two walls at right angles: the product and its error")
   more[1].lambda += h;
   less[1].lambda -= h;
   CHECK_NEAR((joint_lambda(more) - joint_lambda(less)) / (2.0 * h), joint_share(at, 1), 1e-9);
+}
+
+CASE("a distance that is no number meets no wall")
+{
+  const WallTable table = wall_table<WendlandC2>(3);
+  CHECK(table(std::numeric_limits<double>::quiet_NaN()).lambda == 0.0);
+  CHECK(table(std::numeric_limits<double>::infinity()).lambda == 0.0);
 }
 
 CASE("a particle behind the wall is stopped within half the support")

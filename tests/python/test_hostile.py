@@ -74,8 +74,8 @@ DATAS = {
     "id below 1": (DATA.replace("1 1 1 2 3\n", "1 1 1 2 -3\n"), "section Angles cannot be read"),
 }
 MASSES = {
-    "word": (DATA.replace("\n1 1\n", "\n1 x\n"), "Masses cannot be read"),
-    "short": (DATA.replace("\n1 1\n", "\n1\n"), "Masses cannot be read"),
+    "word": (DATA.replace("\n1 1\n", "\n1 x\n"), "is not a type and a mass"),
+    "short": (DATA.replace("\n1 1\n", "\n1\n"), "is not a type and a mass"),
     "no number": (DATA.replace("\n1 1\n", "\n1 nan\n"), "mass of type 1 is nan"),
     "negative": (DATA.replace("\n1 1\n", "\n1 -1\n"), "mass of type 1 is -1"),
 }

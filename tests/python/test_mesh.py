@@ -10,7 +10,7 @@ import pytest
 from conftest import make_frame, square_sheet
 
 from sphcloth.errors import UserError
-from sphcloth.mesh import ClothMesh
+from sphcloth.mesh import ClothMesh, read_masses
 
 
 def test_triangles_are_the_angles_of_the_data_file(cloth_data: Path) -> None:
@@ -31,6 +31,15 @@ def test_a_lost_vertex_is_named() -> None:
     mesh, sheet = square_sheet(2)
     with pytest.raises(UserError, match="cloth vertex 9 is not in the dump at step 4"):
         mesh.positions(make_frame(4, [], sheet[:-1]))
+
+
+@pytest.mark.parametrize("row", ["1", "x 1.0", "1 heavy"])
+def test_masses_that_cannot_be_read_are_named(cloth_data: Path, row: str) -> None:
+    text, count = re.subn(r"(?m)^(Masses.*\n\n).*$", rf"\g<1>{row}", cloth_data.read_text())
+    assert count == 1
+    cloth_data.write_text(text)
+    with pytest.raises(UserError, match="the section Masses is not a type and a mass"):
+        read_masses(cloth_data)
 
 
 def test_a_data_file_of_another_form_says_how_to_write_it(cloth_data: Path) -> None:

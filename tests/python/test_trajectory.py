@@ -74,6 +74,24 @@ def test_garbage_in_a_row_names_file_and_line(write_dump: WriteDump, row: str) -
         Trajectory(dump)[0]
 
 
+@pytest.mark.parametrize(
+    ("line", "old", "new", "message"),
+    [
+        (2, "TIMESTEP\n0", "TIMESTEP\n\u00b2", "is no count"),
+        (4, "ATOMS\n2", "ATOMS\n" + 20 * "9", "is no count"),
+        (4, "ATOMS\n2", "ATOMS\n" + 5000 * "9", "is no count"),
+        (5, "ff ff ff", "", "does not say, as in"),
+        (6, "ff ff ff", "xy xz yz ff ff ff", "not the bounds of a box"),
+    ],
+)
+def test_a_header_that_is_not_what_lammps_writes_names_file_and_line(
+    write_dump: WriteDump, line: int, old: str, new: str, message: str
+) -> None:
+    dump = write_dump(dump_frame(0, FEW, COLUMNS).replace(old, new, 1))
+    with pytest.raises(UserError, match=rf"run\.lammpstrj, line {line}: .*{message}"):
+        Trajectory(dump)
+
+
 def test_a_file_that_is_no_dump_is_refused(write_dump: WriteDump) -> None:
     with pytest.raises(UserError, match="line 1: expected 'ITEM: TIMESTEP', found 'LAMMPS"):
         Trajectory(write_dump("LAMMPS data file\n\n5 atoms\n"))

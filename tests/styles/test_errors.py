@@ -287,6 +287,11 @@ CASES = [
     case("emit: opening", EMIT + "10 1 0.05 velocity 0 0 -1", r"opening is missing.*disc"),
     case("emit: velocity", EMIT + "10 1 0.05 disc 0 0 0 0.1", r"velocity is missing"),
     case("emit: radius", EMIT + "10 1 0.05 disc 0 0 0 -1", r"disc radius is '-1'"),
+    case(
+        "emit: fine",
+        EMIT + "10 1 1e-6 disc 0 0 0 10 velocity 0 0 -1",
+        r"fix pour sph/emit: spacing 1e-06 makes 4e\+14 particles in a layer, more than 1e\+08",
+    ),
     case("emit: short", EMIT + "10 1 0.05 disc 0 0", r"disc centre z is missing"),
     case(
         "emit: boundary type",
@@ -344,6 +349,16 @@ CASES = [
         "create: disc out of the box",
         SHEET.replace("boundary p p p", "boundary f f f") + "create_cloth 2 1 disc 2 spacing 0.1",
         r"sheet reaches out of the box",
+    ),
+    case(
+        "create: fine",
+        SHEET + "create_cloth 2 1 size 1 5e9 spacing 1",
+        r"create_cloth: spacing 1 cuts the sheet into 5e\+09 cells, more than 1e\+08: raise it",
+    ),
+    case(
+        "create: fine disc",
+        SHEET + "create_cloth 2 1 disc 1 spacing 1e-9",
+        r"spacing 1e-09 cuts the sheet into 4e\+18 cells",
     ),
     case("create: coarse", SHEET + "create_cloth 2 1 size 1 1 spacing 3", r"spacing 3 is larger"),
     case(

@@ -19,7 +19,7 @@ void Fluid::list(const Particles &p, const double *reach)
   std::vector<double> support(n * n, 0.0);
   for (int i = 1; i < n; i++)
     for (int j = 1; j < n; j++)
-      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID)
+      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID || i == j)
         support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
   everyone = false;
   lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
@@ -42,10 +42,10 @@ bool Fluid::select(const Particles &p)
   return true;
 }
 
-int Fluid::count_inside(const Particles &p, int owned, int type, int most) const
+int Fluid::count_inside(const Particles &p, int owned, int type, int most)
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
-  const Stretch list = lists.all(lists.slot(owned), type);
+  const Stretch list = neighbours(owned, type);
   const double *x = p.x + 3 * owned;
   int n = 0;
   for (int k = 0; k < list.n && n < most; k++) {

@@ -75,9 +75,13 @@ template <class K, class P> class FluidLoops : public Fluid {
   struct Columns {
     alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
     alignas(64) Real own[LANES], u[LANES], v[LANES], w[LANES], pressure[LANES];
-    alignas(64) double mass[LANES];
     alignas(64) Real span[LANES];    // of impulses
-    double equal = -1.0;    // the mass that all of mass[] hold
+  };
+  // of all neighbours of one particle: one column for all groups, step 0, if they are equal
+  struct Masses {
+    const double *of;
+    int step;
+    const double *group(int from) const { return of + from * step; }
   };
 
   template <Also ALSO, bool VIRIAL> struct Sums {
@@ -106,15 +110,20 @@ template <class K, class P> class FluidLoops : public Fluid {
   // PairTerms in the precision of the loops
   struct Terms {
     Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
-    explicit Terms(const PairTerms &t) :
-        inv_support(t.kernel.inv_support), support_sq(t.kernel.support_sq), f(t.kernel.f), nu(t.nu),
-        monaghan(t.monaghan), soft(t.soft), rho0(t.rho0), stiffness(t.stiffness),
-        diffusion(t.diffusion)
+    Coordinate far;    // a distance along x outside the support
+    Terms(const PairTerms &t, Real quantum) :
+        inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
+        f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
+        rho0(Real(t.rho0)), stiffness(Real(t.stiffness)), diffusion(Real(t.diffusion)),
+        far(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
     {
     }
   };
 
   std::array<Real, 3> quantum{1, 1, 1};
+  std::vector<Terms> terms;    // as the model's, for this evaluation
+  AlignedVector<double> equal_mass;    // [n_types + 1][LANES]
+  AlignedVector<double> unequal_mass;    // of the neighbours of one particle
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
@@ -130,22 +139,23 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <bool DIFFUSION> void all_density_rates(const Particles &, double back, double *rate);
 
   static double weight(const Particles &, int i, int j, const KernelScale &);
+  void settle();
+  const Terms &pair(int t, int other) const { return terms[t * (model.n_types + 1) + other]; }
   template <bool WEIGHTED>
-  double shape_sum(const Particles &, int i, const Stretch &, Real inv_support, Columns &) const;
+  double shape_sum(int i, const Stretch &, const Terms &, Masses, Columns &) const;
   void sum_up(const Particles &, bool sum);
   void fill_sites(Columns &, const Stretch &, int from, Coordinate far) const;
   void fill(Columns &, const Stretch &, int from, Coordinate far) const;
   static void fill_up(Columns &, int n, Coordinate far);
-  void weigh(Columns &, const Particles &, const int *near, double equal) const;
+  Masses masses(const Particles &, const Stretch &, int type);
   void fill_spans(Columns &, const int *near) const;
-  Coordinate beyond(const Site &, Real inv_support) const;
 
   template <Also ALSO, bool VIRIAL>
   static void add(Sums<ALSO, VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz,
                   Real rate, Real dx, Real dy, Real dz);
   template <Also ALSO, bool VIRIAL>
   static void meet(Sums<ALSO, VIRIAL> &, int lane, Real v_dot_r, Real r_sq, Real support_sq);
-  static void apply(const Particles &, int i, bool fluid, const Acceleration &);
+  void apply(const Particles &, int i, bool fluid, const Acceleration &) const;
   template <Friction F, Also ALSO, bool VIRIAL>
   void all_forces(const Particles &, On, Receiver, void *);
   template <Also ALSO> void forces_and(const Particles &, On);
@@ -153,16 +163,14 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
   void all_on(const Particles &, int slot, int t, Columns &, Receiver, void *);
   template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
-  void fluid_on_fluid(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                      Columns &, Sums<ALSO, VIRIAL> &) const;
+  void fluid_on_fluid(int i, const Stretch &, const Terms &, Masses, Columns &,
+                      Sums<ALSO, VIRIAL> &) const;
   template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
-  void across_boundary(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                       Columns &, Sums<ALSO, VIRIAL> &) const;
-  Differences density_differences(const Particles &, int i, const Stretch &, const Terms &,
-                                  double equal, Columns &) const;
+  void across_boundary(int i, const Stretch &, const Terms &, Masses, Columns &,
+                       Sums<ALSO, VIRIAL> &) const;
+  Differences density_differences(int i, const Stretch &, const Terms &, Masses, Columns &) const;
   template <bool FROM_BOUNDARY, bool DIFFUSION>
-  double density_rate(const Particles &, int i, const Stretch &, const Terms &, double equal,
-                      double back, Columns &) const;
+  double density_rate(int i, const Stretch &, const Terms &, Masses, double back, Columns &) const;
 };
 
 /* ----------------------------------------------------------------------
@@ -183,6 +191,7 @@ template <class K, class P> void FluidLoops<K, P>::place(const Particles &p, con
     }
   }
   place_all(p, origin, per_quantum);
+  lists.follow(p.x, p.n_all);
 }
 
 template <class K, class P>
@@ -210,13 +219,16 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::record_all(const Particles &p)
   }
 }
 
-// A coordinate that is outside the support of a particle: what fills up the last group of columns.
+// Once per evaluation: what the loops read of the model, in their precision
 
-template <class K, class P>
-SPHCLOTH_INLINE typename P::Coordinate FluidLoops<K, P>::beyond(const Site &s,
-                                                                Real inv_support) const
+template <class K, class P> void FluidLoops<K, P>::settle()
 {
-  return s.x + static_cast<Coordinate>(Real(2) / (inv_support * quantum[0]));
+  terms.clear();
+  for (const PairTerms &of_pair : model.terms) terms.emplace_back(of_pair, quantum[0]);
+  equal_mass.resize(model.mass.size() * LANES);
+  for (std::size_t t = 0; t < model.mass.size(); t++)
+    std::fill_n(&equal_mass[t * LANES], LANES, model.mass[t]);
+  unequal_mass.resize(whole_groups(lists.longest()));
 }
 
 template <class K, class P>
@@ -249,15 +261,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int
   fill_sites(c, near, from, far);
 }
 
-// Masses of the neighbours: a constant column, written once, where all of a type are equal.
-
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::weigh(Columns &c, const Particles &p, const int *near,
-                                             double equal) const
+SPHCLOTH_INLINE typename FluidLoops<K, P>::Masses
+FluidLoops<K, P>::masses(const Particles &p, const Stretch &near, int type)
 {
-  if (equal > 0.0 && c.equal == equal) return;
-  for (int m = 0; m < LANES; m++) c.mass[m] = equal > 0.0 ? equal : p.amount[near[m]];
-  c.equal = equal;
+  if (model.mass[type] > 0.0) return {&equal_mass[type * LANES], 0};
+  for (int k = 0; k < near.n; k++) unequal_mass[k] = p.amount[near.of[k]];
+  return {unequal_mass.data(), 1};
 }
 
 template <class K, class P>
@@ -274,23 +284,23 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill_spans(Columns &c, const int *near) c
 
 template <class K, class P>
 template <bool WEIGHTED>
-SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(const Particles &p, int i, const Stretch &near,
-                                                   Real inv_support, Columns &c) const
+SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(int i, const Stretch &near, const Terms &t,
+                                                   Masses masses, Columns &c) const
 {
   const Site self = sites[i];
-  const Coordinate far = beyond(self, inv_support);
+  const Coordinate far = self.x + t.far;
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   LaneSum<LANES> sum;
   for (int from = 0; from < near.n; from += LANES) {
     columns(&sites[0].x, near.of + from, c.x, c.y, c.z, static_cast<Real *>(nullptr));
     fill_up(c, near.n - from, far);
-    if (WEIGHTED) weigh(c, p, near.of + from, 0.0);
+    const double *mass = WEIGHTED ? masses.group(from) : nullptr;
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(self.x, c.x[k], qx), dy = P::difference(self.y, c.y[k], qy),
                  dz = P::difference(self.z, c.z[k], qz);
-      const Real w = K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * inv_support);
-      sum.of[k] += WEIGHTED ? c.mass[k] * w : w;
+      const Real w = K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * t.inv_support);
+      sum.of[k] += WEIGHTED ? mass[k] * w : w;
     }
   }
   return sum.total();
@@ -314,12 +324,12 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
       for (int other = 1; other <= n_types; other++) {
         const Stretch near = lists(slot, other);
         if (near.n == 0) continue;
-        const PairTerms &terms = model.pair(t, other);
-        const Real inv_support = static_cast<Real>(terms.kernel.inv_support);
-        const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : terms.rho0;
-        rho += terms.kernel.w *
-            (equal > 0.0 ? equal * shape_sum<false>(p, i, near, inv_support, c)
-                         : each * shape_sum<true>(p, i, near, inv_support, c));
+        const PairTerms &whole = model.pair(t, other);
+        const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : whole.rho0;
+        const Masses amounts = masses(p, near, other);
+        rho += whole.kernel.w *
+            (equal > 0.0 ? equal * shape_sum<false>(i, near, pair(t, other), amounts, c)
+                         : each * shape_sum<true>(i, near, pair(t, other), amounts, c));
       }
       p.rho[i] = rho;
     }
@@ -328,22 +338,23 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
 
 template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
 {
-  lists.follow(p.x, p.n_all);
+  settle();
   sum_up(p, sum);
 }
 
 // The wall's or the sheet's share of space
 
 template <class K, class P>
-void FluidLoops<K, P>::volumes(const Particles &p, int type, double *amount)
+void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
 {
-  const PairTerms &terms = model.pair(type, type);
+  const PairTerms &whole = model.pair(type, type);
+  const Terms among_each_other(whole, quantum[0]);
   Columns c;
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);
-    const double sum = shape_sum<false>(p, i, lists.all(slot, type),
-                                        static_cast<Real>(terms.kernel.inv_support), c);
-    amount[i] = 1.0 / (terms.kernel.w * (K::shape(0.0) + sum));
+    lists.refresh(slot);
+    const double sum = shape_sum<false>(i, lists(slot, type), among_each_other, {}, c);
+    amount[i] = 1.0 / (whole.kernel.w * (K::shape(0.0) + sum));
   }
 }
 
@@ -392,19 +403,19 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::meet(Sums<ALSO, VIRIAL> &s, int m, Real v
 
 template <class K, class P>
 template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
-SPHCLOTH_INLINE void
-FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                 double equal, Columns &c, Sums<ALSO, VIRIAL> &sums) const
+SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(int i, const Stretch &near, const Terms &t,
+                                                      Masses masses, Columns &c,
+                                                      Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
-  const Coordinate far = beyond(site, t.inv_support);
+  const Coordinate far = site.x + t.far;
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   const Real span = IMPULSE ? spans[i] : Real(1);
 
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
-    weigh(c, p, near.of + from, equal);
+    const double *mass = masses.group(from);
     if (IMPULSE) fill_spans(c, near.of + from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
@@ -418,17 +429,21 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
       const bool asleep = IMPULSE && c.span[k] < Real(0);
       const Real mean = IMPULSE ? (asleep ? span : Real(0.5) * (span + c.span[k])) : Real(1);
       Real along = motion.pressure + (asleep ? span : Real(1)) * c.pressure[k];
-      Real friction = 0;
       if (F != Friction::NONE) {
         const Real both = site.own + c.own[k];
         along -=
             mean * Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
-        if (F == Friction::ANY) friction = mean * slope * t.nu * both / (site.own * c.own[k]);
       }
       const Real push = -slope * along;
+      Real fx = push * dx, fy = push * dy, fz = push * dz;
+      if (F == Friction::ANY) {
+        const Real friction = mean * slope * t.nu * (site.own + c.own[k]) / (site.own * c.own[k]);
+        fx += friction * du;
+        fy += friction * dv;
+        fz += friction * dw;
+      }
       meet(sums, k, v_dot_r, r_sq, t.support_sq);
-      add<ALSO, VIRIAL>(sums, k, c.mass[k], push * dx + friction * du, push * dy + friction * dv,
-                        push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      add<ALSO, VIRIAL>(sums, k, mass[k], fx, fy, fz, slope * v_dot_r, dx, dy, dz);
     }
   }
 }
@@ -441,19 +456,19 @@ FluidLoops<K, P>::fluid_on_fluid(const Particles &p, int i, const Stretch &near,
 
 template <class K, class P>
 template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
-SPHCLOTH_INLINE void
-FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near, const Terms &t,
-                                  double equal, Columns &c, Sums<ALSO, VIRIAL> &sums) const
+SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(int i, const Stretch &near, const Terms &t,
+                                                       Masses masses, Columns &c,
+                                                       Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
-  const Coordinate far = beyond(site, t.inv_support);
+  const Coordinate far = site.x + t.far;
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   const Real own_span = IMPULSE && !ON_BOUNDARY ? spans[i] : Real(1);
 
   for (int from = 0; from < near.n; from += LANES) {
     fill(c, near, from, far);
-    if (ON_BOUNDARY) weigh(c, p, near.of + from, equal);
+    const double *mass = ON_BOUNDARY ? masses.group(from) : nullptr;
     if (IMPULSE && ON_BOUNDARY) fill_spans(c, near.of + from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
@@ -473,16 +488,19 @@ FluidLoops<K, P>::across_boundary(const Particles &p, int i, const Stretch &near
       Real along = t.stiffness *
           (ON_BOUNDARY ? span * motion.pressure + c.pressure[k]
                        : motion.pressure + span * c.pressure[k]);
-      Real friction = 0;
-      if (F != Friction::NONE) {
+      if (F != Friction::NONE)
         along -= span * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
-        if (F == Friction::ANY) friction = span * slope * t.nu * Real(2) / rho;
-      }
       const Real push = -slope * along;
+      Real fx = push * dx, fy = push * dy, fz = push * dz;
+      if (F == Friction::ANY) {
+        const Real friction = span * slope * t.nu * Real(2) / rho;
+        fx += friction * du;
+        fy += friction * dv;
+        fz += friction * dw;
+      }
       if (!ON_BOUNDARY) meet(sums, k, v_dot_r, r_sq, t.support_sq);
-      const double amount = ON_BOUNDARY ? c.mass[k] : static_cast<double>(c.own[k]);
-      add<ALSO, VIRIAL>(sums, k, amount, push * dx + friction * du, push * dy + friction * dv,
-                        push * dz + friction * dw, slope * v_dot_r, dx, dy, dz);
+      const double amount = ON_BOUNDARY ? mass[k] : static_cast<double>(c.own[k]);
+      add<ALSO, VIRIAL>(sums, k, amount, fx, fy, fz, slope * v_dot_r, dx, dy, dz);
     }
   }
 }
@@ -501,16 +519,16 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
   int met = 0;
   for (int other = 1; other <= model.n_types; other++) {
     const Stretch found = lists(slot, other);
-    if (found.n == 0) continue;
+    if (found.n == 0 || !(fluid || is_fluid(other))) continue;
     met += found.n;
-    const Terms terms(model.pair(t, other));
-    const double equal = model.mass[other];
+    const Terms &of_pair = pair(t, other);
     if (fluid && is_fluid(other))
-      fluid_on_fluid<F, ALSO, VIRIAL, IMPULSE>(p, i, found, terms, equal, c, sums);
+      fluid_on_fluid<F, ALSO, VIRIAL, IMPULSE>(i, found, of_pair, masses(p, found, other), c, sums);
     else if (fluid)
-      across_boundary<F, ALSO, VIRIAL, IMPULSE, false>(p, i, found, terms, equal, c, sums);
+      across_boundary<F, ALSO, VIRIAL, IMPULSE, false>(i, found, of_pair, {}, c, sums);
     else
-      across_boundary<F, ALSO, VIRIAL, IMPULSE, true>(p, i, found, terms, equal, c, sums);
+      across_boundary<F, ALSO, VIRIAL, IMPULSE, true>(i, found, of_pair, masses(p, found, other), c,
+                                                      sums);
   }
   const Acceleration a = sums.total();
   if (ALSO == Also::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
@@ -566,9 +584,11 @@ void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressur
 
 template <class K, class P>
 SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool fluid,
-                                             const Acceleration &a)
+                                             const Acceleration &a) const
 {
-  const double scale = p.amount[i] * p.force_unit;
+  // the volume that the fluid has seen, to the last bit
+  const double amount = fluid ? p.amount[i] : static_cast<double>(sites[i].own);
+  const double scale = amount * p.force_unit;
   p.f[3 * i] += scale * a.x;
   p.f[3 * i + 1] += scale * a.y;
   p.f[3 * i + 2] += scale * a.z;
@@ -617,24 +637,23 @@ void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *conte
 // a linear field on one side, too.
 
 template <class K, class P>
-SPHCLOTH_INLINE Differences FluidLoops<K, P>::density_differences(const Particles &p, int i,
-                                                                  const Stretch &near,
-                                                                  const Terms &t, double equal,
+SPHCLOTH_INLINE Differences FluidLoops<K, P>::density_differences(int i, const Stretch &near,
+                                                                  const Terms &t, Masses masses,
                                                                   Columns &c) const
 {
   const Site site = sites[i];
-  const Coordinate far = beyond(site, t.inv_support);
+  const Coordinate far = site.x + t.far;
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
   DifferenceSums sums;
   for (int from = 0; from < near.n; from += LANES) {
     fill_sites(c, near, from, far);
-    weigh(c, p, near.of + from, equal);
+    const double *mass = masses.group(from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
                  dz = P::difference(site.z, c.z[k], qz);
       const Real r = std::sqrt(dx * dx + dy * dy + dz * dz);
-      const double weight = c.mass[k] * (t.f * K::slope_over_q(r * t.inv_support) / c.own[k]);
+      const double weight = mass[k] * (t.f * K::slope_over_q(r * t.inv_support) / c.own[k]);
       const double wx = weight * dx, wy = weight * dy, wz = weight * dz;
       sums.xx.of[k] -= wx * dx;
       sums.yy.of[k] -= wy * dy;
@@ -658,11 +677,11 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
-    const Terms terms(model.pair(t, t));
     for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
+      const Stretch found = lists(slot, t);
       const std::array<double, 3> of_i =
-          density_differences(p, i, lists(slot, t), terms, model.mass[t], c)
+          density_differences(i, found, pair(t, t), masses(p, found, t), c)
               .gradient(model.dimension);
       std::copy(of_i.begin(), of_i.end(), gradient + 3 * i);
     }
@@ -671,13 +690,12 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
 
 template <class K, class P>
 template <bool FROM_BOUNDARY, bool DIFFUSION>
-SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
-                                                      const Stretch &near, const Terms &t,
-                                                      double equal, double back, Columns &c) const
+SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(int i, const Stretch &near, const Terms &t,
+                                                      Masses masses, double back, Columns &c) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
-  const Coordinate far = beyond(site, t.inv_support);
+  const Coordinate far = site.x + t.far;
   const Real qx = quantum[0], qy = quantum[1], qz = quantum[2], ago = static_cast<Real>(back);
   const Gradient gradient = DIFFUSION ? gradients[i] : Gradient();
   alignas(64) Real gx[LANES], gy[LANES], gz[LANES];
@@ -686,7 +704,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
     fill(c, near, from, far);
     if (DIFFUSION)
       columns(&gradients[0].x, near.of + from, gx, gy, gz, static_cast<Real *>(nullptr));
-    if (!FROM_BOUNDARY) weigh(c, p, near.of + from, equal);
+    const double *mass = FROM_BOUNDARY ? nullptr : masses.group(from);
 #pragma omp simd
     for (int k = 0; k < LANES; k++) {
       const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
@@ -698,7 +716,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Particles &p, int i,
       const Real q = std::sqrt(ax * ax + ay * ay + az * az) * t.inv_support;
       const Real slope = t.f * K::slope_over_q(q_now_sq < Real(1) ? q : Real(1));
       const Real v_dot_r = du * ax + dv * ay + dw * az;
-      const double amount = FROM_BOUNDARY ? static_cast<double>(c.own[k]) : c.mass[k];
+      const double amount = FROM_BOUNDARY ? static_cast<double>(c.own[k]) : mass[k];
       Real flow = FROM_BOUNDARY ? t.rho0 * v_dot_r : v_dot_r;
       if (DIFFUSION) {
         const Real linear =
@@ -737,14 +755,13 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch found = lists(slot, other);
         if (found.n == 0) continue;
-        const Terms terms(model.pair(t, other));
-        const double equal = model.mass[other];
+        const Terms &of_pair = pair(t, other);
         if (!is_fluid(other))
-          sum += density_rate<true, false>(p, i, found, terms, equal, back, c);
+          sum += density_rate<true, false>(i, found, of_pair, {}, back, c);
         else if (DIFFUSION && other == t)
-          sum += density_rate<false, true>(p, i, found, terms, equal, back, c);
+          sum += density_rate<false, true>(i, found, of_pair, masses(p, found, other), back, c);
         else
-          sum += density_rate<false, false>(p, i, found, terms, equal, back, c);
+          sum += density_rate<false, false>(i, found, of_pair, masses(p, found, other), back, c);
       }
       rate[i] = sum;
     }
@@ -765,11 +782,11 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
         const Stretch found = lists(slot, other);
-        const PairTerms &terms = model.pair(t, other);
+        const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
-          const double w = p.amount[j] * weight(p, i, j, terms.kernel);
-          mass += is_fluid(other) ? w : terms.rho0 * w;
+          const double w = p.amount[j] * weight(p, i, j, of_pair.kernel);
+          mass += is_fluid(other) ? w : of_pair.rho0 * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }
       }
@@ -828,7 +845,8 @@ double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
 
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
-  return lists.bytes() + static_cast<double>(sites.capacity()) * sizeof(Site) +
+  return lists.bytes() + static_cast<double>(selection.slots.capacity()) * sizeof(int) +
+      static_cast<double>(sites.capacity()) * sizeof(Site) +
       static_cast<double>(motions.capacity()) * sizeof(Motion) +
       static_cast<double>(gradients.capacity()) * sizeof(Gradient) +
       static_cast<double>(spans.capacity()) * sizeof(Real);

@@ -33,12 +33,12 @@ class NearLists {
     front.assign(static_cast<std::size_t>(outer.slots()) * n_types, 0);
     refreshed.assign(outer.slots(), 0);
     slot_of.resize(n_owned);
-    int longest = 0;
+    longest_list = 0;
     for (int slot = 0; slot < outer.slots(); slot++) {
       slot_of[outer.at(slot)] = slot;
-      for (int t = 1; t <= n_types; t++) longest = std::max(longest, outer(slot, t).n);
+      for (int t = 1; t <= n_types; t++) longest_list = std::max(longest_list, outer(slot, t).n);
     }
-    key.resize(whole_groups(longest) + 2 * LANES);
+    key.resize(whole_groups(longest_list) + 2 * LANES);
     spare.resize(key.size());
     steps = -1;
   }
@@ -57,7 +57,7 @@ class NearLists {
   void refresh(int slot)
   {
     if (refreshed[slot] == epoch) return;
-    refreshed[slot] = epoch;
+    refreshed[slot] = static_cast<std::uint8_t>(epoch);
     const double *supports = &limit[type_of(slot) * (types + 1)];
     for (int t = 1; t <= types; t++) move_to_front(slot, t, supports[t]);
   }
@@ -89,17 +89,19 @@ class NearLists {
   Stretch operator()(int slot, int t) const { return {outer(slot, t).of, front[of(slot, t)]}; }
   int slot(int owned) const { return slot_of[owned]; }
   double inner_skin() const { return skin; }
+  // list, of one particle and type
+  int longest() const { return longest_list; }
 
   double bytes() const
   {
     return outer.bytes() + sizeof(Place) * static_cast<double>(held.capacity()) +
-        sizeof(int) *
-        static_cast<double>(front.capacity() + refreshed.capacity() + slot_of.capacity());
+        sizeof(int) * static_cast<double>(front.capacity() + slot_of.capacity()) +
+        static_cast<double>(refreshed.capacity());
   }
 
  private:
   struct Place {
-    float x, y, z, unused;
+    float x, y, z;
   };
 
   // what refreshing a list costs over one evaluation of its front, about (measured)
@@ -109,7 +111,8 @@ class NearLists {
 
   NeighbourLists outer;
   int types = 0;
-  std::vector<int> front, refreshed, slot_of;    // [slot][type], [slot], [owned particle]
+  std::vector<int> front, slot_of;    // [slot][type], [owned particle]
+  std::vector<std::uint8_t> refreshed;    // [slot], in which epoch
   std::vector<double> limit;    // support of a pair of types, 0: never
   AlignedVector<Place> held;    // positions at the begin of this inner skin
   std::array<double, 3> centre{};
@@ -117,7 +120,8 @@ class NearLists {
   std::vector<int> spare;
 
   int dim = 3;
-  int epoch = 0;
+  int longest_list = 0;
+  int epoch = 0;    // 1 to 255
   int steps = -1;    // evaluations since this inner skin began, -1: lists are new
   double skin = 0.0, widest = 0.0;    // widest: what the skin of the lists allows
   double least_support = 0.0;
@@ -148,7 +152,10 @@ class NearLists {
 
   void start(const double *x, int n_all, double inner_skin)
   {
-    epoch++;
+    if (++epoch > std::numeric_limits<std::uint8_t>::max()) {
+      std::fill(refreshed.begin(), refreshed.end(), 0);
+      epoch = 1;
+    }
     steps = 0;
     skin = std::min(inner_skin, widest);
     hold(x, n_all);
@@ -163,7 +170,7 @@ class NearLists {
     for (int i = 0; i < n_all; i++)
       held[i] = {static_cast<float>(x[3 * i] - centre[0]),
                  static_cast<float>(x[3 * i + 1] - centre[1]),
-                 static_cast<float>(x[3 * i + 2] - centre[2]), 0.0F};
+                 static_cast<float>(x[3 * i + 2] - centre[2])};
   }
 
   SPHCLOTH_MULTIVERSION double farthest(const double *x, int n_all) const
@@ -189,7 +196,7 @@ class NearLists {
     static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
-      columns(&held[0].x, list.of + group, x, y, z, static_cast<float *>(nullptr));
+      columns<3>(&held[0].x, list.of + group, x, y, z, static_cast<float *>(nullptr));
       float *sq = key.data() + group;
 #pragma omp simd
       for (int k = 0; k < LANES; k++) {

@@ -100,6 +100,12 @@ class Stretches {
   {
     int *end = room(0);
     std::fill(end, end + SLACK, 0);
+    const std::size_t need = first.back() + SLACK;
+    if (entries.capacity() <= need + need / 32) return;
+    std::vector<int> trimmed;
+    trimmed.reserve(need + need / 128);
+    trimmed.assign(entries.begin(), entries.begin() + need);
+    entries.swap(trimmed);
   }
   double bytes() const
   {
@@ -145,7 +151,7 @@ class NeighbourLists {
   int *open(int slot, int t) { return lists.open(slot, t); }
   double bytes() const
   {
-    return lists.bytes() + sizeof(float) * 3.0 * px.capacity() + sizeof(float) * key.capacity() +
+    return lists.bytes() + sizeof(float) * static_cast<double>(3 * px.capacity() + key.capacity()) +
         sizeof(int) *
         static_cast<double>(id.capacity() + order.capacity() + place.capacity() +
                             cell_start.capacity() + cell.capacity() + candidate.capacity());

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
@@ -75,19 +76,23 @@ template <class Lane> inline constexpr int GROUP = 32 / sizeof(Lane);
 
 // Columns of GROUP records of four lanes: x[k], y[k], z[k], w[k] are the lanes of record index[k].
 // The last lane of a record may be of another type than the first three, or is left out if w is
-// null.
+// null; then records may lie three lanes apart, if there is room for one lane behind the last.
 
-template <class Lane, class Last>
+template <int APART = 4, class Lane, class Last>
 SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lane *y, Lane *z,
                              Last *w)
 {
   static_assert(sizeof(Lane) == sizeof(Last));
-  const auto record = [&](int k) { return records + 4 * static_cast<std::ptrdiff_t>(index[k]); };
+  const auto record = [&](int k) {
+    return records + APART * static_cast<std::ptrdiff_t>(index[k]);
+  };
 #ifdef SPHCLOTH_X86_TARGETS
   // written in whole vectors: a load that spans two recent stores would wait for both
   typedef __int128 Half __attribute__((aligned(sizeof(Lane)), may_alias));
   typedef __int128 Halves __attribute__((vector_size(32)));
-  typedef Lane Group __attribute__((vector_size(32), aligned(sizeof(Lane)), may_alias));
+  // also of integers: shuffles of numbers have more units that can do them
+  using Number = std::conditional_t<sizeof(Lane) == 4, float, double>;
+  typedef Number Group __attribute__((vector_size(32), aligned(sizeof(Lane)), may_alias));
   // as two integers: the form of which GCC makes one load and one insertion
   const auto both = [&](Group &g, int k, int l, int first) {
     g = reinterpret_cast<Group>(Halves{*reinterpret_cast<const Half *>(record(k) + first),
@@ -228,11 +233,16 @@ inline int partition_plain(float *key, int *index, int n, float limit, int *spar
 
 #ifdef SPHCLOTH_X86_TARGETS
 
+inline __mmask16 first_lanes(int n)
+{
+  return static_cast<__mmask16>(n >= 16 ? 0xffffU : (1U << n) - 1U);
+}
+
 __attribute__((target("avx512f,avx512vl"))) inline void append_avx512(const int *from, int n,
                                                                       int *to)
 {
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     _mm512_mask_storeu_epi32(to + k, here, _mm512_loadu_si512(from + k));
   }
 }
@@ -242,15 +252,14 @@ partition_avx512(float *key, int *index, int n, float limit, int *spare)
 {
   int m = 0;
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     const __m512 x = _mm512_loadu_ps(key + k);
     const __m512i j = _mm512_maskz_loadu_epi32(here, index + k);
     const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);
     const int kept = __builtin_popcount(keep);
     _mm512_storeu_ps(key + m, _mm512_maskz_compress_ps(keep, x));
     _mm512_storeu_si512(spare + k - m, _mm512_maskz_compress_epi32(here & ~keep, j));
-    _mm512_mask_storeu_epi32(index + m, static_cast<__mmask16>((1u << kept) - 1),
-                             _mm512_maskz_compress_epi32(keep, j));
+    _mm512_mask_storeu_epi32(index + m, first_lanes(kept), _mm512_maskz_compress_epi32(keep, j));
     m += kept;
   }
   append_avx512(spare, n - m, index + m);
@@ -264,7 +273,7 @@ __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const floa
 {
   int m = 0;
   for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = n - k >= 16 ? 0xffff : static_cast<__mmask16>((1u << (n - k)) - 1);
+    const __mmask16 here = first_lanes(n - k);
     const __m512 x = _mm512_loadu_ps(key + k);
     const __m512i j = _mm512_loadu_si512(index + k);
     const __mmask16 keep = _mm512_mask_cmp_ps_mask(here, x, _mm512_set1_ps(limit), _CMP_LT_OQ);

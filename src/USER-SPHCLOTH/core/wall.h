@@ -44,7 +44,7 @@ class WallTable {
 
   Value operator()(double delta) const
   {
-    if (delta >= 1.0) return {0.0, 0.0};
+    if (!(delta < 1.0)) return {0.0, 0.0};    // nor is there a wall for what is no number
     if (delta < 0.0) {
       const Value front = (*this)(-delta);
       return {1.0 - front.lambda, front.slope};

@@ -7,6 +7,8 @@ RANKS  ?= 2
 TESTS  ?= tests/styles
 SECONDS_EACH ?= 60
 SIZE   ?= small
+# tests that run side by side
+WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
 CMAKE_HERE = $(BIN)/cmake -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
@@ -19,8 +21,8 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: demo test validate stress fuzz mutate lint docs wheel-check pictures clean \
-  warnings tidy sanitize memcheck coverage fuzz-guided
+.PHONY: demo test validate stress equality endure fuzz mutate reliability-page lint docs \
+        wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
@@ -28,7 +30,7 @@ demo: $(VENV)/installed
 test: $(VENV)/installed build/core/test_core
 	build/core/test_core
 	build/core/test_core_plain
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
 
@@ -39,19 +41,38 @@ validate: $(VENV)/installed
 	  "from sphcloth.validation.validate import all_cases; print(*all_cases())"); do \
 	  $(BIN)/sphcloth validate $$case --out build/validate/$$case || failed=1; done; exit $$failed
 
-# every extreme with every scheme on 1, 2 and 4 ranks: ten minutes
+# what docs/reliability.md is made of
+FOUND := build/reliability
+
+# every extreme with every scheme on 1, 2 and 4 ranks: an hour on two cores
 stress: $(VENV)/installed
-	mkdir -p build
-	$(BIN)/sphcloth stress --json build/stress.json
+	mkdir -p $(FOUND)
+	$(BIN)/sphcloth stress --json $(FOUND)/stress.json
+
+# one scene in many ways: ranks, cuts, newton, balancing, sorting, restart and data files
+equality: $(VENV)/installed
+	$(BIN)/python -m sphcloth.stress.equality --json $(FOUND)/equality.json
+
+# a million steps, an hour of pouring, ten thousand instances
+endure: $(VENV)/installed
+	$(BIN)/python -m sphcloth.stress.endurance steps --json $(FOUND)/steps.json
+	$(BIN)/python -m sphcloth.stress.endurance pour --json $(FOUND)/pour.json
+	$(BIN)/python -m sphcloth.stress.endurance instances --json $(FOUND)/instances.json
 
 # thousands of commands and damaged files, and killed runs
 fuzz: $(VENV)/installed
-	SPHCLOTH_EXAMPLES=3000 $(BIN)/python -m pytest tests/styles/test_fuzz.py tests/python/test_faults.py
-	$(BIN)/python -m sphcloth.stress.kill --times 100
+	mkdir -p $(FOUND)
+	SPHCLOTH_EXAMPLES=3000 $(BIN)/python -m pytest --junitxml $(FOUND)/fuzz.xml \
+	  tests/styles/test_fuzz.py tests/python/test_faults.py
+	$(BIN)/python -m sphcloth.stress.kill --times 100 --json $(FOUND)/kill.json
 
 # deliberate bugs, each of which a test must catch
 mutate: $(VENV)/installed
-	$(BIN)/python tests/mutate.py
+	$(BIN)/python tests/mutate.py --json $(FOUND)/mutate.json
+
+# the tables of the page, of whatever the targets above have left
+reliability-page: $(VENV)/installed
+	$(BIN)/python -m sphcloth.stress.page $(FOUND) docs/reliability.md
 
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests
@@ -132,7 +153,8 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain cloth_on_water)
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour banner curtain cloth_on_water hammock shower \
+  two_resolutions)
 pictures: $(EXAMPLE_PICTURES)
 
 $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed

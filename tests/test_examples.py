@@ -1,12 +1,20 @@
 """Packaged examples at their smallest size, by the command line as a user runs them."""
 
 import json
+import re
+import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-from sphcloth.log import ThermoTable
+import numpy as np
 
+from sphcloth import ClothMesh
+from sphcloth.log import ThermoTable
+from sphcloth.trajectory import Trajectory
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
 SPHCLOTH = Path(sys.executable).parent / "sphcloth"
 
 
@@ -35,3 +43,50 @@ def test_a_light_sheet_floats_and_a_heavy_one_sinks(tmp_path):
         assert log["v_contacts"][-1] > 0
         heights[areal] = log["v_height_of_sheet"][-1]
     assert heights[60.0] < surface < heights[1.0], heights
+
+
+def test_pins_carry_a_full_hammock_which_is_emptied(tmp_path):
+    summary, log = run("hammock", tmp_path)
+    assert summary["poured"] == 70
+    assert log["v_drained"][-1] == 70
+    calm = (log["Time"] > 2.0) & (log["Time"] < 2.6)
+    held, weight = log["v_held"][calm].mean(), log["v_weight"][calm].mean()
+    assert weight > 500
+    assert abs(held / weight - 1) < 0.03, (held, weight)
+
+
+def test_a_shower_runs_off_a_shirt(tmp_path):
+    summary, log = run("shower", tmp_path)
+    assert summary["poured"] == 200
+    assert log["v_contacts"][-1] > 0
+    frames = Trajectory(tmp_path / "shower.lammpstrj", tmp_path / "log.lammps")
+    shirt = ClothMesh.read(tmp_path / "shower.data")
+    side = np.sign(shirt.positions(frames[0])[:, 1].round(3))
+    for frame in frames:
+        # front and back, which would go through each other, stay apart
+        assert (side * shirt.positions(frame)[:, 1])[side != 0].min() > 0.01
+
+
+def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):
+    summary, log = run("two_resolutions", tmp_path)
+    assert summary["poured"] == 172
+    assert log["v_contacts"][-1] > 0
+    every_step = (log["v_fluid"][1:] * np.diff(log["Step"])).sum()
+    assert log["v_updates"][-1] < 0.7 * every_step
+
+
+def test_the_shirt_is_what_the_commands_of_its_page_make(tmp_path):
+    folder = EXAMPLES / "shower"
+    page = (folder / "README.md").read_text()
+    commands = re.search(r"^```sh\n(python make_shirt.*?)^```$", page, re.MULTILINE | re.DOTALL)[1]
+    shutil.copy(folder / "make_shirt.py", tmp_path)
+    for line in commands.splitlines():
+        program, *words = shlex.split(line)
+        subprocess.run([SPHCLOTH.with_name(program), *words], cwd=tmp_path, check=True)
+    assert (tmp_path / "shirt.groups").read_text() == (folder / "shirt.groups").read_text()
+    made, kept = (numbers((place / "shirt.data").read_text()) for place in (tmp_path, folder))
+    assert np.allclose(made, kept, rtol=0, atol=2e-5)
+
+
+def numbers(text: str) -> list[float]:
+    return [float(word) for word in re.findall(r"(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?", text)]

@@ -410,7 +410,7 @@ def render(
 @app.command(epilog=BENCH_EXAMPLES)
 def bench(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth, coupling.")
+        str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth, coupling, watch.")
     ],
     rounds: Annotated[int, typer.Option(min=1, help="How often everything is measured.")] = 5,
     across: Annotated[
@@ -418,9 +418,9 @@ def bench(
         typer.Option(
             min=8,
             max=400,
-            help="Particles along an edge of the water (pair, coupling), vertices along a side "
-            "(cloth).",
-            show_default="48, 160 or 40",
+            help="Particles along an edge of the water (pair, coupling, watch), vertices along a "
+            "side (cloth).",
+            show_default="48, 160, 40 or 20",
         ),
     ] = None,
     steps: Annotated[
@@ -435,11 +435,13 @@ def bench(
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
     from sphcloth.bench.pair import bench_pair
+    from sphcloth.bench.watch import bench_watch
 
     known = {
         "pair": (bench_pair, 48, 30),
         "cloth": (bench_cloth, 160, 40),
         "coupling": (bench_coupling, 40, 60),
+        "watch": (bench_watch, 20, 60),
     }
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")

@@ -60,6 +60,7 @@ class ThermoTable:
                 f"{path} holds no thermo output: the script needs 'thermo_modify line yaml' "
                 "and a run that got as far as its first row"
             )
+        _check_steps(runs, path)
         if last_run:
             runs, loops = runs[-1:], loops[-1:]
         return cls(_concatenate(runs), sum(loops))
@@ -107,12 +108,24 @@ def _check_rows(text: str, path: Path) -> None:
     for number, line in enumerate(text.split("\n")[:-1], 1):
         if line.startswith("keywords:"):
             width = line.count(",") if line.rstrip().endswith("]") else None
+            names = re.findall(r"'([^']*)'", line)
+            if len(set(names)) < len(names):
+                raise UserError(
+                    f"{path}, line {number}: two columns of one name: {' '.join(names)}"
+                )
         elif not line.startswith("  - ["):
             continue
         elif not _is_row(line, width):
             raise UserError(
                 f"{path}, line {number}: '{line.strip()[:60]}' is no row of its columns"
             )
+
+
+def _check_steps(runs: Runs, path: Path) -> None:
+    """Raise UserError where a row has no step."""
+    for run in runs:
+        if not np.isfinite(np.array(run["Step"], dtype=np.float64)).all():
+            raise UserError(f"{path}: its thermo output has a row without a step")
 
 
 def _is_row(line: str, width: int | None) -> bool:

@@ -53,11 +53,15 @@ def read_masses(data: str | Path) -> dict[int, float]:
     if not lines:
         raise UserError(f"{data} has no section Masses: each atom has a mass of its own there")
     try:
-        return {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
+        masses = {int(kind): float(mass) for kind, mass in (line.split()[:2] for line in lines)}
     except ValueError as error:
         raise UserError(
             f"{data}: the section Masses is not a type and a mass in each line"
         ) from error
+    for kind, mass in masses.items():
+        if not 0 < mass < np.inf:
+            raise UserError(f"{data}: the mass of type {kind} is {mass:g}")
+    return masses
 
 
 def _check_counts(header: dict[str, str], sections: dict[str, list[str]], data: Path) -> None:
@@ -112,7 +116,9 @@ class ClothMesh:
         try:
             atoms = np.array([line.split()[2:5] for line in lines], dtype=np.int64)
             ids, triangles = np.unique(atoms.reshape(-1, 3), return_inverse=True)
-        except ValueError as error:
+            if ids[0] < 1:
+                raise ValueError(f"{ids[0]} is no ID of an atom")
+        except (ValueError, OverflowError) as error:
             raise UserError(
                 f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
             ) from error

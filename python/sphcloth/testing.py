@@ -203,15 +203,18 @@ def _run(
     script: Path, folder: Path, ranks: int, timeout: float, variables: Mapping[str, object]
 ) -> str | None:
     """Run LAMMPS in a folder; returns why it failed, or None."""
-    import shutil
-
-    from sphcloth.run import endings_interrupt, kill, lammps_command, last_words, start_lammps
-    from sphcloth.tradeoff.runs import companions
+    from sphcloth.run import (
+        copy_companions,
+        endings_interrupt,
+        kill,
+        lammps_command,
+        last_words,
+        start_lammps,
+    )
 
     if not script.is_file():
         return f"no script {script}"
-    for file in companions(script):
-        shutil.copy(file, folder)
+    copy_companions(script, folder)
     texts = {name: str(value) for name, value in variables.items()}
     with endings_interrupt():
         process = start_lammps(lammps_command(script.resolve(), ranks, texts), folder)

@@ -34,8 +34,10 @@ _HEADER = {
     8: "ITEM: ATOMS",
 }
 _HEADER_LINES = 9
-# no more than LAMMPS counts to
+# what LAMMPS counts has 64 bits
 _COUNT = re.compile(r"[0-9]{1,18}")
+# and is exact as a number of double precision up to here
+_MOST = 2.0**53
 
 
 @dataclass(frozen=True)
@@ -196,7 +198,7 @@ def _read_bounds(rows: list[str], width: int, path: Path, line: int) -> NDArray[
         bounds = np.array([row.split() for row in rows], dtype=np.float64)
     except ValueError as error:
         raise UserError(f"{path}, line {line}: not the bounds of a box") from error
-    if bounds.shape != (3, width):
+    if bounds.shape != (3, width) or not np.isfinite(bounds).all():
         raise UserError(f"{path}, line {line}: not the bounds of a box")
     return bounds
 
@@ -234,6 +236,8 @@ def _check_columns(columns: list[str], path: Path) -> None:
             f"{path} lacks the column {' '.join(absent)}: write it with "
             "'dump ID all custom N FILE id type x y z vx vy vz rho'"
         )
+    if len(set(columns)) < len(columns):
+        raise UserError(f"{path} has two columns of one name: {' '.join(columns)}")
 
 
 def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
@@ -250,7 +254,21 @@ def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
         reader = DumpReader(stream, "unscaled", additional_columns=entry.columns, dt=1.0)
     except (ValueError, IndexError) as error:
         raise UserError(f"{path}, line {_bad_line(text, entry)}: not a row of numbers") from error
-    return {name: reader.ts.data[name] for name in entry.columns}
+    columns = {name: reader.ts.data[name] for name in entry.columns}
+    _check_atoms(columns, path, entry)
+    return columns
+
+
+def _check_atoms(columns: dict[str, NDArray[np.float64]], path: Path, entry: _Entry) -> None:
+    """Raise UserError where an atom is there twice, or has an ID or type that none can have."""
+    where = f"{path}, frame at line {entry.line}"
+    for name in ("id", "type"):
+        wrong = ~((columns[name] >= 1) & (columns[name] < _MOST))
+        if wrong.any():
+            raise UserError(f"{where}: {columns[name][wrong][0]:g} is no {name} of an atom")
+    twice = columns["id"][1:][np.diff(columns["id"]) == 0]
+    if len(twice):
+        raise UserError(f"{where}: atom {twice[0]:.0f} is there twice")
 
 
 def _bad_line(text: str, entry: _Entry) -> int:

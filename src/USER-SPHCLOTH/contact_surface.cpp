@@ -7,6 +7,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "neighbor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,13 +110,21 @@ void ContactSurface::set_boxes(double margin)
   grid.build(boxes);
 }
 
-// With room to move, so that they serve for several steps.
+// How far vertices and particles may go before those who are near are looked for again: as far, if that
+// is not too little, as until the next list build, when they are in any case.
+
+double ContactSurface::room_to_move() const
+{
+  return std::max(rules->thickness, 0.5 * neighbor->skin);
+}
 
 void ContactSurface::find_near()
 {
-  const double skin = rules->thickness;
+  const double skin = room_to_move();
   near.clear();
   set_boxes(2.0 * rules->thickness + skin);
+  start_then = start;
+  end_then = end;
   const Box &cloth_box = grid.bounds();
   found_at.resize(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -136,35 +145,35 @@ void ContactSurface::find_near()
 
 void ContactSurface::bound()
 {
-  if (near_holds()) return;
-  find_near();
-  near_holds();
-}
-
-// Where the triangles are in this step, and whether all who may meet are still among those that were
-// near.
-
-bool ContactSurface::near_holds()
-{
-  const Vec3 reach = Vec3::Constant(2.0 * rules->thickness);
-  bool holds = found_at.size() == static_cast<std::size_t>(atom->nlocal);
+  swept_for.assign(triangles.size(), false);
   swept.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); t++) {
-    Box &box = swept[t];
-    box.setEmpty();
-    for (int s : triangles[t]) {
-      box.extend(start[s]);
-      box.extend(end[s]);
-    }
-    box.min() -= reach;
-    box.max() += reach;
-    holds = holds && boxes[t].contains(box);
-  }
-  return holds && !(farthest_sq() > rules->thickness * rules->thickness);
+  if (!near_holds()) find_near();
 }
 
-// Of the ways of all who meet this mesh since they were looked for, squared.  Every particle, twice in each
-// step: one loop without branches.
+// Are all who may meet in this step still among those that were near?
+
+bool ContactSurface::near_holds() const
+{
+  if (found_at.size() != static_cast<std::size_t>(atom->nlocal)) return false;
+  const double room = room_to_move();
+  return !(std::max(farthest_vertex_sq(), farthest_sq()) > room * room);
+}
+
+// Of the ways of the vertices, squared, since then: from the end of the step before or from its start,
+// whichever is nearer, since boxes hold both.
+
+double ContactSurface::farthest_vertex_sq() const
+{
+  double farthest = 0.0;
+  for (const std::vector<Vec3> *place : {&start, &end})
+    for (std::size_t s = 0; s < place->size(); s++) {
+      const Vec3 from_start = (*place)[s] - start_then[s], from_end = (*place)[s] - end_then[s];
+      farthest = std::max(farthest, std::min(from_start.squaredNorm(), from_end.squaredNorm()));
+    }
+  return farthest;
+}
+
+// and of all who meet this mesh.  Every particle, twice in each step: one loop without branches.
 
 double ContactSurface::farthest_sq() const
 {
@@ -196,8 +205,26 @@ template <class Visit> void ContactSurface::for_overlapping(Visit visit)
       box.extend(sweep.end);
       last = i;
     }
-    if (swept[t].intersects(box)) visit(i, t, sweep);
+    if (swept_box(t).intersects(box)) visit(i, t, sweep);
   }
+}
+
+// of the way of a triangle in this step, made when somebody asks
+
+const Box &ContactSurface::swept_box(int t)
+{
+  Box &box = swept[t];
+  if (swept_for[t]) return box;
+  swept_for[t] = true;
+  box.setEmpty();
+  for (int s : triangles[t]) {
+    box.extend(start[s]);
+    box.extend(end[s]);
+  }
+  const Vec3 reach = Vec3::Constant(2.0 * rules->thickness);
+  box.min() -= reach;
+  box.max() += reach;
+  return box;
 }
 
 bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
@@ -835,11 +862,12 @@ void ContactSurface::move_zones(const ContactZones &zones)
 double ContactSurface::memory_usage() const
 {
   return halo.memory_usage() +
-      static_cast<double>(sizeof(Vec3) *
-                              (start.capacity() + end.capacity() + change.capacity() +
-                               shares.capacity() + from.capacity() + received.capacity()) +
-                          sizeof(double) * (w.capacity() + w_solver.capacity()) +
-                          sizeof(Box) * boxes.capacity() + sizeof(Particle) * particles.capacity() +
-                          sizeof(Pair) * pairs.capacity() + sizeof(near[0]) * near.capacity() +
-                          sizeof(Vec3) * found_at.capacity());
+      static_cast<double>(
+             sizeof(Vec3) *
+                 (start.capacity() + end.capacity() + change.capacity() + shares.capacity() +
+                  from.capacity() + received.capacity() + end_then.capacity()) +
+             sizeof(double) * (w.capacity() + w_solver.capacity()) +
+             sizeof(Box) * (boxes.capacity() + swept.capacity()) +
+             sizeof(Particle) * particles.capacity() + sizeof(Pair) * pairs.capacity() +
+             sizeof(near[0]) * near.capacity() + sizeof(Vec3) * found_at.capacity());
 }

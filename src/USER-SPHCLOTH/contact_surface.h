@@ -183,6 +183,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   std::vector<Vec3> shares;    // contacts of each slot
   std::vector<Vec3> received;    // by owned slot
   std::vector<sphcloth::Box> boxes, swept;    // of triangles: with room to move, in this step
+  std::vector<char> swept_for;    // which of the latter are known
   struct Sphere {
     Vec3 centre;
     double radius;
@@ -190,7 +191,8 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   std::vector<Sphere> spheres;    // around the triangles, at a list build
   sphcloth::BoxGrid grid;
   std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
-  std::vector<Vec3> found_at;    // of each atom, when the last line was made
+  std::vector<Vec3> found_at;    // of each atom, when they were found
+  std::vector<Vec3> start_then, end_then;    // by slot, the same
   std::vector<Particle> particles;
   std::vector<int> moved;
   std::vector<int> entry;    // of an atom among them, or -1
@@ -199,8 +201,11 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
   void find_near();
-  bool near_holds();
+  bool near_holds() const;
+  double room_to_move() const;
   double farthest_sq() const;
+  double farthest_vertex_sq() const;
+  const sphcloth::Box &swept_box(int t);
   void bound();
   template <class Visit> void for_overlapping(Visit visit);
   void set_boxes(double margin);

@@ -12,6 +12,7 @@ from rich.console import Console
 
 from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.timing import Spread, read_timing
+from sphcloth.bench.watch import bench_watch
 from sphcloth.errors import UserError
 
 LOG = """
@@ -66,7 +67,7 @@ def test_an_unknown_benchmark_is_named() -> None:
     command = [Path(sys.executable).parent / "sphcloth", "bench", "sail"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "no benchmark 'sail': use pair, cloth, coupling" in done.stderr
+    assert "no benchmark 'sail': use pair, cloth, coupling, watch" in done.stderr
 
 
 def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
@@ -100,3 +101,11 @@ def test_a_sheet_out_of_reach_from_end_to_end() -> None:
         assert 0.1 < result["ratios"][scene]["value"] < 10
     assert 0 < result["pour"]["contact_share"] < 0.5
     assert "share of contact in pour, size tiny" in said.getvalue()
+
+
+def test_a_look_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_watch(1, 8, 5, Console(file=said, width=200))
+    assert set(result["look"]) == {"finite", "all"}
+    assert -0.9 < result["look"]["all"]["value"] < 10
+    assert "every 20 steps" in said.getvalue()

@@ -118,7 +118,7 @@ READERS = {
 
 
 @pytest.mark.parametrize("name", READERS)
-def test_a_damaged_file_is_read_or_refused_by_its_name(kept, tmp_path, name):
+def test_a_damaged_file_is_read_or_refused_by_its_name(kept, tmp_path, name, record_property):
     """Whatever else it raises fails."""
     whole, dice, refused = (kept / name).read_bytes(), random.Random(7), 0
     for _ in range(EXAMPLES):
@@ -130,6 +130,8 @@ def test_a_damaged_file_is_read_or_refused_by_its_name(kept, tmp_path, name):
         except UserError as error:
             assert name in str(error) or "wound in opposite senses" in str(error)
             refused += 1
+    record_property("tried", EXAMPLES)
+    record_property("refused", refused)
     assert 0 < refused < EXAMPLES
 
 

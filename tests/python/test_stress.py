@@ -83,6 +83,10 @@ SEEN = {
     "last row": (checks.column("Dt", 2, 3, last=True), outcome(at(0.1), log={"Dt": [2.5, 1.0]})),
     "density": (checks.compressed_by(0.1), outcome(at(0.1, rho=1101.0))),
     "speed": (checks.speed_below(2.0), outcome(at(0.1), at(0.1, 1, vy=2.0))),
+    "strain": (
+        checks.strain_below(1e-3, 1e-3),
+        outcome(at(0.1), log={"Dt": [1e-3, 8e-3], "v_strain": [0.0, 0.017]}),
+    ),
     "moved": (checks.stays_where_it_is(1, 1e-6), outcome(at(0.1), at(0.1 + 1e-5, 1))),
 }
 

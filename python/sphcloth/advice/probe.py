@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
@@ -22,8 +21,15 @@ from numpy.typing import NDArray
 from sphcloth.advice.commands import Commands
 from sphcloth.advice.evidence import Evidence
 from sphcloth.errors import UserError
-from sphcloth.run import LOG, endings_interrupt, kill, lammps_command, last_words, start_lammps
-from sphcloth.tradeoff.runs import companions
+from sphcloth.run import (
+    LOG,
+    copy_companions,
+    endings_interrupt,
+    kill,
+    lammps_command,
+    last_words,
+    start_lammps,
+)
 from sphcloth.trajectory import Frame, Trajectory
 
 TABLE, FIRST, FINAL = "advise.table", "advise.first", "advise.final"
@@ -90,8 +96,7 @@ class Probe:
         runs: list[str] = []
         folder.mkdir(parents=True)
         for path, text in texts.items():
-            for file in companions(path):
-                shutil.copy(file, folder)
+            copy_companions(path, folder)
             lines = [_edited(_hooked(line, runs), edits) for line in text.splitlines()]
             (folder / path.name).write_text("\n".join(lines) + "\n", encoding="utf-8")
         if not runs:

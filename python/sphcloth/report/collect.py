@@ -118,6 +118,6 @@ def _pictures(kind: str, path: Path, values: dict) -> list[Path]:
         ],
         "run": ["contact_sheet.png", "history.png"],
     }
-    # a name is never a way out of the folder
-    plain = [name for name in names.get(kind, []) if Path(name).name == name]
-    return [folder / name for name in plain if (folder / name).is_file()]
+    # neither a name nor a link is a way out of the folder
+    plain = [folder / name for name in names.get(kind, []) if Path(name).name == name]
+    return [each for each in plain if each.is_file() and not each.is_symlink()]

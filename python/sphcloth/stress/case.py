@@ -225,6 +225,22 @@ def column(name: str, least: float, most: float, *, last: bool = False) -> Check
     return column_is_within
 
 
+def strain_below(most: float, at_step: float) -> Check:
+    """Return a check of the largest strain of a flat, pinned sheet of stiffness 1; at_step in s.
+
+    A sweep takes back a share of the sag w that is the strain, and that is as w^2: what a load
+    adds in a step, a dt^2, is taken back by n sweeps at n w^3 ~ a dt^2, where the strain is as
+    (a dt^2 / n)^(2/3).
+    """
+
+    def strain_is_within(outcome: Outcome) -> str:
+        found, step = outcome.log["v_strain"].max(), outcome.log["Dt"].max()
+        allowed = most * (step / at_step) ** (4 / 3)
+        return "" if found <= allowed else f"strain {found:.3g}, allowed {allowed:.3g}"
+
+    return strain_is_within
+
+
 def compressed_by(most: float) -> Check:
     """Return a check of the largest rho / 1000 - 1 of water in any frame."""
 

@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.programs import program
+from sphcloth.programs import lammps_on
 from sphcloth.stress.case import SCENES, SCHEMES
 from sphcloth.stress.processes import descendants, run_to_end, slay, start
 
@@ -72,7 +72,7 @@ def trials(times: int, ranks: Sequence[int], schemes: Sequence[str], seed: int) 
 
 def _command(scheme: str, ranks: int, again: str) -> list[str]:
     words = ["-in", str(SCRIPT), "-var", "scheme", scheme, "-var", "again", again]
-    return [str(program("mpiexec")), "-n", str(ranks), str(program("lmp")), *words]
+    return [*lammps_on(ranks), *words]
 
 
 def _whole(folder: Path, scheme: str, ranks: int) -> tuple[float, bytes]:

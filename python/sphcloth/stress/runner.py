@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sphcloth.programs import program
+from sphcloth.programs import lammps_on, program
 from sphcloth.stress.case import Case, Outcome
 from sphcloth.stress.processes import run_to_end
 
 # seconds after which a run counts as hung
-PATIENCE = 300.0
+PATIENCE = 900.0
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def run_script(script: Path, folder: Path, settings: Mapping[str, object], ranks
     folder.mkdir(parents=True)
     shutil.copy(script, folder)
     words = [word for name, value in settings.items() for word in ("-var", name, str(value))]
-    command = [program("mpiexec"), "-n", str(ranks)] if ranks > 1 else []
-    command += [program("lmp"), "-in", script.name, *words]
+    launch = lammps_on(ranks) if ranks > 1 else [program("lmp")]
+    command = [*launch, "-in", script.name, *words]
     code, text = run_to_end(command, folder, PATIENCE)
     return Outcome(folder, settings, code, text)

@@ -23,14 +23,21 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 from sphcloth.programs import installed_version
-from sphcloth.run import LOG, endings_interrupt, kill, lammps_command, last_words, start_lammps
+from sphcloth.run import (
+    LOG,
+    companions,
+    copy_companions,
+    endings_interrupt,
+    kill,
+    lammps_command,
+    last_words,
+    start_lammps,
+)
 from sphcloth.tradeoff.scene import Scene
 
 RECORD = "result.json"
 # a run is stopped when it takes so many times as long as the reference, and these seconds
 PATIENCE, GRACE_SECONDS = 3.0, 20.0
-# commands whose arguments may be files that LAMMPS reads
-READERS = ("read_data", "read_restart", "read_dump", "include", "molecule", "variable")
 STOPPED = "stopped; what has finished is kept: the same command goes on from there"
 # schemes under which a step is not a step of every particle
 PARTIAL = ("individual", "block")
@@ -121,8 +128,11 @@ class Workshop:
         path = self.folder(setting) / RECORD
         if not path.is_file() or not path.with_name(LOG).is_file():
             return None
-        kept = json.loads(path.read_text(encoding="utf-8"))
-        return Record(**kept | {"walls_s": tuple(kept["walls_s"])})
+        try:
+            kept = json.loads(path.read_text(encoding="utf-8"))
+            return Record(**kept | {"walls_s": tuple(kept["walls_s"])})
+        except (ValueError, LookupError, TypeError) as error:
+            raise UserError(f"{path}: not what a run keeps ({error}): remove its folder") from error
 
     def run(
         self, settings: list[Setting], repeat: int = 1, patience: float = math.inf
@@ -186,8 +196,7 @@ class Workshop:
         folder, before = self.folder(setting), self.find(setting)
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        for file in companions(self.scene.script):
-            shutil.copy(file, folder)
+        copy_companions(self.scene.script, folder)
         command = lammps_command(self.scene.script.resolve(), self.ranks, setting.variables)
         begin = time.monotonic()
         failure = crew.run(command, folder)
@@ -246,17 +255,6 @@ class Crew:
             for process in self._running:
                 if process.poll() is None:
                     kill(process)
-
-
-def companions(script: Path) -> list[Path]:
-    """Return the files beside a script that it names in a command that reads files."""
-    words = set()
-    for line in script.read_text(encoding="utf-8").splitlines():
-        command, *arguments = line.split() or [""]
-        if command in READERS:
-            words.update(arguments)
-    found = [script.parent / word for word in sorted(words) if "/" not in word]
-    return [file for file in found if file.is_file()]
 
 
 def count_updates(table: ThermoTable, script: str, scheme: str) -> float:

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from sphcloth.errors import UserError
 from sphcloth.programs import installed_version
+from sphcloth.run import check_no_link
 from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, pareto
 from sphcloth.tradeoff.runs import GRACE_SECONDS, PATIENCE, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import History, Quantity, Scene, Values
@@ -152,6 +153,7 @@ def study(
             the log does not have.
     """
     reference, settings = all_settings(scene, plan)
+    check_no_link(out / RUNS)
     if fresh:
         shutil.rmtree(out / RUNS, ignore_errors=True)
     workshop = Workshop(scene, out / RUNS, ranks, jobs, console)

@@ -42,10 +42,10 @@ bool Fluid::select(const Particles &p)
   return true;
 }
 
-int Fluid::count_inside(const Particles &p, int owned, int type, int most) const
+int Fluid::count_inside(const Particles &p, int owned, int type, int most)
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
-  const Stretch list = lists.all(lists.slot(owned), type);
+  const Stretch list = neighbours(owned, type);
   const double *x = p.x + 3 * owned;
   int n = 0;
   for (int k = 0; k < list.n && n < most; k++) {

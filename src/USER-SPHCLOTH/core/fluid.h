@@ -171,7 +171,7 @@ class Fluid {
     return lists(lists.slot(owned), type);
   }
   // how many are inside the support; counts up to `most`
-  int count_inside(const Particles &, int owned, int type, int most) const;
+  int count_inside(const Particles &, int owned, int type, int most);
 
  protected:
   NearLists lists;

@@ -155,7 +155,7 @@ template <class K, class P> class FluidLoops : public Fluid {
                   Real rate, Real dx, Real dy, Real dz);
   template <Also ALSO, bool VIRIAL>
   static void meet(Sums<ALSO, VIRIAL> &, int lane, Real v_dot_r, Real r_sq, Real support_sq);
-  static void apply(const Particles &, int i, bool fluid, const Acceleration &);
+  void apply(const Particles &, int i, bool fluid, const Acceleration &) const;
   template <Friction F, Also ALSO, bool VIRIAL>
   void all_forces(const Particles &, On, Receiver, void *);
   template <Also ALSO> void forces_and(const Particles &, On);
@@ -584,9 +584,11 @@ void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressur
 
 template <class K, class P>
 SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool fluid,
-                                             const Acceleration &a)
+                                             const Acceleration &a) const
 {
-  const double scale = p.amount[i] * p.force_unit;
+  // the volume that the fluid has seen, to the last bit
+  const double amount = fluid ? p.amount[i] : static_cast<double>(sites[i].own);
+  const double scale = amount * p.force_unit;
   p.f[3 * i] += scale * a.x;
   p.f[3 * i + 1] += scale * a.y;
   p.f[3 * i + 2] += scale * a.z;

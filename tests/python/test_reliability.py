@@ -1,0 +1,154 @@
+"""What makes the tables of docs/reliability.md: small runs of each, and the page itself."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from sphcloth.errors import UserError
+from sphcloth.programs import PATIENT, lammps_on
+from sphcloth.stress import endurance, page
+from sphcloth.stress.case import SPACING
+from sphcloth.stress.endurance import Growth, Look, Memory
+from sphcloth.stress.equality import SAME_PLACE, Found, Scene, Way
+
+PAGE = Path(__file__).parents[2] / "docs" / "reliability.md"
+
+
+def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1})
+    for name in PATIENT:
+        monkeypatch.delenv(name, raising=False)
+    assert lammps_on(2)[1:3] == ["-n", "2"]
+    assert lammps_on(3).count("-genv") == len(PATIENT)
+    monkeypatch.setenv("MPIR_CVAR_ENABLE_HEAVY_YIELD", "0")
+    assert "MPIR_CVAR_ENABLE_HEAVY_YIELD" not in lammps_on(3)
+
+
+def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path):
+    scene = Scene("tilted", "block", tmp_path)
+    same = scene.way(Way("two ranks", 2, {"grid": "1 2 1"}))
+    assert same.passed and 0 < same.place < SAME_PLACE
+    other = scene.way(Way("another step", 1, {"dt": 5e-4}))
+    assert not other.passed and not other.complaint
+    failed = scene.way(Way("no such kind", 1, {"sort": "no such kind"}))
+    assert not failed.passed and failed.complaint
+
+
+@pytest.mark.parametrize(("place", "complaint"), [(1e-20, ""), (0.0, "no end"), (None, "")])
+def test_a_restart_is_the_same_to_the_last_bit_or_fails(place, complaint):
+    assert not Found("periodic", "block", "restart", 1, True, place, 0.0, complaint).passed
+    assert Found("periodic", "block", "restart", 1, True, 0.0, 0.0, "").passed
+
+
+def test_mass_and_momentum_stay():
+    found = endurance.drift("block", 200, looks=10)
+    assert found.mass == 0 and found.momentum < 1e-12 and found.energy_left < 1
+
+
+def test_looks_at_a_run_that_pours(tmp_path):
+    file = tmp_path / "pour.json"
+    words = ["pour", "--minutes", "0.02", "--load", "1", "--json", str(file)]
+    CliRunner().invoke(endurance.app, words)
+    last = json.loads(file.read_text())["found"]["looks"][-1]
+    assert last["poured"] > 10 and last["step"] >= 400
+    assert last["resident"] > last["heap"] > last["own"] > 1e6
+
+
+def test_growth_is_from_when_the_scene_is_full():
+    looks = [Look(k, k, 1, k, 100 + (k < 10), 1000 + k, 10) for k in range(100)]
+    assert Growth.of(looks) == Growth(0, 70, 0)
+
+
+def test_memory_that_is_kept_is_seen():
+    before = Memory.now().heap
+    kept = bytearray(3 << 20)
+    assert Memory.now().heap - before >= len(kept)
+
+
+def test_instances_leave_little(monkeypatch):
+    found = endurance.leak("plugin, all its styles", 20)
+    assert found.heap < 1e6
+
+
+# ---- the page ------------------------------------------------------------------------------------
+
+EXAMPLES = {
+    "stress.json": {
+        "runs": [
+            {"case": "a", "scheme": "block", "ranks": n, "passed": n < 4, "complaints": ["slow"]}
+            for n in (1, 2, 4)
+        ]
+    },
+    "equality.json": [
+        {"way": "2 ranks", "ranks": 2, "box": "tilted", "scheme": "block", "passed": True,
+         "place": 1e-14 * SPACING, "complaint": ""},
+    ],
+    "kill.json": [
+        {"scheme": "block", "ranks": 2, "in_time": True, "had_file": False, "complaint": ""},
+    ],
+    "mutate.json": [{"bug": "b", "caught": "styles/test_a.py::test_b", "seconds": 3}],
+    "steps.json": {"found": [
+        {"scheme": "block", "steps": 5, "time": 1.0, "mass": 0.0, "momentum": 1e-15,
+         "energy_rise": 0.0, "energy_left": 0.5, "memory": 0},
+    ]},
+    "pour.json": {"found": {"looks": [
+        {"wall_s": 60, "step": 5, "atoms": 1, "poured": 2, "resident": 1, "heap": 2, "own": 3},
+    ]}},
+    "instances.json": {"found": [{"kind": "wheel", "times": 9, "heap": 1.0, "resident": 2.0}]},
+}  # fmt: skip
+XML = """<testsuite><testcase name="test_each[bond]"><properties><property name="tried" value="7"/>
+<property name="refused" value="4"/></properties></testcase></testsuite>"""
+ROWS = [
+    "**3 runs of 1 cases, 1 breaches.**",
+    "**1 ends compared, 0 differ.**",
+    "**7 commands and files.**",
+    "**1 of 1 bugs caught.**",
+    "| block | 1 runs, 0 breaches | 1 runs, 0 breaches | 1 runs, 1 breaches |",
+    "* `a`, block, 4 ranks: slow",
+    "| 2 ranks | 1e-14 |",
+    "| `block` | 2 | 1 | 1 | 0 | 1 |",
+    "| b | `test_a.py`: `test_b` | 3 |",
+    "| bond | 7 | 4 | 0 |",
+    "| wheel | 9 | 1.0 | 2 |",
+]
+
+
+def write_all(folder):
+    for name, content in EXAMPLES.items():
+        (folder / name).write_text(json.dumps(content))
+    (folder / "fuzz.xml").write_text(XML)
+
+
+def test_all_tables_have_a_place_and_are_renewed(tmp_path):
+    write_all(tmp_path)
+    text, made = page.renewed(PAGE.read_text(), tmp_path)
+    assert made == list(page.TABLES)
+    for row in ROWS:
+        assert row in text
+    assert page.renewed(text, tmp_path)[0] == text
+    assert page.renewed(text, tmp_path / "nothing") == (text, [])
+
+
+def test_the_words_around_stay(tmp_path):
+    write_all(tmp_path)
+
+    def outside(text):
+        return re.sub(r"(<!-- table \w+ -->).*?(<!-- end -->)", r"\1\2", text, flags=re.S)
+
+    assert outside(page.renewed(PAGE.read_text(), tmp_path)[0]) == outside(PAGE.read_text())
+
+
+@pytest.mark.parametrize("content", ["{", "[]", '{"runs": 3}', '{"runs": [{"scheme": 1}]}'])
+def test_a_file_of_another_form_is_named(tmp_path, content):
+    (tmp_path / "stress.json").write_text(content)
+    with pytest.raises(UserError, match=r"stress.json: not what a run writes"):
+        page.renewed(PAGE.read_text(), tmp_path)
+
+
+def test_a_page_without_a_place_is_refused(tmp_path):
+    write_all(tmp_path)
+    with pytest.raises(UserError, match="0 places for the table stress"):
+        page.renewed("no tables", tmp_path)

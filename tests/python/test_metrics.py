@@ -140,6 +140,11 @@ def test_balances_come_from_the_thermo_columns() -> None:
     exact = ThermoTable(columns | {"v_fluid": np.array([0.0, 7, 6])}, 1.0)
     lossy = ThermoTable(columns | {"v_fluid": np.array([0.0, 9, 6])}, 1.0)
     assert (metrics.mass_balance(exact), metrics.mass_balance(lossy)) == (0, 2)
+    other = {name: np.append(values, np.nan) for name, values in lossy.columns.items()}
+    assert metrics.mass_balance(ThermoTable(other, 1.0)) == 2
+    none = {name: np.full(3, np.nan) for name in other}
+    with pytest.raises(UserError, match="no row of the log"):
+        metrics.mass_balance(ThermoTable(none, 1.0))
     assert metrics.particle_updates(exact) == 100
     counted = ThermoTable(columns | {"v_updates": np.array([5.0, 20, 45])}, 1.0)
     assert metrics.particle_updates(counted) == 40

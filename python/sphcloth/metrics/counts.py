@@ -33,9 +33,15 @@ def check_fluid_count(table: ThermoTable, frame: Frame, fluid_type: int = 1) -> 
 
 
 def mass_balance(table: ThermoTable) -> int:
-    """Return the largest abs(poured - drained - present) of any thermo row, in particles."""
-    missing = table["v_poured"] - table["v_drained"] - table["v_fluid"]
-    return int(np.max(np.abs(missing)))
+    """Return the largest abs(poured - drained - present) of any thermo row, in particles.
+
+    Rows of a run that printed other columns do not count; UserError if none is left.
+    """
+    missing = np.abs(table["v_poured"] - table["v_drained"] - table["v_fluid"])
+    missing = missing[np.isfinite(missing)]
+    if not missing.size:
+        raise UserError("no row of the log has v_poured, v_drained and v_fluid together")
+    return int(missing.max())
 
 
 def particle_updates(table: ThermoTable) -> float:

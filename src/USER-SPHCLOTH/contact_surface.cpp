@@ -26,6 +26,9 @@ static constexpr double RECOVERY = 0.1;
 // unless it hardly came too near.
 static constexpr double FIRM = 10.0;
 
+// of the thickness: what may lie between two looks for who is near
+static constexpr double MOST_ROOM = 1.5;
+
 static constexpr int STOP_PASSES = 200;
 
 Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
@@ -111,12 +114,12 @@ void ContactSurface::set_boxes(double margin)
   grid.build(boxes);
 }
 
-// How far vertices and particles may go before those who are near are looked for again: as far, if that
-// is not too little, as until the next list build, when they are in any case.
+// How far vertices and particles may go before those who are near are looked for again: as far as until
+// the next list build, when they are in any case, but not so far that too many are near.
 
 double ContactSurface::room_to_move() const
 {
-  return std::max(rules->thickness, 0.5 * neighbor->skin);
+  return rules->thickness * std::clamp(0.5 * neighbor->skin / rules->thickness, 1.0, MOST_ROOM);
 }
 
 void ContactSurface::find_near()

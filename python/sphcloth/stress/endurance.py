@@ -93,7 +93,8 @@ class Drift:
         scheme: of the time step.
         steps: how many.
         time: that they took in the scene, s.
-        mass, momentum: largest change over mass and over the sum of m |v| at the begin.
+        mass: largest change over that at the begin.
+        momentum: largest change over the sum of masses times speeds at the begin.
         energy_rise: highest kinetic and stored energy over that at the begin, less 1.
         energy_left: energy in the end over that at the begin.
         memory: change of the heap from the first tenth to the end, bytes.

@@ -31,11 +31,13 @@ def program(name: str) -> Path:
     return Path(found)
 
 
-def lammps_on(ranks: int) -> list[str]:
-    """Return the command that starts LAMMPS on so many ranks.
+def lammps_on(ranks: int, bare: bool = False) -> list[str]:
+    """Return the command that starts LAMMPS on so many ranks, one rank without mpiexec if bare.
 
     With more ranks than cores those that wait sleep, unless the user's environment says otherwise.
     """
+    if bare and ranks == 1:
+        return [str(program("lmp"))]
     crowded = ranks > len(os.sched_getaffinity(0))
     settings = [pair for pair in PATIENT.items() if crowded and pair[0] not in os.environ]
     told = [word for pair in settings for word in ("-genv", *pair)]

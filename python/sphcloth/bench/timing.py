@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sphcloth.errors import UserError
-from sphcloth.programs import lammps_on, program
+from sphcloth.programs import lammps_on
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,7 @@ class Runner:
         """Run LAMMPS and return its log."""
         given = {**self.shared, **variables}
         words = [word for name, value in given.items() for word in ("-var", name, str(value))]
-        launch = lammps_on(ranks) if ranks > 1 else [program("lmp")]
-        command = [*launch, "-in", self.script, "-log", "none", *words]
+        command = [*lammps_on(ranks, bare=True), "-in", self.script, "-log", "none", *words]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         if done.returncode:
             raise UserError(f"LAMMPS failed: {(done.stdout + done.stderr).strip()[-300:]}")

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sphcloth.programs import lammps_on, program
+from sphcloth.programs import lammps_on
 from sphcloth.stress.case import Case, Outcome
 from sphcloth.stress.processes import run_to_end
 
@@ -73,7 +73,6 @@ def run_script(script: Path, folder: Path, settings: Mapping[str, object], ranks
     folder.mkdir(parents=True)
     shutil.copy(script, folder)
     words = [word for name, value in settings.items() for word in ("-var", name, str(value))]
-    launch = lammps_on(ranks) if ranks > 1 else [program("lmp")]
-    command = [*launch, "-in", script.name, *words]
+    command = [*lammps_on(ranks, bare=True), "-in", script.name, *words]
     code, text = run_to_end(command, folder, PATIENCE)
     return Outcome(folder, settings, code, text)

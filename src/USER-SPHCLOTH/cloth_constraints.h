@@ -38,6 +38,14 @@ class ClothConstraints : protected Pointers {
   int n_channels() const { return channel_of_hinge_colour(hinges.colours); }
   void collect(VertexHalo &);
 
+  // before a step dt: stiffnesses are those of the springs that they are in a step `reference`
+  void keep_springs(double reference, double dt)
+  {
+    const double ratio = (reference / dt) * (reference / dt);
+    distance.keep_springs(ratio);
+    bending.keep_springs(ratio);
+  }
+
   static constexpr int ALL = 0;
   int channel_of_edge_colour(int c) const { return 1 + c; }
   int channel_of_hinge_colour(int c) const { return 1 + edges.colours * edges.layers + c; }

@@ -10,7 +10,6 @@
 #include "atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
-#include "dihedral_pbd.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
@@ -45,10 +44,10 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
-    iterations(10), there_and_back(false), from_start(true), tolerance(0.0), pinbit(0),
-    pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr), hold(nullptr),
-    lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp), holding{}, sweeps(0),
-    remembered(true), last_residual(0.0), last_energy(0.0), started(false)
+    iterations(10), there_and_back(false), from_start(true), tolerance(0.0), step_given(0.0),
+    step_of_k(0.0), pinbit(0), pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr),
+    hold(nullptr), lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp),
+    holding{}, sweeps(0), remembered(true), last_residual(0.0), last_energy(0.0), started(false)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -98,6 +97,8 @@ void FixPBDCloth::read_options(ArgReader &args)
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
       tolerance = args.positive(keyword);
+    else if (keyword == "reference")
+      step_given = args.positive(keyword);
     else if (keyword == "pin")
       pinbit = read_held(args, keyword);
     else if (keyword == "velocity")
@@ -111,7 +112,8 @@ void FixPBDCloth::read_options(ArgReader &args)
     else
       args.unknown(
           keyword,
-          "iterations, solver, order, direction, tolerance, pin, velocity, attach, damping, rest");
+          "iterations, solver, order, direction, tolerance, reference, pin, velocity, attach, damping, "
+          "rest");
   }
   if (pin_motion && !pinbit)
     error->all(FLERR, "{}: velocity is that of pins: name their group with 'pin'", label);
@@ -211,7 +213,7 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
-  warn_of_hinges();
+  step_of_k = step_of_stiffness();
   constraints.measure_rest(groupbit, rest_x);
   constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
 }
@@ -248,22 +250,15 @@ void FixPBDCloth::check_styles()
                force->bond_style ? force->bond_style : "none");
 }
 
-// A stiffness acts once in each substep: that of bending jumps with steps in powers of two.
+// A stiffness that acts once in each step is that of a spring as one over the square of the step.  Where
+// steps go to and fro between powers of two that would feed the motion.
 
-void FixPBDCloth::warn_of_hinges() const
+double FixPBDCloth::step_of_stiffness() const
 {
+  if (step_given > 0.0) return step_given;
   const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
-  const auto *hinges =
-      dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
-  if (!adaptive || adaptive->scheme() != SteppingScheme::BLOCK || !hinges) return;
-  if (solver != Solver::SUBSTEPS || comm->me) return;
-  for (int t = 1; t <= atom->ndihedraltypes; t++)
-    if (hinges->owns(t) && !hinges->material(t).compliant && hinges->material(t).k > 0.0)
-      return error->warning(
-          FLERR,
-          "{}: hinges of type {} have k {}, which block steps and substeps may "
-          "feed until the sheet tears: give them a compliance, or use 'solver gs'",
-          label, t, hinges->material(t).k);
+  const bool by_powers = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
+  return by_powers ? adaptive->longest_step() : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -326,6 +321,7 @@ void FixPBDCloth::post_integrate()
   load();
   if (hold) start_pulls();
   begin_guests();
+  if (step_of_k > 0.0) constraints.keep_springs(step_of_k, update->dt);
   for (int n = 0; n < substeps(); n++) substep(n);
   if (hold) let_bodies_feel();
   store();

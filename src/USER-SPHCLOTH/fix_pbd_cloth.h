@@ -94,6 +94,8 @@ class FixPBDCloth : public Fix, public ContactMesh {
   bool there_and_back;    // a sweep goes through the constraints and back
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
+  double step_given;    // for which k holds, by the user; 0: not given
+  double step_of_k;    // for which k holds, 0: it holds for every step
   int pinbit;    // 0: nothing is pinned
   PinMotion pin_motion;
   int attachbit;    // vertices that another fix integrates, with the pull of the cloth on them
@@ -126,7 +128,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   bool is_held(int atom) const;
   bool is_pinned(int atom) const;
   void check_styles();
-  void warn_of_hinges() const;
+  double step_of_stiffness() const;
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
   void move_pins();
   void load();

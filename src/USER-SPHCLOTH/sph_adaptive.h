@@ -21,6 +21,7 @@ class SPHAdaptive : public Verlet {
   void run(int) override;
 
   SteppingScheme scheme() const { return stepping; }
+  double longest_step() const;
 
  private:
   SteppingScheme stepping;

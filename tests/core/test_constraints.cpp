@@ -332,6 +332,29 @@ CASE("where in a group a constraint stands does not matter, and groups are fille
   CHECK(way[14].x == 0.0 && way[14].y == 0.0 && way[14].z == 0.0);
 }
 
+CASE("springs that are kept: as a compliance in a step of any length, and k itself comes back")
+{
+  const std::array<Vec3, 2> x{random_vec(), random_vec()};
+  const double k = 0.3, weight = 2.5, rest = 0.1;
+  Alone<2> kept(x, {0.5, 2.0}, {rest, k, 0.0, FREE});
+  for (double ratio : {16.0, 1.0, 0.25}) {
+    // one projection by k/(k + (1 - k) ratio) is one with a = W (1 - k)/k ratio
+    Alone<2> one = kept,
+             compliant(x, {0.5, 2.0}, {rest, 1.0, weight * (1.0 - k) / k * ratio, FREE});
+    one.c.keep_springs(ratio);
+    one.sweep();
+    compliant.sweep();
+    CHECK_NEAR((place(one.p[0]) - place(compliant.p[0])).norm(), 0.0, 1e-15);
+  }
+  kept.c.keep_springs(7.0);
+  CHECK(kept.c.k[0] < k);
+  kept.c.keep_springs(1.0);
+  CHECK(kept.c.k[0] == k);
+  Alone<2> rigid(x, {0.5, 2.0}, {rest, 1.0, 0.0, FREE});
+  rigid.c.keep_springs(100.0);
+  CHECK(rigid.c.k[0] == 1.0);
+}
+
 CASE("edge damping: takes stretching motion, keeps momentum and rigid motion")
 {
   Alone<2> edge({random_vec(), random_vec()}, {0.5, 2.0}, {1.0, 1.0, 0.0, FREE});

@@ -229,6 +229,20 @@ def test_k_of_one_edge_does_not_depend_on_the_iterations(iterations, order):
     assert stretch == pytest.approx(0.7 * 9.81e-4, rel=1e-9)
 
 
+@pytest.mark.parametrize("fix", [PAPER, "solver substeps direction current"])
+def test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step(fix):
+    """What hangs is stretched by (1 - k')/k' g h^2 in one sweep, h being the (sub)step there."""
+    iterations, step = (1, 0.01) if fix == PAPER else (4, 0.04)
+    k = -np.expm1(np.log1p(-0.3) / iterations)
+    expected = 9.81 * (step / iterations) ** 2 * (1 - k) / k
+    for cut in (1, 4, 0.5):
+        run_it = f"timestep {step / cut}\nrun {int(2000 * cut)}"
+        lmp = one_edge(0.3, iterations, run_it, fix=f"{fix} reference {step}")
+        assert -1.0 - by_id(lmp, "x")[1, 2] == pytest.approx(expected, rel=1e-6)
+        without = one_edge(0.3, iterations, run_it, fix=fix)
+        assert -1.0 - by_id(without, "x")[1, 2] == pytest.approx(expected / cut**2, rel=1e-6)
+
+
 def test_pin_force_carries_what_hangs():
     lmp = one_edge(1.0, 5, "timestep 0.001\nrun 300")
     assert by_id(lmp, "x")[1, 2] == pytest.approx(-1.0, abs=1e-12)

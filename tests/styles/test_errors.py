@@ -150,6 +150,7 @@ CASES = [
         SHEET + "fix s cloth pbd/cloth order symmetric solver jacobi",
         r"order is 'symmetric'.*have no order",
     ),
+    case("cloth: reference", SHEET + "fix s cloth pbd/cloth reference 0", r"reference is '0'.*> 0"),
     case("cloth: damping", SHEET + "fix s cloth pbd/cloth damping -1", r"damping rate is '-1'"),
     case(
         "cloth: no pin group", SHEET + "fix s cloth pbd/cloth pin who", r"pin group is 'who'.*group"

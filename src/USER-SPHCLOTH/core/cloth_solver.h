@@ -36,7 +36,8 @@ template <std::size_t N> class Constraints {
     begin.reserve(colours + 1);
     for (auto &s : slot) s.clear();
     in_full.clear();
-    for (auto *list : {&rest, &k, &compliance, &most, &lambda}) list->clear();
+    for (auto *list : {&rest, &k, &compliance, &most, &lambda, &given}) list->clear();
+    acting = 1.0;
   }
   // one after the other, colour by colour
   // share: what one sweep may do of it
@@ -58,12 +59,24 @@ template <std::size_t N> class Constraints {
     begin.push_back(size());
   }
 
+  // The springs that the constraints are where they do what k says, in steps whose square is one over
+  // `ratio` of that there: see the share of a spring in constraints.h.
+  void keep_springs(double ratio)
+  {
+    if (ratio == acting) return;
+    if (given.empty()) given = k;
+    acting = ratio;
+    for (int m = 0; m < size(); m++)
+      if (!in_full[m]) k[m] = share_of_spring(given[m], ratio);
+  }
+
   int size() const { return static_cast<int>(rest.size()); }
   int colours() const { return static_cast<int>(begin.size()) - 1; }
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
-    return static_cast<double>(rest.capacity()) * (5 * sizeof(double) + N * sizeof(int));
+    return static_cast<double>(rest.capacity()) * (5 * sizeof(double) + N * sizeof(int)) +
+        static_cast<double>(given.capacity()) * sizeof(double);
   }
 
   std::vector<int> begin{0};    // of each colour, and the end
@@ -73,6 +86,8 @@ template <std::size_t N> class Constraints {
 
  private:
   int idle = 0;
+  AlignedVector<double> given;    // k where its ratio is 1, unless it always is
+  double acting = 1.0;
 };
 
 // What a sweep works on.  Vertices of constraints are indices into these.  Vertices move from where they

@@ -29,6 +29,15 @@ using Vec3 = Eigen::Vector3d;
 
 inline double stiffness_per_iteration(double k, int n) { return -std::expm1(std::log1p(-k) / n); }
 
+// A constraint of which a step takes back the share k is a spring: by (8) with a compliance,
+// k = W/(W + a), a = compliance/dt^2, so that k/(1 - k) is as the square of the step.  The share of the
+// same spring where the square of the step is one over `ratio` of that for which k holds:
+
+SPHCLOTH_INLINE double share_of_spring(double k, double ratio)
+{
+  return k / (k + (1.0 - k) * ratio);
+}
+
 // What one constraint of a mesh is made of.  The multiplier never exceeds `most`: infinity, or 0 for
 // a constraint that only pulls.
 

@@ -3,7 +3,6 @@
 #include "atom.h"
 #include "atom_tools.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -40,7 +39,8 @@ Eigen::Vector3d LAMMPS_NS::at_most(const Eigen::Vector3d &v, double most)
 ContactSurface::ContactSurface(LAMMPS *lmp_, ContactMesh *mesh_, Fix *contact, int meets_,
                                const ContactRules *rules_, ContactCounts *counts_) :
     TriangleSet(lmp_, mesh_, contact, fmt::format("fix {} cloth/contact", contact->id)),
-    meets(meets_), rules(rules_), counts(counts_), last_places(nullptr), substep_dt(0.0)
+    meets(meets_), rules(rules_), counts(counts_), last_places(nullptr), substep_dt(0.0),
+    remaining(0.0)
 {
 }
 
@@ -83,10 +83,7 @@ bool ContactSurface::may_move(int i) const
 Sweep ContactSurface::sweep_of(int i) const
 {
   const double *x = atom->x[i], *last = last_places[i];
-  double way[3] = {x[0] - last[0], x[1] - last[1], x[2] - last[2]};
-  domain->minimum_image(FLERR, way);
-  const Vec3 at(x[0], x[1], x[2]);
-  return {at - Vec3(way[0], way[1], way[2]), at};
+  return {Vec3(last[0], last[1], last[2]), Vec3(x[0], x[1], x[2])};
 }
 
 std::array<Sweep, 3> ContactSurface::sweep_of_triangle(int t) const
@@ -240,8 +237,9 @@ bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, 
     start[s] = Vec3(from_here[s].x, from_here[s].y, from_here[s].z);
     end[s] = Vec3(to_here[s].x, to_here[s].y, to_here[s].z);
   }
-  halo.forward(0, start.data(), true);
-  halo.forward(0, end.data(), true);
+  remaining = dt;
+  halo.forward_places(0, start.data(), remaining);
+  halo.forward_places(0, end.data());
   bound();
   meet();
   int mine = !pairs.empty(), any = 0;
@@ -273,7 +271,7 @@ template <class Part> void ContactSurface::share_out(Part part)
   for (const Pair &pair : pairs)
     for (int q = 0; q < 3; q++) shares[triangles[pair.triangle][q]][0] += part(pair, q);
   halo.reverse_add(0, shares.data());
-  halo.forward(0, shares.data(), false);
+  halo.forward(0, shares.data());
 }
 
 // masses split evenly over all pairs
@@ -363,6 +361,8 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   const Clock clock(counts->seconds);
   substep_dt = dt;
   substep_start = vertices;
+  const double before = remaining;
+  remaining -= dt;
   for (Particle &p : particles) {
     p.from = p.end;
     p.way = dt * p.velocity;
@@ -382,7 +382,7 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   from.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++)
     from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
-  halo.forward(0, from.data(), true);
+  halo.forward_places(0, from.data(), before);
 }
 
 void ContactSurface::project(Vertex *way)
@@ -392,7 +392,7 @@ void ContactSurface::project(Vertex *way)
     const Vertex &from_here = substep_start[s];
     end[s] = Vec3(from_here.x + way[s].x, from_here.y + way[s].y, from_here.z + way[s].z);
   }
-  halo.forward(0, end.data(), true);
+  halo.forward_places(0, end.data(), remaining);
   change.assign(halo.n_slots(), Vec3::Zero());
   for (Particle &particle : particles) particle.change.setZero();
 
@@ -532,7 +532,7 @@ void ContactSurface::load_velocities(const Vertex *v)
 {
   now.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++) now[s] = Vec3(v[s].x, v[s].y, v[s].z);
-  halo.forward(0, now.data(), false);
+  halo.forward_velocities(0, now.data());
 }
 
 void ContactSurface::end_step()
@@ -576,8 +576,8 @@ void ContactSurface::load_sweeps()
     start[s] = sweep.start;
     end[s] = sweep.end;
   }
-  halo.forward(0, start.data(), true);
-  halo.forward(0, end.data(), true);
+  halo.forward_places(0, start.data(), update->dt);
+  halo.forward_places(0, end.data());
 }
 
 // The particle that is deepest below its gap in each pass is put back to it, alone.  One that was too
@@ -702,7 +702,7 @@ void ContactSurface::stop_approach()
     const double *v = atom->v[halo.atom_of(s)];
     now[s] = Vec3(v[0], v[1], v[2]);
   }
-  halo.forward(0, now.data(), false);
+  halo.forward_velocities(0, now.data());
   change.assign(halo.n_slots(), Vec3::Zero());
   for (Particle &p : particles) {
     const double *v = atom->v[p.atom];

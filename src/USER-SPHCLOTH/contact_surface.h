@@ -173,7 +173,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   const ContactRules *rules;
   ContactCounts *counts;
   double **last_places;
-  double substep_dt;
+  double substep_dt, remaining;    // of the step, behind this substep
   std::vector<Vec3> start, end, change;    // by slot: of the step so far, and of one pass
   const sphcloth::Vertex *substep_start = nullptr;    // by owned slot
   std::vector<Vec3> from;    // the same by slot, with friction

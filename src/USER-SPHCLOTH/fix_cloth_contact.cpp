@@ -215,6 +215,7 @@ void FixClothContact::warn_of_too_near()
 
 void FixClothContact::post_neighbor()
 {
+  follow_into_box();
   const double far = std::max(rules.thickness, walls ? walls->reach() : 0.0);
   for_all_surfaces([this, far](ContactSurface &surface) {
     linking = &surface;
@@ -271,11 +272,9 @@ void FixClothContact::show_way()
 
 void FixClothContact::show_way_of(int i)
 {
-  double *v = atom->v[i], way[3];
-  for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - places[i][d];
-  domain->minimum_image(FLERR, way);
+  double *v = atom->v[i];
   for (int d = 0; d < 3; d++) {
-    const double more = v[d] - way[d] / update->dt;
+    const double more = v[d] - (atom->x[i][d] - places[i][d]) / update->dt;
     beyond[i][d] += more;
     v[d] -= more;
   }
@@ -307,6 +306,18 @@ int FixClothContact::side_of(int i) const
     for (int sign : {1, -1})
       if (side[i] & sphcloth::side_of_sheet(sheet, sign > 0)) return sign;
   return 0;
+}
+
+// LAMMPS has put atoms back into the box.  It may be another box by the end of the next step.
+
+void FixClothContact::follow_into_box()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    double way[3];
+    for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - places[i][d];
+    domain->minimum_image(FLERR, way);
+    for (int d = 0; d < 3; d++) places[i][d] = atom->x[i][d] - way[d];
+  }
 }
 
 void FixClothContact::keep_places()

@@ -80,6 +80,7 @@ class FixClothContact : public Fix {
   int vertex_bits;    // groups of the cloths
 
   void keep_places();
+  void follow_into_box();
   void show_way();
   void show_way_of(int);
   void warn_of_too_near();

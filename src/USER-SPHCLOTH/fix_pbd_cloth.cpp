@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_sph_integrate.h"
 #include "force.h"
 #include "group.h"
 #include "memory.h"
@@ -257,8 +258,10 @@ double FixPBDCloth::step_of_stiffness() const
 {
   if (step_given > 0.0) return step_given;
   const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
-  const bool by_powers = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
-  return by_powers ? adaptive->longest_step() : 0.0;
+  if (!adaptive || adaptive->scheme() != SteppingScheme::BLOCK) return 0.0;
+  // other commands than run set up fixes without a run style that looks for what it needs
+  const auto steppers = modify->get_fix_by_style("^sph/integrate$");
+  return steppers.empty() ? 0.0 : dynamic_cast<FixSPHIntegrate *>(steppers[0])->longest_step();
 }
 
 /* ----------------------------------------------------------------------
@@ -369,7 +372,7 @@ void FixPBDCloth::load()
     v[s] = {u[0], u[1], u[2], p[s].w};
   }
   for (int s : attached) load_attached(s);
-  halo.forward(ALL, start.data(), true);
+  halo.forward_places(ALL, start.data(), update->dt);
 }
 
 // An attached vertex starts where the solver left it and goes with its body, but for the part of
@@ -389,9 +392,11 @@ Vertex FixPBDCloth::velocity_of_attached(int s) const
   return {u[0] + by * gap[0], u[1] + by * gap[1], u[2] + by * gap[2], p[s].w};
 }
 
+double FixPBDCloth::substep_dt() const { return update->dt / substeps(); }
+
 void FixPBDCloth::substep(int n)
 {
-  const double dt = update->dt / substeps();
+  const double dt = substep_dt();
   // from velocities at the time of the positions to those of half a step later
   const double dtf = (from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v;
   if (damping > 0.0) damp();    // before the forces: weight is not damped
@@ -408,7 +413,7 @@ void FixPBDCloth::substep(int n)
     const double *x = atom->x[halo.atom_of(s)];    // without rounding
     way[s] = {x[0] - start[s].x, x[1] - start[s].y, x[2] - start[s].z, 0.0};
   }
-  halo.forward(ALL, way.data(), false);
+  halo.forward_ways(ALL, way.data(), substep_dt());
   for (ClothGuest *guest : present) guest->begin_substep(start.data(), v.data(), dt);
 
   project_all(dt);
@@ -443,11 +448,11 @@ void FixPBDCloth::go()
 
 void FixPBDCloth::damp()
 {
-  const double share = -std::expm1(-damping * update->dt / substeps());
-  halo.forward(ALL, v.data(), false);
+  const double share = -std::expm1(-damping * substep_dt());
+  halo.forward_velocities(ALL, v.data());
   for (int c = 0; c < constraints.edge_colours(); c++) {
     sphcloth::damp(constraints.distance, c, start.data(), v.data(), share);
-    halo.forward(constraints.channel_of_edge_colour(c), v.data(), false);
+    halo.forward_velocities(constraints.channel_of_edge_colour(c), v.data());
   }
 }
 
@@ -462,7 +467,7 @@ void FixPBDCloth::project_all(double dt)
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
     for (ClothGuest *guest : present) {
       guest->project(way.data());
-      halo.forward(ALL, way.data(), false);
+      halo.forward_ways(ALL, way.data(), substep_dt());
     }
     sweeps++;
     if (tolerance == 0.0) continue;
@@ -488,10 +493,10 @@ void FixPBDCloth::project_colour(int c, const ClothState &state)
   const int hinge = c - constraints.distance.colours();
   if (hinge < 0) {
     project(constraints.distance, c, state);
-    halo.forward(constraints.channel_of_edge_colour(c), way.data(), false);
+    halo.forward_ways(constraints.channel_of_edge_colour(c), way.data(), substep_dt());
   } else {
     project(constraints.bending, hinge, state);
-    halo.forward(constraints.channel_of_hinge_colour(hinge), way.data(), false);
+    halo.forward_ways(constraints.channel_of_hinge_colour(hinge), way.data(), substep_dt());
   }
 }
 
@@ -505,7 +510,7 @@ void FixPBDCloth::jacobi(const ClothState &state)
     way[s].z += change[s].z;
   }
   std::fill(change.begin(), change.end(), Vertex());
-  halo.forward(ALL, way.data(), false);
+  halo.forward_ways(ALL, way.data(), substep_dt());
 }
 
 // What the free vertices gained beyond the external forces came from those that are held.
@@ -592,7 +597,7 @@ void FixPBDCloth::start_pulls()
 
 template <std::size_t N> void FixPBDCloth::add_pull_on_pins(const Constraints<N> &c)
 {
-  const double dt = update->dt / substeps();
+  const double dt = substep_dt();
   const double by = 1.0 / (dt * dt * force->ftm2v * substeps());
   for_each_held(c, p.data(), from_start ? start.data() : nullptr, [&](int s, const Vec3 &gradient) {
     if (!halo.is_ghost(s))
@@ -665,7 +670,7 @@ void FixPBDCloth::remember()
 
 double FixPBDCloth::residual() const
 {
-  const double dt = update->dt / substeps(), inv_dt_sq = 1.0 / (dt * dt);
+  const double dt = substep_dt(), inv_dt_sq = 1.0 / (dt * dt);
   return std::max(
       sphcloth::residual(constraints.distance, p.data(), inv_dt_sq, constraints.mean_length()),
       sphcloth::residual(constraints.bending, p.data(), inv_dt_sq));

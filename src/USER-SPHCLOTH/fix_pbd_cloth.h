@@ -130,6 +130,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void check_styles();
   double step_of_stiffness() const;
   int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
+  double substep_dt() const;
   void move_pins();
   void load();
   void load_attached(int slot);

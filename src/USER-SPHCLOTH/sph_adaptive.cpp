@@ -49,8 +49,6 @@ void SPHAdaptive::init()
   Verlet::init();
 }
 
-double SPHAdaptive::longest_step() const { return particles->longest_step(); }
-
 void SPHAdaptive::run(int n)
 {
   for (int i = 0; i < n; i++) {

@@ -21,7 +21,6 @@ class SPHAdaptive : public Verlet {
   void run(int) override;
 
   SteppingScheme scheme() const { return stepping; }
-  double longest_step() const;
 
  private:
   SteppingScheme stepping;

@@ -92,11 +92,19 @@ void VertexHalo::find_images()
   }
 }
 
-VertexHalo::Vec3 VertexHalo::shift(int slot) const
+// Images go with the box only where LAMMPS changes the velocity of who crosses its faces, too.
+
+VertexHalo::Vec3 VertexHalo::shift(int slot, double vectors, double rates) const
 {
   const std::array<int, 3> &n = image[slot - owned];
-  return {n[0] * domain->xprd + n[1] * domain->xy + n[2] * domain->xz,
-          n[1] * domain->yprd + n[2] * domain->yz, n[2] * domain->zprd};
+  const auto between = [&n](const double *h) {
+    return Vec3(n[0] * h[0] + n[1] * h[5] + n[2] * h[4], n[1] * h[1] + n[2] * h[3], n[2] * h[2]);
+  };
+  Vec3 sum = Vec3::Zero();
+  if (vectors != 0.0) sum += vectors * between(domain->h);
+  if (rates != 0.0 && domain->deform_vremap && atom->mask[atoms[slot]] & domain->deform_groupbit)
+    sum += rates * between(domain->h_rate);
+  return sum;
 }
 
 void VertexHalo::exchange_requests()
@@ -171,21 +179,22 @@ static void put(sphcloth::Vertex &data, const Eigen::Vector3d &value)
   data.z = value[2];
 }
 
-void VertexHalo::forward(int channel, Vec3 *data, bool positions)
+void VertexHalo::add_to_images(int channel, Vec3 *data, double vectors, double rates)
 {
-  forward_all(channel, data, positions);
+  forward_all(channel, data, vectors, rates);
 }
 
-void VertexHalo::forward(int channel, sphcloth::Vertex *data, bool positions)
+void VertexHalo::add_to_images(int channel, sphcloth::Vertex *data, double vectors, double rates)
 {
-  forward_all(channel, data, positions);
+  forward_all(channel, data, vectors, rates);
 }
 
-template <class Data> void VertexHalo::forward_all(int channel, Data *data, bool positions)
+template <class Data>
+void VertexHalo::forward_all(int channel, Data *data, double vectors, double rates)
 {
   Channel &c = channels[channel];
   const auto store = [&](int ghost, const Vec3 &value) {
-    put(data[ghost], positions ? Vec3(value + shift(ghost)) : value);
+    put(data[ghost], Vec3(value + shift(ghost, vectors, rates)));
   };
   transfer(c, false, data, store);
   for (std::size_t k = 0; k < c.self_to.size(); k++)
@@ -196,7 +205,7 @@ void VertexHalo::forward(int channel, std::vector<double> &data)
 {
   scalars.resize(n_slots());
   for (int s = 0; s < n_slots(); s++) scalars[s][0] = data[s];
-  forward(channel, scalars.data(), false);
+  forward(channel, scalars.data());
   for (int s = owned; s < n_slots(); s++) data[s] = scalars[s][0];
 }
 

@@ -45,10 +45,23 @@ class VertexHalo : protected Pointers {
   int atom_of(int slot) const { return atoms[slot]; }
   bool is_ghost(int slot) const { return slot >= owned; }
 
-  // owners to ghosts; positions get the box vectors between owner and image
-  void forward(int channel, Vec3 *data, bool positions);
-  void forward(int channel, sphcloth::Vertex *data, bool positions);    // x, y and z
+  // Owners to ghosts: what is the same for all images, and what is not.  Places get the box vectors
+  // between owner and image, as they were `ago`; ways in a time get how far these moved, velocities how
+  // fast they do.
+  void forward(int channel, Vec3 *data) { add_to_images(channel, data, 0.0, 0.0); }
   void forward(int channel, std::vector<double> &data);
+  template <class Data> void forward_places(int channel, Data *data, double ago = 0.0)
+  {
+    add_to_images(channel, data, 1.0, -ago);
+  }
+  template <class Data> void forward_ways(int channel, Data *data, double dt)
+  {
+    add_to_images(channel, data, 0.0, dt);
+  }
+  template <class Data> void forward_velocities(int channel, Data *data)
+  {
+    add_to_images(channel, data, 0.0, 1.0);
+  }
   // sums of ghosts to owners; the ghosts' own entries stay
   void reverse_add(int channel, Vec3 *data);
 
@@ -76,10 +89,13 @@ class VertexHalo : protected Pointers {
 
   void find_images();
   void exchange_requests();
-  Vec3 shift(int slot) const;
+  Vec3 shift(int slot, double vectors, double rates) const;
   std::vector<Message> &receivers(Channel &c, bool reverse) { return reverse ? c.to : c.from; }
   std::vector<Message> &senders(Channel &c, bool reverse) { return reverse ? c.from : c.to; }
-  template <class Data> void forward_all(int channel, Data *, bool positions);
+  // box vectors, and their rates of change, times these; of vertices x, y and z
+  void add_to_images(int channel, Vec3 *, double vectors, double rates);
+  void add_to_images(int channel, sphcloth::Vertex *, double vectors, double rates);
+  template <class Data> void forward_all(int channel, Data *, double vectors, double rates);
   template <class Data, class Store> void transfer(Channel &, bool reverse, const Data *, Store);
 };
 

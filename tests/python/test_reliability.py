@@ -37,6 +37,11 @@ def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path)
     assert not failed.passed and failed.complaint
 
 
+def test_contact_at_a_face_that_moves_does_not_depend_on_when_lists_are_renewed(tmp_path):
+    scene = Scene("deforming", "constant", tmp_path)
+    assert scene.way(Way("lists at each step", 2, {"check": "no"})).place < 1e-9 * SPACING
+
+
 @pytest.mark.parametrize(("place", "complaint"), [(1e-20, ""), (0.0, "no end"), (None, "")])
 def test_a_restart_is_the_same_to_the_last_bit_or_fails(place, complaint):
     assert not Found("periodic", "block", "restart", 1, True, place, 0.0, complaint).passed

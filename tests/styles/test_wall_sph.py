@@ -184,6 +184,40 @@ def test_an_inactive_particle_is_left_alone():
     assert by_id(lmp, "rho")[0] == before
 
 
+@pytest.mark.parametrize("walls", ["xlo 0", "xlo 0 ylo 0", "xlo 0 ylo 0 zlo 0"])
+def test_what_several_walls_fill_is_counted_once(walls):
+    """A lattice half a spacing from its walls is too dense, but not because of the corner."""
+    spacing, n = H / 2, len(walls.split()) // 2
+    norm, shape, *_ = KERNELS["wendland/c2"]
+    lattice = np.stack(np.meshgrid(*[spacing * np.arange(-2, 3)] * 3), -1).reshape(-1, 3)
+    at = norm[3] / H**3 * shape(np.minimum(1, np.linalg.norm(lattice, axis=1) / H))
+    seen = at[(lattice[:, :n] >= 0).all(axis=1)].sum() / at.sum()
+    lmp = particle(
+        "0.525 0.525 0.525",
+        walls,
+        mass=RHO0 / at.sum(),
+        more=f"""
+        lattice sc {spacing} origin 0.5 0.5 0.5
+        region water block 0 0.3 0 0.3 0 0.3 units box
+        create_atoms 1 region water
+        set atom 1 x 0.9 y 0.9 z 0.9
+        run 0""",
+    )
+    where = [0.025 if d < n else 0.125 for d in range(3)]
+    here = np.linalg.norm(by_id(lmp, "x") - where, axis=1).argmin()
+    joint = 1 - (1 - half_space("wendland/c2", 3, spacing / 2)[0]) ** n
+    assert by_id(lmp, "rho")[here] == pytest.approx(RHO0 * (seen + joint), rel=1e-6)
+    # the integral of the kernel over what is behind the planes
+    m = 160
+    cells = [
+        np.linspace(-0.25 if d < n else -1, 1, m, endpoint=False) + (1.25 if d < n else 2) / m / 2
+        for d in range(3)
+    ]
+    q = np.sqrt(sum(c**2 for c in np.meshgrid(*cells, indexing="ij", sparse=True)))
+    inside = norm[3] * shape(np.minimum(1, q)).sum() * 1.25**n * 2 ** (3 - n) / m**3
+    assert -1e-4 < 1 - inside - joint < 3.2e-3
+
+
 # ---------------------------------------------------------------------- moving walls
 
 

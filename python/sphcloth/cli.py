@@ -410,7 +410,10 @@ def render(
 @app.command(epilog=BENCH_EXAMPLES)
 def bench(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="What to measure: pair, cloth, coupling, watch.")
+        str,
+        typer.Argument(
+            metavar="NAME", help="What to measure: pair, cloth, coupling, watch, messages."
+        ),
     ],
     rounds: Annotated[int, typer.Option(min=1, help="How often everything is measured.")] = 5,
     across: Annotated[
@@ -418,14 +421,13 @@ def bench(
         typer.Option(
             min=8,
             max=400,
-            help="Particles along an edge of the water (pair, coupling, watch), vertices along a "
-            "side (cloth).",
-            show_default="48, 160, 40 or 20",
+            help="Particles along an edge of the water, vertices along a side (cloth).",
+            show_default="48, 160, 40, 20 or 24",
         ),
     ] = None,
     steps: Annotated[
         int | None,
-        typer.Option(min=5, help="Length of a timed run.", show_default="30, 40 or 60"),
+        typer.Option(min=5, help="Length of a timed run.", show_default="20 to 60"),
     ] = None,
     json_file: JsonFile = None,
 ) -> None:
@@ -434,6 +436,7 @@ def bench(
 
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
+    from sphcloth.bench.messages import bench_messages
     from sphcloth.bench.pair import bench_pair
     from sphcloth.bench.watch import bench_watch
 
@@ -442,6 +445,7 @@ def bench(
         "cloth": (bench_cloth, 160, 40),
         "coupling": (bench_coupling, 40, 60),
         "watch": (bench_watch, 20, 60),
+        "messages": (bench_messages, 24, 20),
     }
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")

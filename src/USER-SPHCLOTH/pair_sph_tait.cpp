@@ -20,6 +20,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -128,13 +129,8 @@ void PairSPHTait::init_style()
   // lists outlive init(): 'run pre no' goes on with them
   if (!fluid) fluid = Fluid::create(options.kernel, options.precision);
   set_model();
-  measure_volume = extrapolate = false;
   moved.assign(atom->ntypes + 1, 0);
   moved_here = moved;
-  for (int i = 1; i <= atom->ntypes; i++) {
-    if (materials.is_boundary(i) && materials.type(i).volume == 0.0) measure_volume = true;
-    if (materials.extrapolates(i)) extrapolate = true;
-  }
 }
 
 void PairSPHTait::find_walls()
@@ -408,6 +404,11 @@ void PairSPHTait::new_lists()
   fluid->list(p, reach.data());
 }
 
+bool PairSPHTait::is_measured(int t) const
+{
+  return materials.is_boundary(t) && !(materials.type(t).volume > 0.0);
+}
+
 // Volumes of boundary particles that share space among themselves follow their motion, as long as
 // there is fluid to feel them.
 
@@ -426,7 +427,7 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
   }
   bool measured = false;
   for (int t = 1; t < n; t++) {
-    if (!materials.is_boundary(t) || materials.type(t).volume > 0.0 || !moved[t]) continue;
+    if (!is_measured(t) || !moved[t]) continue;
     fluid->volumes(p, t, amount.data());
     measured = true;
   }
@@ -434,10 +435,17 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
   stage = Stage::AMOUNT;
   comm->forward_comm(this, 1);
   if (!new_neighbours) return;
-  int fluid_here = 0, fluid_anywhere = 0;
-  for (int i = 0; i < p.n_owned && !fluid_here; i++) fluid_here = materials.is_fluid(p.type[i]);
-  MPI_Allreduce(&fluid_here, &fluid_anywhere, 1, MPI_INT, MPI_MAX, world);
-  any_fluid = fluid_anywhere;
+  std::array<int, 3> here{0, 0, 0}, anywhere{0, 0, 0};
+  for (int i = 0; i < p.n_owned; i++) {
+    const int t = p.type[i];
+    if (materials.is_fluid(t)) here[0] = 1;
+    if (materials.extrapolates(t)) here[1] = 1;
+    if (is_measured(t)) here[2] = 1;
+  }
+  MPI_Allreduce(here.data(), anywhere.data(), 3, MPI_INT, MPI_MAX, world);
+  any_fluid = anywhere[0];
+  extrapolate = anywhere[1];
+  measure_volume = anywhere[2];
 
   // a mass that all particles of a type share leaves the sums
   std::vector<double> &mass = fluid->model.mass;

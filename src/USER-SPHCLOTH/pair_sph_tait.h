@@ -167,8 +167,9 @@ class PairSPHTait : public Pair {
   FixClothContact *sheets;    // that part the fluid; null without
   BlockSteps *blocks;
   bool is_evaluated;
-  bool measure_volume, extrapolate;    // any boundary whose volume, or pressure, the fluid gives
-  bool any_fluid;    // on any rank, at the last list build
+  // on any rank, at the last list build: boundary particles whose volume is measured, those whose
+  // pressure is the fluid's, fluid
+  bool measure_volume, extrapolate, any_fluid;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
 
@@ -196,6 +197,7 @@ class PairSPHTait : public Pair {
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;
   void new_lists();
+  bool is_measured(int type) const;
   void measure_amounts(const sphcloth::Particles &, bool);
   void select(const sphcloth::Particles &);
   void densities(const sphcloth::Particles &);

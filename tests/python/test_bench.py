@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from sphcloth.bench.coupling import bench_coupling
+from sphcloth.bench.messages import Cluster, Counter, Sent, expect
 from sphcloth.bench.timing import Spread, read_timing
 from sphcloth.bench.watch import bench_watch
 from sphcloth.errors import UserError
@@ -109,3 +110,33 @@ def test_a_look_from_end_to_end() -> None:
     assert set(result["look"]) == {"finite", "all"}
     assert -0.9 < result["look"]["all"]["value"] < 10
     assert "every 20 steps" in said.getvalue()
+
+
+def test_what_ranks_send_is_counted(tmp_path: Path) -> None:
+    """Forward and back through six faces, of which two lie between two ranks: 11 numbers of the
+    atom style, 2 of the pair style, and 5 that come back with newton on."""
+    count = Counter(tmp_path, across=10)
+    none, _ = count(1, {"steps": 5})
+    assert none.messages == 0
+    sent = {}
+    for newton in ("on", "off"):
+        variables = {"newton": newton, "renew": 1000, "scheme": "constant"}
+        short, _ = count(2, {**variables, "steps": 5})
+        long, ghosts = count(2, {**variables, "steps": 15})
+        sent[newton] = long.less(short, 10)
+    assert sent["off"].messages == 2 * 2 and sent["on"].messages == 3 * 2
+    # those that a rank gets from itself need no message
+    of_neighbours = sent["off"].bytes / (8 * 13)
+    assert 0.3 * ghosts < of_neighbours < ghosts
+    assert sent["on"].bytes == pytest.approx(8 * 18 * of_neighbours)
+
+
+def test_what_is_expected_of_a_cluster() -> None:
+    step = Sent(messages=10, bytes=0, collectives=1, collective_bytes=8)
+    on = Cluster(latency=1e-6, bandwidth=1e9, particle=1e-7)
+    # 1000 particles in 100 us, 10 messages and a collective call among 1024 ranks in 20 us
+    assert expect(step, 100, 1000, 1024, on) == pytest.approx(100 / 120)
+    # a cube of 10 x 10 x 10 has 14.8^3 - 1000 ghosts, 100 bytes each
+    step = Sent(messages=0, bytes=100 * 50, collectives=0, collective_bytes=0)
+    ghosts = 14.8**3 - 1000
+    assert expect(step, 50, 1000, 2, on) == pytest.approx(100 / (100 + 0.1 * ghosts))

@@ -64,10 +64,11 @@ BUGS = [
     Bug("watch: kinetic energy without its half", "fix_sph_watch.cpp",
         "mine[KINETIC] += 0.5 * mass", "mine[KINETIC] += mass", WATCH),
     Bug("cloth: ghosts of a colour are old", "fix_pbd_cloth.cpp",
-        "    halo.forward(constraints.channel_of_edge_colour(c), way.data(), false);\n  } else {",
+        "    halo.forward_ways(constraints.channel_of_edge_colour(c), way.data(), substep_dt());\n"
+        "  } else {",
         "  } else {", PARALLEL),
     Bug("cloth: twice the impulse is lent", "fix_pbd_cloth.cpp",
-        "part = 0.5 * (1.0 - 1.0 / substeps())", "part = 1.0 - 1.0 / substeps()",
+        "part = 0.5 * (1.0 - 1.0 / substeps)", "part = 1.0 - 1.0 / substeps",
         f"{CLOTH}::test_springs_of_other_fixes_neither_feed_nor_damp"),
     Bug("cloth: pins pull the wrong way", "fix_pbd_cloth.cpp",
         "Vec3(-hold[i][0], -hold[i][1], -hold[i][2])", "Vec3(hold[i][0], hold[i][1], hold[i][2])",

@@ -36,6 +36,10 @@ static constexpr int GAP = 3, HOLD = 6;
 // body and what holds it within a few steps, whatever their masses; with 1 it would go on for ever.
 static constexpr double CLOSED = 0.25;
 
+// Of substeps: by how much those of a step may be longer than those of the step before, and how many times
+// as many as in the shortest step of late a step may have.
+static constexpr double LENGTHENS = 1.01, MOST_TIMES = 8.0;
+
 // impulse before the first step
 static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,7 +52,9 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     iterations(10), there_and_back(false), from_start(true), tolerance(0.0), step_given(0.0),
     step_of_k(0.0), pinbit(0), pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr),
     hold(nullptr), lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp),
-    holding{}, sweeps(0), remembered(true), last_residual(0.0), last_energy(0.0), started(false)
+    holding{}, sweeps(0), remembered(true), last_residual(0.0), last_energy(0.0), started(false),
+    steps_jump(false), step_dt(0.0), shortest_of_late(std::numeric_limits<double>::infinity()),
+    substeps(1)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -128,7 +134,7 @@ void FixPBDCloth::read_options(ArgReader &args)
   if (there_and_back && solver == Solver::JACOBI)
     args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
   if (attachbit) want_holding_forces();
-  if (substeps() > 1) {
+  if (solver == Solver::SUBSTEPS) {
     memory->create(lent, atom->nmax, 3, "pbd/cloth:lent");
     std::fill_n(lent[0], 3 * atom->nmax, NOT_YET);
   }
@@ -214,6 +220,8 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
+  const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
+  steps_jump = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
   step_of_k = step_of_stiffness();
   constraints.measure_rest(groupbit, rest_x);
   constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
@@ -257,8 +265,7 @@ void FixPBDCloth::check_styles()
 double FixPBDCloth::step_of_stiffness() const
 {
   if (step_given > 0.0) return step_given;
-  const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
-  if (!adaptive || adaptive->scheme() != SteppingScheme::BLOCK) return 0.0;
+  if (!steps_jump) return 0.0;
   // other commands than run set up fixes without a run style that looks for what it needs
   const auto steppers = modify->get_fix_by_style("^sph/integrate$");
   return steppers.empty() ? 0.0 : dynamic_cast<FixSPHIntegrate *>(steppers[0])->longest_step();
@@ -320,17 +327,33 @@ double FixPBDCloth::inverse_mass(int i) const
 void FixPBDCloth::post_integrate()
 {
   if (pin_motion) move_pins();
+  cut_step();
   if (lent) lend();
   load();
   if (hold) start_pulls();
   begin_guests();
-  if (step_of_k > 0.0) constraints.keep_springs(step_of_k, update->dt);
-  for (int n = 0; n < substeps(); n++) substep(n);
+  if (step_of_k > 0.0) constraints.keep_springs(step_of_k / usual_substeps(), substep_dt());
+  for (int n = 0; n < substeps; n++) substep(n);
   if (hold) let_bodies_feel();
   store();
   for (ClothGuest *guest : present) guest->end_step();
   remembered = false;
   started = true;
+}
+
+// What a sweep leaves of a stretch acts as a spring of the stiffness m/h^2, h the substep, and so does
+// a k below 1.  Steps that go to and fro between powers of two would feed what they stretch:
+// substeps stay as long as those of the shortest step of late.
+
+void FixPBDCloth::cut_step()
+{
+  constexpr double ROUNDING = 1e-6;
+  step_dt = update->dt;
+  substeps = usual_substeps();
+  if (solver != Solver::SUBSTEPS || !steps_jump) return;
+  shortest_of_late = std::min(LENGTHENS * shortest_of_late, step_dt);
+  shortest_of_late = std::max(shortest_of_late, step_dt / MOST_TIMES);
+  substeps *= static_cast<int>(std::ceil(step_dt / shortest_of_late - ROUNDING));
 }
 
 void FixPBDCloth::move_pins()
@@ -392,8 +415,6 @@ Vertex FixPBDCloth::velocity_of_attached(int s) const
   return {u[0] + by * gap[0], u[1] + by * gap[1], u[2] + by * gap[2], p[s].w};
 }
 
-double FixPBDCloth::substep_dt() const { return update->dt / substeps(); }
-
 void FixPBDCloth::substep(int n)
 {
   const double dt = substep_dt();
@@ -406,7 +427,7 @@ void FixPBDCloth::substep(int n)
     v[s].y += by * f[1];
     v[s].z += by * f[2];
   }
-  const bool last = n == substeps() - 1;
+  const bool last = n == substeps - 1;
   for (int s = 0; s < halo.n_owned(); s++) {
     way[s] = {dt * v[s].x, dt * v[s].y, dt * v[s].z, way[s].w};
     if (!last || way[s].w > 0.0) continue;
@@ -462,7 +483,7 @@ void FixPBDCloth::project_all(double dt)
                          solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
-  const int n = iterations / substeps();
+  const int n = solver == Solver::SUBSTEPS ? 1 : iterations;
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
     for (ClothGuest *guest : present) {
@@ -553,7 +574,7 @@ void FixPBDCloth::store()
 
 void FixPBDCloth::lend()
 {
-  const double part = 0.5 * (1.0 - 1.0 / substeps()), dtf = part * update->dt * force->ftm2v;
+  const double part = 0.5 * (1.0 - 1.0 / substeps), dtf = part * update->dt * force->ftm2v;
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     const bool first = std::isnan(lent[i][0]);
@@ -598,7 +619,7 @@ void FixPBDCloth::start_pulls()
 template <std::size_t N> void FixPBDCloth::add_pull_on_pins(const Constraints<N> &c)
 {
   const double dt = substep_dt();
-  const double by = 1.0 / (dt * dt * force->ftm2v * substeps());
+  const double by = 1.0 / (dt * dt * force->ftm2v * substeps);
   for_each_held(c, p.data(), from_start ? start.data() : nullptr, [&](int s, const Vec3 &gradient) {
     if (!halo.is_ghost(s))
       for (int d = 0; d < 3; d++) hold[halo.atom_of(s)][d] += by * gradient[d];
@@ -645,7 +666,7 @@ Eigen::Vector3d FixPBDCloth::holding_force(int i) const
 
 double FixPBDCloth::compute_vector(int n)
 {
-  if (n == 5) return substeps() * sweeps;
+  if (n == 5) return substeps * sweeps;
   if ((n == 4 || n == 6) && !remembered) remember();
   double mine = 0.0, all;
   if (n < 3) mine = holding[n];
@@ -805,13 +826,22 @@ void FixPBDCloth::unpack_restart(int i, int nth)
 int FixPBDCloth::size_restart(int) { return maxsize_restart(); }
 int FixPBDCloth::maxsize_restart() { return 4 + (hold ? HOLD : 0) + (lent ? 3 : 0); }
 
+struct Kept {    // without gaps
+  double shortest, started;
+};
+
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, static_cast<int>(started));
+  write_record(fp, Kept{shortest_of_late, started ? 1.0 : 0.0});
 }
 
-void FixPBDCloth::restart(char *buf) { started = read_record<int>(buf, label, error); }
+void FixPBDCloth::restart(char *buf)
+{
+  const Kept kept = read_record<Kept>(buf, label, error);
+  shortest_of_late = kept.shortest;
+  started = kept.started != 0.0;
+}
 
 double FixPBDCloth::memory_usage()
 {

@@ -118,6 +118,9 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double last_residual, last_energy;
   std::vector<ClothGuest *> guests, present;    // those that are near in this step
   bool started;    // velocities are those of half a step ago, see direction start
+  bool steps_jump;    // between powers of two
+  double step_dt, shortest_of_late;    // steps: the one that is taken
+  int substeps;    // of it
 
   void read_options(ArgReader &);
   void take_rest_positions(const char *);
@@ -129,8 +132,9 @@ class FixPBDCloth : public Fix, public ContactMesh {
   bool is_pinned(int atom) const;
   void check_styles();
   double step_of_stiffness() const;
-  int substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
-  double substep_dt() const;
+  int usual_substeps() const { return solver == Solver::SUBSTEPS ? iterations : 1; }
+  void cut_step();
+  double substep_dt() const { return step_dt / substeps; }
   void move_pins();
   void load();
   void load_attached(int slot);

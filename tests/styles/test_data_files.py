@@ -101,3 +101,67 @@ def test_each_setting_matters():
     seen = [forces_after(scene(text, PAIR + OWN), 10) for text in SETTINGS.values()]
     for k, one in enumerate(seen):
         assert all(np.any(one != other) for other in seen[:k])
+
+
+# ---------------------------------------------------------------------- rest shape of a cloth
+
+STYLES = """
+units si
+atom_style molecular
+atom_modify map yes
+comm_modify cutoff 0.3
+boundary f f f
+bond_style pbd
+angle_style zero
+dihedral_style pbd
+pair_style zero 0.1
+"""
+HANGS = """
+pair_coeff * *
+bond_coeff 1 compliance 1e-2
+angle_coeff *
+dihedral_coeff 1 0.1
+special_bonds lj/coul 1 1 1
+region rim block -0.17 0.17 -0.17 0.17 INF INF side out
+group cloth type 1
+timestep 1e-3
+fix gravity all gravity 9.81 vector 0 0 -1
+"""
+MADE = """
+region box block -0.4 0.4 -0.4 0.4 -0.4 0.4
+create_box 1 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 8
+mass 1 1.0
+create_cloth 1 4.0 size 0.4 0.4 spacing 0.1
+"""
+KEPT = "fix rest all property/atom d2_rest 3\n"
+FILLED = """
+variable x atom x
+variable y atom y
+variable z atom z
+set group cloth d2_rest[1] v_x d2_rest[2] v_y d2_rest[3] v_z
+"""
+
+
+@pytest.mark.parametrize(
+    ("keep", "how", "kept"), [(True, "", True), (True, "nofix", False), (False, "", False)]
+)
+def test_the_rest_shape_in_a_data_file(tmp_path, keep, how, kept):
+    """A strained sheet keeps its strain if the file holds the property, and LAMMPS says nothing."""
+    path = tmp_path / "later.data"
+    fix = "fix sheet cloth pbd/cloth pin pins"
+    pins = "region pins block -0.21 -0.19 INF INF INF INF\ngroup pins region pins\n"
+    with instance() as lmp:
+        lmp.commands_string(STYLES + MADE + HANGS + pins)
+        lmp.commands_string(KEPT + FILLED if keep else "")
+        lmp.commands_string(
+            f"{fix} {'rest d2_rest' if keep else ''}\nrun 100\nwrite_data {path} {how}"
+        )
+        strain = lmp.extract_fix("sheet", 0, 1, 3)
+    assert strain > 0.01
+    with instance() as lmp:
+        read = f"read_data {path} {'fix rest NULL rest' if kept else ''}\n"
+        lmp.commands_string(STYLES + (KEPT if kept else "") + read + HANGS + pins)
+        lmp.commands_string(f"{fix} {'rest d2_rest' if kept else ''}\nrun 0")
+        again = lmp.extract_fix("sheet", 0, 1, 3)
+    assert again == pytest.approx(strain if kept else 0, rel=1e-9, abs=1e-12)

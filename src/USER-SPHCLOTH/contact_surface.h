@@ -207,11 +207,34 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   double farthest_vertex_sq() const;
   const sphcloth::Box &swept_box(int t);
   void bound();
-  template <class Visit> void for_overlapping(Visit visit);
+  // those of the near ones whose ways overlap in this step
+  template <class Visit> void for_overlapping(Visit visit)
+  {
+    int last = -1;
+    sphcloth::Sweep sweep;
+    sphcloth::Box box;
+    for (const auto &[i, t] : near) {
+      if (i != last) {
+        sweep = sweep_of(i);
+        box = sphcloth::Box(sweep.start);
+        box.extend(sweep.end);
+        last = i;
+      }
+      if (swept_box(t).intersects(box)) visit(i, t, sweep);
+    }
+  }
   void set_boxes(double margin);
   int side_at(const Vec3 &p, double reach);
   void meet();
-  template <class Part> void share_out(Part part);
+  // the sum of what each pair asks of the mass of its vertices
+  template <class Part> void share_out(Part part)
+  {
+    shares.assign(halo.n_slots(), Vec3::Zero());
+    for (const Pair &pair : pairs)
+      for (int q = 0; q < 3; q++) shares[triangles[pair.triangle][q]][0] += part(pair, q);
+    halo.reverse_add(0, shares.data());
+    halo.forward(0, shares.data());
+  }
   Vec3 velocity_from(const Pair &) const;
   void part(const Pair &, double dt);
   void load_velocities(const sphcloth::Vertex *v);

@@ -2,7 +2,8 @@
 
 ``python tests/fuzz_guided.py [--seconds 60] [--keep FOLDER] [READER ...]``. Each reader must return
 or raise UserError; whatever else it raises is printed, kept as a file, and makes the exit code 1.
-What was worth keeping of a run is in FOLDER, where the next one begins.
+What was worth keeping of a run is in FOLDER, where the next one begins. The reader `arguments`
+gives words to the styles of the plugin, whose lines are not seen: there, nothing guides.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import atheris
+from lammps import lammps
 
-with atheris.instrument_imports(include=["sphcloth", "MDAnalysis.topology", "lammps.formats"]):
+PARSERS = ["MDAnalysis.topology", "MDAnalysis.coordinates.LAMMPS", "lammps.formats"]
+with atheris.instrument_imports(include=["sphcloth", *PARSERS]):
     from sphcloth.errors import UserError
     from sphcloth.examples import parse_settings
     from sphcloth.log import ThermoTable, error_lines
@@ -31,7 +34,35 @@ with atheris.instrument_imports(include=["sphcloth", "MDAnalysis.topology", "lam
     from sphcloth.stress.kill import SCRIPT
     from sphcloth.trajectory import Trajectory
 
+sys.path.insert(0, str(Path(__file__).parent / "styles"))
+from fuzz_worker import attempt  # noqa: E402
+from test_fuzz import STYLES, names_in_errors, set_up  # noqa: E402
+
 GIGABYTE = 1 << 30
+# a small dump reaches behind its head sooner than one that a run has written
+DUMP = """ITEM: TIMESTEP
+{step}
+ITEM: NUMBER OF ATOMS
+2
+ITEM: BOX BOUNDS {kind}
+{bounds}
+ITEM: ATOMS id type x y z vx
+2 1 0.5 0.25 -1e-3 2
+1 2 1 0 0.125 -0.5
+"""
+BOXES = {"pp pp ff": "0 1\n-1 1\n0 2.5", "xy xz yz pp pp pp": "0 1 0.2\n-1 1 0\n0 2.5 -0.1"}
+LOG_ROWS = 12
+SHEET = """units si
+atom_style molecular
+region box block -1 1 -1 1 -1 1
+create_box 1 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 8 extra/special/per/atom 8
+mass 1 1.0
+create_cloth 1 1.0 size 0.1 0.1 spacing 0.1
+pair_style zero 0.5
+pair_coeff * *
+write_data small.data nofix
+"""
 TRIANGLE = Surface.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 SQUARE = {
     ".obj": "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n",
@@ -79,12 +110,40 @@ def read_words(path: Path) -> None:
             continue
 
 
+def give_arguments(path: Path) -> None:
+    """One command of a style and two steps: an error must name the style."""
+    style, _, words = path.read_text(encoding="utf-8", errors="replace").partition(":")
+    # a table would be written wherever the words say
+    if style not in STYLES or style == "tables" or not (words.isascii() and words.isprintable()):
+        return
+    with lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+        lmp.commands_string(set_up(style))
+        error = attempt(lmp, f"{STYLES[style][0]} {words}")
+        if error:
+            named = any(name in error for name in [*names_in_errors(style), "src/input.cpp"])
+            assert named, f"{style}: {words}: {error}"
+        else:
+            attempt(lmp, "run 2")
+
+
+def sound_arguments() -> list[str]:
+    """A command of each style, with all of its keywords."""
+    lines = []
+    for style, (_, first, positions, keywords) in STYLES.items():
+        words = [first, *(choices[0] for choices in positions)]
+        for keyword, values in keywords.items():
+            words += [keyword, *(choices[0] for choices in values)]
+        lines.append(f"{style}: {' '.join(words)}")
+    return lines
+
+
 # name -> suffix of its files, and what reads them
 READERS: dict[str, tuple[str, Callable[[Path], object]]] = {
     "dump": (".lammpstrj", read_dump),
     "log": (".lammps", read_log),
     "data": (".data", read_data),
     "words": (".txt", read_words),
+    "arguments": (".txt", give_arguments),
     **{suffix[1:]: (suffix, read_surface) for suffix in SQUARE},
 }
 
@@ -94,14 +153,32 @@ def write_seeds(folder: Path) -> None:
     (folder / "in.run").write_text(SCRIPT.read_text() + "write_data kill.data nofix\n")
     command = [program("lmp"), "-in", "in.run", "-var", "parts", "2", "-var", "frames", "1"]
     subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    (folder / "in.sheet").write_text(SHEET)
+    command = [program("lmp"), "-in", "in.sheet", "-log", "none"]
+    subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
     made = {"dump": "kill.lammpstrj", "log": "log.lammps", "data": "kill.data"}
     sound = {name: [(folder / file).read_bytes()] for name, file in made.items()}
+    sound["data"].append((folder / "small.data").read_bytes())
+    sound["log"].append(b"\n".join(table_of(sound["log"][0])))
+    sound["dump"] += [
+        "".join(DUMP.format(step=step, kind=kind, bounds=bounds) for step in (0, 10)).encode()
+        for kind, bounds in BOXES.items()
+    ]
     sound |= {suffix[1:]: [text.encode()] for suffix, text in SQUARE.items()}
     sound["words"] = [text.encode() for text in [*PINS, "x=1"]]
+    sound["arguments"] = [text.encode() for text in sound_arguments()]
     for name, texts in sound.items():
         (folder / name).mkdir(exist_ok=True)
         for number, text in enumerate(texts):
             (folder / name / f"sound{number}").write_bytes(text)
+
+
+def table_of(log: bytes) -> list[bytes]:
+    """Return the first rows of the first table of a log, and its end."""
+    lines = log.splitlines()
+    first = lines.index(b"---")
+    end = next(n for n, line in enumerate(lines) if line.startswith(b"..."))
+    return [*lines[first : min(end, first + LOG_ROWS)], *lines[end : end + 2], b""]
 
 
 def feed(name: str, arguments: list[str]) -> None:
@@ -135,7 +212,9 @@ def main() -> int:
     for name in chosen.readers or READERS:
         folder = chosen.keep / name
         command = [sys.executable, __file__, "--feed", name, f"-max_total_time={chosen.seconds}"]
-        limits = ["-max_len=20000", "-timeout=30", "-rss_limit_mb=6000", "-print_final_stats=1"]
+        limits = ["-max_len=20000", "-timeout=30", "-rss_limit_mb=6000"]
+        limits += ["-print_final_stats=1", "-keep_seed=1"]
+
         print(f"{name}: {chosen.seconds} s", flush=True)
         kept = [f"-artifact_prefix={chosen.keep}/{name}-", str(folder)]
         if subprocess.run([*command, *limits, *kept], env=os.environ).returncode:

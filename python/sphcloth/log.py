@@ -98,8 +98,11 @@ class ThermoTable:
 
 
 def error_lines(path: Path) -> list[str]:
-    """Return the lines of a log in which LAMMPS reports an error, in order."""
-    return [line.strip() for line in LogFile(path).errors] if path.is_file() else []
+    """Return the lines of a log in which LAMMPS reports an error, in order; it may be damaged."""
+    if not path.is_file():
+        return []
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    return [line.strip() for line in lines if "ERROR" in line or "exited on signal" in line]
 
 
 def _check_rows(text: str, path: Path) -> None:

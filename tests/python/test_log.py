@@ -90,6 +90,13 @@ def test_a_log_without_thermo_output_says_what_is_missing(tmp_path: Path) -> Non
     assert error_lines(tmp_path / "log.lammps") == ["ERROR: Unknown command: rum 10"]
 
 
+@pytest.mark.parametrize("more", [b"---\n...\n", b"\xff\n", b"Step Temp\n1 2\n3 x\n"])
+def test_errors_are_found_whatever_else_a_log_holds(tmp_path: Path, more: bytes) -> None:
+    log = tmp_path / "log.lammps"
+    log.write_bytes(b"  ERROR: it broke\n" + more + b"exited on signal 9\n")
+    assert error_lines(log) == ["ERROR: it broke", "exited on signal 9"]
+
+
 def test_an_unknown_column_names_those_there_are(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no thermo column v_none: .* Step Time Dt v_fluid"):
         read(tmp_path, FIRST_RUN)["v_none"]

@@ -74,7 +74,7 @@ BUGS = [
         "  substeps *= static_cast<int>(std::ceil(step_dt / shortest_of_late - ROUNDING));\n", "",
         "tests/styles/test_block.py::test_steps_that_jump_do_not_feed_a_sheet"),
     Bug("cloth: a reference is forgotten", "fix_pbd_cloth.cpp",
-        "  if (step_of_k > 0.0) constraints.keep_springs(", "  if (false) constraints.keep_springs(",
+        "if (step_of_k > 0.0) constraints.keep_springs(", "if (false) constraints.keep_springs(",
         f"{CLOTH}::test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step"),
     Bug("cloth: pins pull the wrong way", "fix_pbd_cloth.cpp",
         "Vec3(-hold[i][0], -hold[i][1], -hold[i][2])", "Vec3(hold[i][0], hold[i][1], hold[i][2])",

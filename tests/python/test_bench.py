@@ -1,6 +1,7 @@
 """sphcloth bench: what it reads and what it reports."""
 
 import io
+import itertools
 import json
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from rich.console import Console
 
 from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.messages import Cluster, Counter, Sent, expect
+from sphcloth.bench.size import bench_size, edges, figures_of
 from sphcloth.bench.timing import Spread, read_timing
 from sphcloth.bench.watch import bench_watch
 from sphcloth.errors import UserError
@@ -24,6 +26,7 @@ MPI task timing breakdown:
 Section |  min time  |  avg time  |  max time  |%varavg| %total
 Pair    | 0.1        | 0.125      | 0.15       |   0.0 | 50.00
 Neigh   | 0.02       | 0.025      | 0.03       |   0.0 | 10.00
+Output  | 0.004      | 0.005      | 0.006      |   0.0 |  2.00
 Neighbor list builds = 7
 """
 
@@ -33,6 +36,7 @@ def test_times_are_those_of_the_last_run() -> None:
     assert timing.pair == 0.125
     assert timing.per_particle(timing.pair) == pytest.approx(2500.0)
     assert timing.per_particle(timing.lists) == pytest.approx(500.0)
+    assert timing.output == 0.005
     assert timing.builds == 7
     assert timing.cpu == pytest.approx(0.2)
     assert timing.memory == pytest.approx(8 * 1024**2)
@@ -68,7 +72,7 @@ def test_an_unknown_benchmark_is_named() -> None:
     command = [Path(sys.executable).parent / "sphcloth", "bench", "sail"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "no benchmark 'sail': use pair, cloth, coupling, watch" in done.stderr
+    assert "no benchmark 'sail': use pair, cloth, coupling, watch, messages, peers" in done.stderr
 
 
 def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
@@ -140,3 +144,24 @@ def test_what_is_expected_of_a_cluster() -> None:
     step = Sent(messages=0, bytes=100 * 50, collectives=0, collective_bytes=0)
     ghosts = 14.8**3 - 1000
     assert expect(step, 50, 1000, 2, on) == pytest.approx(100 / (100 + 0.1 * ghosts))
+
+
+def test_sizes_are_a_geometric_series() -> None:
+    counts = [n**3 for n in edges(100)]
+    assert (counts[0], counts[-1]) == (22**3, 100**3)
+    assert all(2.8 < b / a < 3.4 for a, b in itertools.pairwise(counts))
+
+
+def test_flatness_is_taken_round_by_round() -> None:
+    flat = figures_of({10: [1.0, 4.0], 20: [2.0, 3.0]})["dearest_over_cheapest"]
+    assert (flat["least"], flat["most"]) == (pytest.approx(4 / 3), 2.0)
+
+
+def test_a_small_series_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_size(1, 30, 5, Console(file=said, width=200))
+    assert result["particles"][-1] == 27000
+    for code in ("double", "mixed"):
+        steps = result["codes"][code]["step_ns"]
+        assert len(steps) == 5 and all(step["value"] > 0 for step in steps)
+    assert "dearest / cheapest" in said.getvalue()

@@ -25,6 +25,7 @@ class Timing:
     cpu: float  # processor time of a rank in the loop
     pair: float
     lists: float
+    output: float
     builds: int
     steps: int
     particles: int
@@ -86,6 +87,7 @@ def read_timing(log: str) -> Timing:
         cpu=float(loop[1]) * (float(share[1]) or 100.0) / 100.0,
         pair=section("Pair"),
         lists=section("Neigh"),
+        output=section("Output"),
         builds=int(re.search(r"Neighbor list builds = (\d+)", last)[1]),
         steps=int(loop[3]),
         particles=int(loop[4]),

@@ -49,7 +49,8 @@ stress: $(VENV)/installed
 	mkdir -p $(FOUND)
 	$(BIN)/sphcloth stress --json $(FOUND)/stress.json
 
-# one scene in many ways: ranks, cuts, newton, balancing, sorting, restart and data files
+# one scene in many ways: ranks, cuts, newton, balancing, sorting, lists, restart and data files, with every
+# scheme in three boxes: 40 minutes on two cores with other things to do
 equality: $(VENV)/installed
 	$(BIN)/python -m sphcloth.stress.equality --json $(FOUND)/equality.json
 

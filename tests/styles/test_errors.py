@@ -385,6 +385,27 @@ CASES = [
         r"no room for .*extra/bond/per/atom",
     ),
     case(
+        "create: atom style without bonds",
+        "atom_style sph\nregion box block -1 1 -1 1 -1 1\ncreate_box 1 box\ncreate_cloth 1 1",
+        r"create_cloth: atom_style sph has no bonds.*hybrid sph molecular",
+    ),
+    case(
+        "create: no type",
+        SHEET.replace("dihedral/types 1", "dihedral/types 0"),
+        r"create_cloth: hinge type 1 does not exist: add 'dihedral/types 1' to create_box",
+    ),
+    case(
+        "drain: region that is gone",
+        SHEET_FIX + "region sea block INF INF INF INF INF -0.5\nfix d water sph/drain region sea\n"
+        "region sea delete\nfix step water sph/integrate global\nrun 0",
+        r"fix d sph/drain: region sea is gone: define it again",
+    ),
+    case(
+        "cloth: a bond that leaves the group",
+        SHEET + "group part id 1:10\nfix sheet part pbd/cloth\nrun 0",
+        r"fix sheet pbd/cloth: a bond of atom \d+ leaves the group at atom \d+: put both",
+    ),
+    case(
         "create: no box", HEADER.format(boundary="p p p") + "create_cloth 2 1", r"there is no box"
     ),
 ]

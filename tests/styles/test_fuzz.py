@@ -43,6 +43,10 @@ IN_LIST = ["id1", "id2", "id3", "id4", "type", "rest", "length", "strain", "angl
 LIMITS = ["velocity", "force", "acoustic", "viscous", "density", "relative", "cloth", "fluctuation"]
 LIMITS += ["output", "until", "min", "max", "sleep"]
 
+# without these there is nothing to pour, and no sheet
+DISC = [[word] for word in ["disc", "0", "0", "0.3", "0.1", "velocity", "0", "0", "-1"]]
+SQUARE = [[word] for word in ["size", "0.4", "0.6", "spacing", "0.1"]]
+
 # style -> (its name in errors, words before, lists of choices in order, keyword -> choices)
 STYLES = {
     "pair": ("pair_style sph/tait", "", [["0.1", "0.2"]], {
@@ -68,7 +72,7 @@ STYLES = {
     "step": ("fix f water sph/integrate", "", [["constant", "global"]], {
         **{name: [NUMBER] for name in LIMITS},
         "ratio": [["2", "4"]], "waking": [YES], "growth": [["1.5"]], "below": [["stop", "clamp"]]}),
-    "emit": ("fix f water sph/emit", "", [COUNT, ["1"], ["0.05"]], {
+    "emit": ("fix f water sph/emit", "", [["3", "200"], ["1"], ["0.05"], *DISC], {
         "disc": [["0"], ["0"], ["0"], ["0.1"]],
         "rectangle": [["0"], ["0"], ["0"], ["0.1"], ["0.2"]],
         "velocity": [["0"], ["0"], ["-1", "2"]], "start": [NUMBER], "mass": [NUMBER]}),
@@ -87,7 +91,7 @@ STYLES = {
         name: [] for name in AT_VERTEX}),
     "cloth lists": ("compute f all pbd/local", "", [["sheet"], ["edge", "hinge"]], {
         name: [] for name in IN_LIST}),
-    "create": ("create_cloth", "", [["2"], NUMBER], {
+    "create": ("create_cloth", "", [["2"], ["1"], *SQUARE], {
         "size": [["0.4"], ["0.6"]], "disc": [["0.3"]], "spacing": [["0.1", "0.2"]],
         "center": [["0"], ["0"], ["0.1"]], "axes": [["1"], ["0"], ["0"], ["0"], ["0"], ["1"]],
         "pattern": [["square", "diagonal", "equilateral"]], "bond": [COUNT], "shear": [COUNT],
@@ -180,7 +184,10 @@ def worker():
 def set_up(style):
     needed = "" if style == "cloth" else "fix sheet cloth pbd/cloth\n"
     steps = "" if style == "step" else "fix step water sph/integrate global\n"
-    return f"{SHEET}variable x equal 0.5\ntimestep 1e-4\nvelocity water set 0 0 -1\n{needed}{steps}"
+    # a wall needs a face that is not periodic, triangles a cut-off that is wider than they are
+    scene = SHEET.replace("p p p", "f f f") if style == "walls" else SHEET
+    scene += "comm_modify vel yes cutoff 0.5\n" if style == "contact" else ""
+    return f"{scene}variable x equal 0.5\ntimestep 1e-4\nvelocity water set 0 0 -1\n{needed}{steps}"
 
 
 def names_in_errors(style):

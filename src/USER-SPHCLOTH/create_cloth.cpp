@@ -13,12 +13,16 @@
 #include "region.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 static const std::string STYLE = "create_cloth";
+
+// periodic images are counted in 10 bits, from -512
+static constexpr double MOST_IMAGES = 500.0;
 // each has up to four edges, and these are counted by an int
 static constexpr double MOST_CELLS = 1e8;
 
@@ -185,6 +189,13 @@ void CreateCloth::check_box() const
           FLERR,
           "{}: the sheet reaches out of the box at ({}, {}, {}): shrink it or move its center",
           STYLE, x[0], x[1], x[2]);
+    for (int d = 0; d < 3; d++)
+      if (std::fabs(x[d] - domain->boxlo[d]) > MOST_IMAGES * domain->prd[d])
+        error->all(
+            FLERR,
+            "{}: the sheet reaches to ({}, {}, {}), more than {} periodic boxes away: move its "
+            "center into the box",
+            STYLE, x[0], x[1], x[2], MOST_IMAGES);
   }
 }
 

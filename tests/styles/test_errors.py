@@ -375,6 +375,11 @@ CASES = [
         r"two axes are parallel",
     ),
     case(
+        "create: far out of a periodic box",
+        SHEET + "create_cloth 2 1 size 0.4 0.6 spacing 0.1 center 0 2147483648 0.1",
+        r"create_cloth: the sheet reaches to \(.*more than 500 periodic boxes.*move its center",
+    ),
+    case(
         "create: out of the box",
         SHEET.replace("boundary p p p", "boundary f f f") + "create_cloth 2 1 size 3 1 spacing 0.1",
         r"sheet reaches out of the box",

@@ -23,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -401,7 +402,15 @@ void PairSPHTait::new_lists()
   evaluated_order = order_of_atoms(atom);
   Particles p = particles();
   if (sheets) p.sides = sheets->sides();
-  fluid->list(p, reach.data());
+  try {
+    fluid->list(p, reach.data());
+  } catch (const std::bad_alloc &) {
+    error->one(
+        FLERR,
+        "{}: not enough memory for the neighbours of {} particles within the support {}: are "
+        "particles or vertices much nearer to each other than that?",
+        STYLE, atom->nlocal, options.support);
+  }
 }
 
 bool PairSPHTait::is_measured(int t) const

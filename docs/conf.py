@@ -61,7 +61,7 @@ apidoc_modules = [
         "automodule_options": {"members", "show-inheritance"},
     }
 ]
-autodoc_mock_imports = ["pypbd"]
+autodoc_mock_imports = ["pypbd", "pysplishsplash"]
 autodoc_member_order = "bysource"
 napoleon_use_ivar = True  # attributes of dataclasses: in the docstring, not once more as members
 

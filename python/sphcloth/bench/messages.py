@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 import tempfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -97,7 +96,7 @@ class Counter:
     """Runs the script with the counting library in one folder."""
 
     def __init__(self, folder: Path, across: int) -> None:
-        self.folder, self.across = folder, across
+        self.folder, self.script = folder, Runner(SCRIPT, folder, across=across)
         self.library = Path(plugin_path()) / "sphclothmessages.so"
         if not self.library.is_file():
             raise UserError(f"{self.library} is missing: install sphcloth again, from source")
@@ -106,18 +105,17 @@ class Counter:
         """Return what a rank sent in a whole run, and how many ghosts it had in the end."""
         for old in self.folder.glob("sent.*"):
             old.unlink()
-        given = {"across": self.across, **variables}
-        words = [word for name, value in given.items() for word in ("-var", name, str(value))]
         launcher, *rest = lammps_on(ranks)
         counted = ["-genv", "LD_PRELOAD", str(self.library)]
         counted += ["-genv", "SPHCLOTH_MESSAGES", str(self.folder / "sent")]
-        command = [launcher, *counted, *rest, "-in", str(SCRIPT), "-log", "none", *words]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        log = self.script.run([launcher, *counted, *rest], variables)
         files = sorted(self.folder.glob("sent.*"))
-        if done.returncode or len(files) != ranks:
-            raise UserError(f"LAMMPS failed: {(done.stdout + done.stderr).strip()[-300:]}")
+        if len(files) != ranks:
+            raise UserError(
+                f"{len(files)} of {ranks} ranks were counted: {self.library} is not loaded"
+            )
         rows = [[float(word) for word in file.read_text().split()] for file in files]
-        ghosts = re.findall(r"^Nghost: +(\S+) ave", done.stdout, re.M)
+        ghosts = re.findall(r"^Nghost: +(\S+) ave", log, re.M)
         return Sent(*(sum(column) / ranks for column in zip(*rows, strict=True))), float(ghosts[-1])
 
 

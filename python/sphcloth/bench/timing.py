@@ -10,6 +10,7 @@ import re
 import shutil
 import statistics
 import subprocess
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,9 +107,17 @@ class Runner:
 
     def __call__(self, ranks: int = 1, **variables: object) -> str:
         """Run LAMMPS and return its log."""
+        return self.run(lammps_on(ranks, bare=True), variables)
+
+    def run(self, lammps: Sequence[str], variables: Mapping[str, object]) -> str:
+        """Run the script by a command that starts LAMMPS, and return its log.
+
+        Raises:
+            UserError: it failed.
+        """
         given = {**self.shared, **variables}
         words = [word for name, value in given.items() for word in ("-var", name, str(value))]
-        command = [*lammps_on(ranks, bare=True), "-in", self.script, "-log", "none", *words]
+        command = [*lammps, "-in", self.script, "-log", "none", *words]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         if done.returncode:
             raise UserError(f"LAMMPS failed: {(done.stdout + done.stderr).strip()[-300:]}")

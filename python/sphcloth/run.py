@@ -243,6 +243,19 @@ def kill(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
+def wait_for_lammps(command: list[str], out: Path, patience: float) -> int | None:
+    """Run LAMMPS to its end; returns its status, None if it was killed after patience in s."""
+    with endings_interrupt():
+        process = start_lammps(command, out)
+        try:
+            return process.wait(patience)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            if process.poll() is None:
+                kill(process)
+
+
 def last_words(out: Path) -> list[str]:
     """Return what LAMMPS, or else the launcher, said last in a folder."""
     screen = (out / SCREEN).read_text(errors="replace").splitlines()

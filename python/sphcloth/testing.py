@@ -13,7 +13,6 @@ pytest imports this module at its start, so nothing heavy may load with it.
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -203,26 +202,13 @@ def _run(
     script: Path, folder: Path, ranks: int, timeout: float, variables: Mapping[str, object]
 ) -> str | None:
     """Run LAMMPS in a folder; returns why it failed, or None."""
-    from sphcloth.run import (
-        copy_companions,
-        endings_interrupt,
-        kill,
-        lammps_command,
-        last_words,
-        start_lammps,
-    )
+    from sphcloth.run import copy_companions, lammps_command, last_words, wait_for_lammps
 
     if not script.is_file():
         return f"no script {script}"
     copy_companions(script, folder)
     texts = {name: str(value) for name, value in variables.items()}
-    with endings_interrupt():
-        process = start_lammps(lammps_command(script.resolve(), ranks, texts), folder)
-        try:
-            status = process.wait(timeout)
-        except subprocess.TimeoutExpired:
-            return f"{script} is not finished after {timeout:g} s"
-        finally:
-            if process.poll() is None:
-                kill(process)
+    status = wait_for_lammps(lammps_command(script.resolve(), ranks, texts), folder, timeout)
+    if status is None:
+        return f"{script} is not finished after {timeout:g} s"
     return f"{script} fails: {' '.join(last_words(folder))}" if status else None

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-import subprocess
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,15 +20,7 @@ from numpy.typing import NDArray
 from sphcloth.advice.commands import Commands
 from sphcloth.advice.evidence import Evidence
 from sphcloth.errors import UserError
-from sphcloth.run import (
-    LOG,
-    copy_companions,
-    endings_interrupt,
-    kill,
-    lammps_command,
-    last_words,
-    start_lammps,
-)
+from sphcloth.run import LOG, copy_companions, lammps_command, last_words, wait_for_lammps
 from sphcloth.trajectory import Frame, Trajectory
 
 TABLE, FIRST, FINAL = "advise.table", "advise.first", "advise.final"
@@ -82,9 +73,9 @@ class Probe:
         copy = self._copy(folder, before, edits or {})
         command = lammps_command(Path(copy.name), self.ranks, self.variables)
         begin = time.monotonic()
-        with endings_interrupt():
-            status = _wait(command, folder, PATIENCE * self.seconds + GRACE_SECONDS)
-        if status != 0:
+        status = wait_for_lammps(command, folder, PATIENCE * self.seconds + GRACE_SECONDS)
+        # one that took too long is read as far as it came
+        if status:
             said = " ".join(last_words(folder)) or f"exit status {status}"
             raise UserError(f"{self.script} fails: {said}")
         return self._read(folder, time.monotonic() - begin < self.seconds)
@@ -196,18 +187,6 @@ def moved(folder: Path, other: Path, who: str) -> tuple[float, float]:
     rows, first = np.isin(end.ids, lived), np.isin(start.ids, lived)
     way = end.shortest(end.positions[rows] - start.positions[first])
     return tuple(float(np.linalg.norm(each, axis=1).max()) for each in (apart, way))
-
-
-def _wait(command: list[str], folder: Path, patience: float) -> int:
-    """Run LAMMPS to its end and return its status; 0 if it was killed for taking too long."""
-    process = start_lammps(command, folder)
-    try:
-        return process.wait(patience)
-    except subprocess.TimeoutExpired:
-        return 0
-    finally:
-        if process.poll() is None:
-            kill(process)
 
 
 def _fixes(text: str) -> list[re.Match]:

@@ -220,19 +220,9 @@ int BlockSteps::level_beside(int i)
 {
   int own = level[i];
   for_neighbours(i, [&](int j) {
-    if (level[j] - apart > own && inside_support(i, j)) own = level[j] - apart;
+    if (level[j] - apart > own && pair->inside_support(i, j)) own = level[j] - apart;
   });
   return own;
-}
-
-// Lists hold some who are outside, how many depends on the ranks.
-
-bool BlockSteps::inside_support(int i, int j) const
-{
-  const double *x = atom->x[i], *y = atom->x[j];
-  const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
-  const double support = pair->support(atom->type[i], atom->type[j]);
-  return dx * dx + dy * dy + dz * dz < support * support;
 }
 
 // of a vertex of cloth, as for a neighbour whose step may be `ratio` times as long; a wall has none
@@ -295,7 +285,7 @@ bool BlockSteps::rests_among_others(int i)
   if (now - rows[SINCE][i] < PATIENCE * fix->sound_time(i) || pair->feels_moving_wall(i))
     return false;
   bool others = true;
-  for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !inside_support(i, j)); });
+  for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !pair->inside_support(i, j)); });
   return others;
 }
 
@@ -354,7 +344,7 @@ void BlockSteps::wake_beside_moving_boundaries()
   for (const int i : boundaries)
     if (!is_slow(i))
       for_neighbours(i, [&](int j) {
-        if (Pace::before(pace[j]) == Pace::SLEEPER && inside_support(i, j)) touch(j, WAKE);
+        if (Pace::before(pace[j]) == Pace::SLEEPER && pair->inside_support(i, j)) touch(j, WAKE);
       });
 }
 
@@ -501,14 +491,14 @@ bool BlockSteps::look_around(int i)
     in_step = false;
     if (Pace::before(pace[j]) != Pace::INACTIVE) return;
     const bool slow = Pace::level(own) - Pace::level(pace[j]) > apart;
-    touch(j, options.waking && slow && inside_support(i, j) ? TOUCHED | WAKE : TOUCHED);
+    touch(j, options.waking && slow && pair->inside_support(i, j) ? TOUCHED | WAKE : TOUCHED);
   });
   return in_step;
 }
 
 void BlockSteps::disturb(int i, int j)
 {
-  if (!options.waking || !inside_support(i, j)) return;
+  if (!options.waking || !pair->inside_support(i, j)) return;
   touch(j, is_slow(i) ? TOUCHED : WAKE);
 }
 

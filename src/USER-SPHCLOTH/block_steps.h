@@ -159,7 +159,6 @@ class BlockSteps : protected Pointers {
   void respect_neighbours();
   int vertex_level(int i) const;
   int level_beside(int i);
-  bool inside_support(int i, int j) const;
   void fall_asleep();
   bool rests_among_others(int i);
   bool is_slow(int i) const;

@@ -60,8 +60,8 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
       args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
   }
   restart_peratom = !obstacle_groups.empty();
-  grow_arrays(atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  FixClothContact::grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
   atom->add_callback(Atom::GROW);
   if (restart_peratom) atom->add_callback(Atom::RESTART);
   if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);

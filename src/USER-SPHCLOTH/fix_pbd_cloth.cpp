@@ -74,7 +74,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     error->all(FLERR, "{}: group {} has no atoms: create the cloth before this fix", label,
                group->names[igroup]);
 
-  grow_arrays(atom->nmax);
+  FixPBDCloth::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], rest_x[i]);

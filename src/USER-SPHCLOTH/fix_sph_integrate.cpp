@@ -61,10 +61,10 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
                                                        : SteppingScheme::CONSTANT;
   read_options(args);
 
-  grow_arrays(atom->nmax);
+  FixSPHIntegrate::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  for (int i = 0; i < atom->nlocal; i++) FixSPHIntegrate::set_arrays(i);
 }
 
 void FixSPHIntegrate::read_options(ArgReader &args)
@@ -552,16 +552,20 @@ StepState FixSPHIntegrate::particle_state(int i, const double *f) const
   s.sound = eos.sound_speed(s.rho);
   if (lambda.relative > 0.0) s.approach = pair->approach_speed(i);
   const bool flies = pair->pressure_term()[i] == 0.0;
-  if (flies) s.until_pressed = until_pressed(eos, s.rho, atom->drho[i]);
+  if (flies) s.until_pressed = until_pressed(i, eos.rho0 - s.rho);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!flies || scheme == SteppingScheme::INDIVIDUAL) s.drho = atom->drho[i];
   return s;
 }
 
-double FixSPHIntegrate::until_pressed(const Tait &eos, double rho, double drho)
+// Neighbours under a pressure p push each other and it together: the density grows ever faster, by
+// p/h_s^2.  With one step for all theirs is short enough.
+
+double FixSPHIntegrate::until_pressed(int i, double gap) const
 {
-  if (drho <= 0.0) return std::numeric_limits<double>::infinity();
-  return std::max(0.0, eos.rho0 - rho) / drho;
+  if (scheme == SteppingScheme::GLOBAL) return time_to_cross(gap, atom->drho[i], 0.0);
+  const double smoothing = 0.5 * pair->support(atom->type[i]), ratio = atom->rho[i] / smoothing;
+  return time_to_cross(gap, atom->drho[i], pair->pressure_term_beside(i) * ratio * ratio);
 }
 
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is

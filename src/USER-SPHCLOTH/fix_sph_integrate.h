@@ -141,7 +141,7 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit limit_of_vertex(int i, const FixPBDCloth &) const;
   double speed_and_force(int, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int, const double *force) const;
-  static double until_pressed(const sphcloth::Tait &, double rho, double drho);
+  double until_pressed(int, double gap) const;
   sphcloth::StepState vertex_state(int) const;
   void apply(double);
   void reschedule_dumps();

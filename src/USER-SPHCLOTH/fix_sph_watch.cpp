@@ -56,6 +56,7 @@ FixSPHWatch::FixSPHWatch(LAMMPS *lmp_, int narg, char **arg) :
   if (file.empty()) return;
   std::vector<std::string> words{std::to_string(keep), file + ".1", file + ".2"};
   std::vector<char *> pointers;
+  pointers.reserve(words.size());
   for (std::string &word : words) pointers.push_back(word.data());
   output->create_restart(static_cast<int>(pointers.size()), pointers.data());
 }

@@ -102,7 +102,7 @@ void FixWallSPH::read_velocity(ArgReader &args)
   const auto wall = std::find_if(walls.begin(), walls.end(),
                                  [&](const Wall &w) { return w.face == face_of(name); });
   if (wall == walls.end()) args.fail("face of the velocity", name, "give a face with a wall");
-  for (int d = 0; d < 3; d++) wall->velocity[d] = args.number(fmt::format("velocity of {}", name));
+  for (double &part : wall->velocity) part = args.number(fmt::format("velocity of {}", name));
   if (wall->velocity[wall->axis()] != 0.0)
     args.fail(fmt::format("velocity of {} across the wall", name),
               std::to_string(wall->velocity[wall->axis()]),

@@ -626,9 +626,29 @@ int PairSPHTait::count_neighbours(int i)
   const Particles p = particles();
   int n = 0;
   for (int t = 1; t <= atom->ntypes; t++)
-    if (is_fluid(p.type[i]) || is_fluid(t))
+    if (is_fluid(atom->type[i]) || is_fluid(t))
       n += fluid->count_inside(p, i, t, std::numeric_limits<int>::max());
   return n;
+}
+
+bool PairSPHTait::inside_support(int i, int j) const
+{
+  const double *x = atom->x[i], *y = atom->x[j];
+  const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+  const double far = support(atom->type[i], atom->type[j]);
+  return dx * dx + dy * dy + dz * dz < far * far;
+}
+
+double PairSPHTait::pressure_term_beside(int i)
+{
+  double greatest = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const Stretch near = neighbours(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (const int j = near.of[k]; pressure[j] > greatest && inside_support(i, j))
+        greatest = pressure[j];
+  }
+  return greatest;
 }
 
 void PairSPHTait::want_wetting() const

@@ -124,8 +124,12 @@ class PairSPHTait : public Pair {
   // owned fluid particles that are updated in this evaluation, with block steps
   const std::vector<int> &active_particles() const { return active_fluid; }
 
-  // neighbours of an owned atom inside the support, and some a little outside
+  // Neighbours of an owned atom inside the support, and some a little outside: how many of these depends
+  // on the ranks.
   sphcloth::Stretch neighbours(int i, int type) { return fluid->neighbours(i, type); }
+  bool inside_support(int i, int j) const;
+  // the greatest of those inside, at least 0
+  double pressure_term_beside(int i);
 
   // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
   // without an array all are active.  Densities of the others may be interpolated by who says so, and

@@ -168,7 +168,7 @@ void VertexHalo::exchange_requests()
 
 /* ---------------------------------------------------------------------- */
 
-static const Eigen::Vector3d &vector_of(const Eigen::Vector3d &data) { return data; }
+static Eigen::Vector3d vector_of(const Eigen::Vector3d &data) { return data; }
 static Eigen::Vector3d vector_of(const sphcloth::Vertex &data) { return {data.x, data.y, data.z}; }
 
 static void put(Eigen::Vector3d &data, const Eigen::Vector3d &value) { data = value; }

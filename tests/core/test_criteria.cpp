@@ -38,6 +38,21 @@ CASE("limits: each formula on its own")
   CHECK(particle_limit(relative, s).by == Limit::RELATIVE);
 }
 
+CASE("limits: the time to cross a gap")
+{
+  CHECK_NEAR(time_to_cross(2.0, 4.0, 0.0), 0.5, 1e-16);
+  CHECK(std::isinf(time_to_cross(2.0, 0.0, 0.0)));
+  CHECK(std::isinf(time_to_cross(2.0, -4.0, 0.0)));
+  CHECK_NEAR(time_to_cross(8.0, 0.0, 4.0), 2.0, 1e-16);
+  for (const double rate : {3.0, -3.0}) {
+    const double t = time_to_cross(2.0, rate, 5.0);
+    CHECK_NEAR(rate * t + 2.5 * t * t, 2.0, 1e-14);
+  }
+  CHECK(time_to_cross(-1.0, 3.0, 5.0) == 0.0);
+  CHECK_NEAR(time_to_cross(1e-300, 1e-3, 1e-300), 1e-297, 1e-305);
+  CHECK_NEAR(time_to_cross(0.0, -3.0, 6.0), 1.0, 1e-16);    // away, and back again
+}
+
 CASE("limits: of a vertex")
 {
   StepCoefficients lambda;

@@ -37,7 +37,7 @@ BLOCK = NEAR.replace("sph/integrate global", "sph/integrate global density 0.1 v
 EMPTY = "processors 1 1 *\n"
 ROUGH = NEAR.replace(
     "pair_style sph/tait 0.1", "pair_style sph/tait 0.1 precision mixed density continuity"
-)
+).replace("displace_atoms", "set group fluid sph/rho 1000\ndisplace_atoms")
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,10 @@ SCENES = {
     "mixed precision, continuity, two ranks": Scene(on(ROUGH, "2 1 1"), 2),
     "contact from both sides, two ranks": Scene(
         on(
-            NEAR.replace("cloth/contact 0.015", "cloth/contact 0.03 wall yes friction 0.2"), "2 1 1"
+            NEAR.replace("cloth/contact 0.015", "cloth/contact 0.03 wall yes friction 0.2")
+            .replace("pair_coeff 2 2 boundary", "pair_coeff 2 2 none")
+            .replace("vel yes", "vel yes cutoff 0.25"),
+            "2 1 1",
         ),
         2,
     ),

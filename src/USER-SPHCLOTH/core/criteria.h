@@ -179,6 +179,16 @@ inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, 
   return wanted;
 }
 
+// The time in which something that changes at a rate, and that rate by `growth`, crosses a gap:
+// gap = rate t + growth t^2/2.
+
+inline double time_to_cross(double gap, double rate, double growth)
+{
+  const double ahead = std::max(0.0, gap), root = std::sqrt(rate * rate + 2.0 * growth * ahead);
+  if (rate > 0.0) return 2.0 * ahead / (rate + root);
+  return growth > 0.0 ? (root - rate) / growth : std::numeric_limits<double>::infinity();
+}
+
 /* ----------------------------------------------------------------------
    output times: the multiples of an interval
 ------------------------------------------------------------------------- */

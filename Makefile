@@ -108,9 +108,10 @@ coverage: $(VENV)/strict
 	find build/coverage -name '*.gcda' -delete
 	build/coverage/core/test_core
 	build/coverage/core/test_core_plain
-	PYTHONPATH=build/coverage/site $(BIN)/python -m pytest $(TESTS)
-	$(BIN)/gcovr --root src --object-directory build/coverage --exclude-throw-branches \
-	  --gcov-ignore-parse-errors=suspicious_hits.warn --txt build/coverage/cpp.txt --print-summary
+	PYTHONPATH=$(abspath build/coverage/site) $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(TESTS)
+	$(BIN)/gcovr --root src --object-directory build/coverage --exclude-throw-branches --merge-lines \
+	  --gcov-ignore-errors=source_not_found --gcov-ignore-parse-errors=suspicious_hits.warn \
+	  --txt build/coverage/cpp.txt --print-summary
 	$(BIN)/python -m pytest --cov --cov-report=term:skip-covered tests/python
 
 # files and words that a fuzzer makes of those that it found interesting

@@ -142,9 +142,13 @@ def _is_row(line: str, width: int | None) -> bool:
 
 def _parse_runs(text: str) -> Runs:
     """Return one dictionary (column -> values) for each run, the unfinished last one included."""
+    # LogFile would take other lines for the beginning of a run that never was
+    thermo = re.findall(
+        r"^(?:keywords:.*|data:|---|\.\.\.|  - \[.*\])$", _close_last_run(text), re.MULTILINE
+    )
     with tempfile.TemporaryDirectory() as folder:
         closed = Path(folder) / "log.lammps"
-        closed.write_text(_close_last_run(text), encoding="utf-8")
+        closed.write_text("\n".join([*thermo, ""]), encoding="utf-8")
         return LogFile(closed).runs
 
 

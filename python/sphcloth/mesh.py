@@ -39,7 +39,7 @@ def read_sections(data: Path) -> dict[str, list[str]]:
     try:
         with _Parser(data) as parser:
             header, sections = parser.grab_datafile()
-    except (ValueError, IndexError):
+    except (ValueError, IndexError, EOFError):  # the last: of an empty file
         sections = {}
     if "Atoms" not in sections:
         raise UserError(f"{data} is no data file: write it with 'write_data FILE nofix'")

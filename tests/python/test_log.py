@@ -97,6 +97,16 @@ def test_errors_are_found_whatever_else_a_log_holds(tmp_path: Path, more: bytes)
     assert error_lines(log) == ["ERROR: it broke", "exited on signal 9"]
 
 
+@pytest.mark.parametrize(
+    "other", ["--\nLoop time of 0.1 on 1 procs\n", "Step Temp\n1 2\n", "------ Step 1\n"]
+)
+def test_lines_that_are_not_thermo_output_are_passed_over(tmp_path: Path, other: str) -> None:
+    table = read(tmp_path, other + FIRST_RUN + other + SECOND_RUN)
+    assert table["Step"].tolist() == [0, 100, 200]
+    with pytest.raises(UserError, match="no thermo output"):
+        read(tmp_path, other)
+
+
 def test_an_unknown_column_names_those_there_are(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no thermo column v_none: .* Step Time Dt v_fluid"):
         read(tmp_path, FIRST_RUN)["v_none"]

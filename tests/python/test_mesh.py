@@ -42,8 +42,9 @@ def test_masses_that_cannot_be_read_are_named(cloth_data: Path, row: str) -> Non
         read_masses(cloth_data)
 
 
-def test_a_data_file_of_another_form_says_how_to_write_it(cloth_data: Path) -> None:
-    cloth_data.write_text("not a data file\n")
+@pytest.mark.parametrize("text", ["not a data file\n", ""])
+def test_a_data_file_of_another_form_says_how_to_write_it(cloth_data: Path, text: str) -> None:
+    cloth_data.write_text(text)
     with pytest.raises(UserError, match="write_data FILE nofix"):
         ClothMesh.read(cloth_data)
 

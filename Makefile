@@ -112,7 +112,7 @@ coverage: $(VENV)/strict
 	$(BIN)/gcovr --root src --object-directory build/coverage --exclude-throw-branches --merge-lines \
 	  --gcov-ignore-errors=source_not_found --gcov-ignore-parse-errors=suspicious_hits.warn \
 	  --txt build/coverage/cpp.txt --print-summary
-	$(BIN)/python -m pytest --cov --cov-report=term:skip-covered tests/python
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --cov --cov-report=term:skip-covered tests/python
 
 # files and words that a fuzzer makes of those that it found interesting
 fuzz-guided: $(VENV)/strict

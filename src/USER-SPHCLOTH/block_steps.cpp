@@ -164,22 +164,24 @@ void BlockSteps::choose_levels()
   }
 }
 
-// and whether it is the step of everybody
+// and whether it is the step of everybody.  Who is new, and lengthens its step, asks for no step of
+// the scene where others ask for the same: of limits at the shortest step the first in the list counts.
 
 void BlockSteps::find_step_of_scene()
 {
   constexpr int LIMITS = 64;
+  const auto rank = [](int depth, int by) { return LIMITS * depth + LIMITS - 1 - by; };
   constexpr double FAR = std::numeric_limits<double>::max();
   static_assert(N_LIMITS < LIMITS);
   const StepLimit vertex = fix->tightest_vertex();
   const int of_vertices = std::max(coarsest, at.line.level_of(vertex.dt));
-  int finest = LIMITS * of_vertices + static_cast<int>(vertex.by);
+  int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
   for (const int i : pair->active_particles()) {
     const int own = static_cast<int>(rows[LEVEL][i]);
     slowest = std::min(slowest, own);
-    finest = std::max(finest, LIMITS * own + static_cast<int>(rows[BY][i]));
+    finest = std::max(finest, rank(own, static_cast<int>(rows[BY][i])));
     until[0] = std::max(until[0], -rows[UNTIL][i]);
     until[1] = std::max(until[1], rows[UNTIL][i]);
   }
@@ -188,7 +190,7 @@ void BlockSteps::find_step_of_scene()
   double all[5];
   MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_MAX, world);
   at.deepest = static_cast<int>(all[0]) / LIMITS;
-  at.limit = static_cast<Limit>(static_cast<int>(all[0]) % LIMITS);
+  at.limit = static_cast<Limit>(LIMITS - 1 - static_cast<int>(all[0]) % LIMITS);
   finest_vertex = static_cast<int>(all[4]);
   at.alike = at.line.now == 0 && -all[1] >= at.deepest && all[3] == -all[2] && options.sleep == 0.0;
   // none of a new particle reaches anywhere yet

@@ -35,6 +35,8 @@ Examples:
 sphcloth run pour --size small --ranks 2
 
 sphcloth run pour --set hold=corners --set scheme=block --out corners
+
+sphcloth run pour --set keep=500 --out pour; sphcloth run pour --set keep=500 --out pour --resume
 """
 
 VALIDATE_EXAMPLES = """
@@ -151,6 +153,13 @@ def run(
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw pictures afterwards.")] = True,
     frames: Annotated[int, typer.Option(min=1, help="Number of pictures.")] = 12,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Go on from the newest restart file in --out; give the other options again.",
+        ),
+    ] = False,
     json_file: JsonFile = None,
 ) -> None:
     """Run an example, draw it and print a summary of what went right or wrong."""
@@ -166,6 +175,7 @@ def run(
         frames if pictures else None,
         Console(),
         json_file,
+        resume,
     )
     raise typer.Exit(code)
 

@@ -7,7 +7,7 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +20,7 @@ from sphcloth.errors import UserError
 from sphcloth.examples import find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
+from sphcloth.resume import BEFORE, join, newest_restart, set_aside
 from sphcloth.summary import summarise
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -46,6 +47,7 @@ def run_example(
     frames: int | None,
     console: Console,
     json_file: Path | None = None,
+    resume: bool = False,
 ) -> int:
     """Run an example, draw it and print its summary.
 
@@ -58,22 +60,33 @@ def run_example(
         frames: number of pictures; None draws nothing.
         console: where progress and summary appear.
         json_file: where the summary is written beside ``summary.json``.
+        resume: go on from the newest restart file in ``out``, instead of starting anew.
 
     Returns:
         Exit code: 0 if LAMMPS ended well, nothing crossed the sheet and the mass balance is
         exact, otherwise 1.
 
     Raises:
-        UserError: an unknown name, size or variable, or a missing program.
+        UserError: an unknown name, size or variable, a missing program, or nothing to go on from.
     """
     example = find_example(name)
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
     out.mkdir(parents=True, exist_ok=True)
-    _remove_old_results(out, name)
+    log, dump = out / LOG, out / f"{name}.lammpstrj"
+    if resume:
+        if "again" not in example.defaults():
+            raise UserError(f"{name} cannot go on: its script has no variable 'again'")
+        variables |= {"again": "yes", "state": newest_restart(out, name).name}
+        join(log, dump)
+        set_aside(log, dump)
+    else:
+        _remove_old_run(out, name)
+    _remove_old_results(out)
     copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
     outcome = run_lammps(command, out, t_end, console)
+    join(log, dump)
     if outcome.interrupted:
         console.print("[yellow]stopped: the summary is of what was reached[/]")
     elif outcome.status != 0:
@@ -98,13 +111,21 @@ def _end_time(variables: Mapping[str, str]) -> float:
         raise UserError(f"t_end = {variables['t_end']} is not a number") from None
 
 
-def _remove_old_results(out: Path, name: str) -> None:
-    """Remove what an earlier run left, lest a run that fails early shows its numbers."""
+def _remove_old_run(out: Path, name: str) -> None:
+    """Remove the files that LAMMPS wrote in an earlier run."""
+    own = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", f"{name}.restart.*", f"*{BEFORE}"]
+    _remove(out, own)
+
+
+def _remove_old_results(out: Path) -> None:
+    """Remove what was found in an earlier run, lest one that fails early shows its numbers."""
     check_no_link(out / "pictures")
-    stale = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", "summary.json"]
-    pictures = [*out.glob("pictures/frame_*.png"), *out.glob("*.png")]
-    for path in [*(out / file for file in stale), *pictures]:
-        path.unlink(missing_ok=True)
+    _remove(out, ["summary.json", "pictures/frame_*.png", "*.png"])
+
+
+def _remove(folder: Path, patterns: Iterable[str]) -> None:
+    for path in [path for pattern in patterns for path in folder.glob(pattern)]:
+        path.unlink()
 
 
 def copy_companions(script: Path, folder: Path) -> None:

@@ -36,6 +36,11 @@ inline double physical_time(const Update *update)
   return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
 }
 
+// For fixes that are restored.  LAMMPS, where a run begins, would forget the time between the last change
+// of dt and a restart file that was written in the middle of a run.
+
+inline void keep_restored_time(Update *update) { update->update_time(); }
+
 // collective: is any atom in both groups?
 
 inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_Comm world)

@@ -839,6 +839,7 @@ void FixPBDCloth::write_restart(FILE *fp)
 void FixPBDCloth::restart(char *buf)
 {
   const Kept kept = read_record<Kept>(buf, label, error);
+  keep_restored_time(update);
   shortest_of_late = kept.shortest;
   started = kept.started != 0.0;
 }

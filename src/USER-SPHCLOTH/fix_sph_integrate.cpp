@@ -722,6 +722,7 @@ void FixSPHIntegrate::write_restart(FILE *fp)
 void FixSPHIntegrate::restart(char *buf)
 {
   const auto record = read_record<Record>(buf, label, error);
+  keep_restored_time(update);
   previous = record.previous;
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
   if (!ceiling_given) ceiling = record.ceiling;

@@ -118,3 +118,18 @@ def test_pouring_on_two_ranks_and_after_a_restart(tmp_path):
     assert len(whole) > 100
     for name in ("two.txt", "again.txt"):
         np.testing.assert_allclose(last_frame(tmp_path / name), whole, atol=1e-9)
+
+
+def test_time_goes_on_after_a_restart_file_of_the_middle_of_a_run(tmp_path):
+    """LAMMPS forgets there what time went by since the step last changed, and sources would wait."""
+    text = POUR.format(n=300, dt=1e-3, opening="disc 0 0 0.8 0.12")
+    script = text + RUN.format(before="restart 250 mid", steps=500, after="", dump="whole.txt")
+    run(write(tmp_path, script))
+    again = "read_restart mid.250\nneighbor 0.03 bin\nneigh_modify every 1 delay 0 check yes\n"
+    again += "comm_modify vel yes\n" + text.split("group water")[1].split("\n", 1)[1]
+    end = RUN.format(before="", steps=250, after='print "t = $(time)"', dump="again.txt")
+    said = run(write(tmp_path, again.replace("start 0", "") + end))
+    assert "t = 0.5" in said
+    whole = last_frame(tmp_path / "whole.txt")
+    assert len(whole) > 100
+    np.testing.assert_allclose(last_frame(tmp_path / "again.txt"), whole, atol=1e-9)

@@ -1,0 +1,134 @@
+"""Go on with a run that was stopped, in the folder of its output.
+
+LAMMPS begins a new log, and here a new dump too. What there was is kept as ``*.before`` until the
+run that goes on has said at which step it began; then both become one file again.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from sphcloth.errors import UserError
+
+BEFORE = ".before"
+# the last bytes of a restart file
+END_OF_RESTART = b"LammpS RestartT\0"
+ROW = re.compile(r"^  - \[(\d+),")
+
+
+def newest_restart(folder: Path, name: str) -> Path:
+    """Return the restart file of a run that was written last, of those that are whole.
+
+    Raises:
+        UserError: there is none.
+    """
+    files = sorted(folder.glob(f"{name}.restart.*"), key=lambda file: file.stat().st_mtime)
+    whole = [file for file in files if _is_whole(file)]
+    if not whole:
+        raise UserError(
+            f"{folder} holds no whole restart file of {name}: only a run with "
+            "'--set keep=STEPS' can go on"
+        )
+    return whole[-1]
+
+
+def _is_whole(restart: Path) -> bool:
+    """Tell whether LAMMPS had come to the end of a restart file."""
+    with restart.open("rb") as file:
+        file.seek(-min(len(END_OF_RESTART), restart.stat().st_size), os.SEEK_END)
+        return file.read() == END_OF_RESTART
+
+
+def set_aside(*files: Path) -> None:
+    """Keep files, so that a run that goes on may write new ones of these names."""
+    for file in files:
+        if file.exists():
+            file.replace(kept(file))
+
+
+def kept(file: Path) -> Path:
+    """Return the name under which a file is kept."""
+    return file.with_name(file.name + BEFORE)
+
+
+def join(log: Path, dump: Path) -> None:
+    """Make one log and one dump of those kept and the new ones; nothing where none are kept.
+
+    What the stopped run had written behind the step from which the new one went on is dropped. If
+    that has not got as far as its first row, what was kept is put back.
+    """
+    first = _first_step(log)
+    if first is None:
+        for file in (dump, log):
+            if kept(file).exists():
+                kept(file).replace(file)
+        return
+    if kept(dump).exists():
+        _join_dumps(kept(dump), dump, first)
+    if kept(log).exists():
+        _join_logs(kept(log), log, first)
+
+
+def _first_step(log: Path) -> int | None:
+    """Return the step of the first row of a log; None if there is none."""
+    if not log.is_file():
+        return None
+    with log.open(encoding="utf-8", errors="replace") as lines:
+        return next((int(row[1]) for row in map(ROW.match, lines) if row), None)
+
+
+def _join_logs(old: Path, new: Path, first: int) -> None:
+    """Put the rows of the old log before ``first`` in front of the new one."""
+    lines, ended = [], True
+    for line in old.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True):
+        row = ROW.match(line)
+        if not line.endswith("\n") or (row and int(row[1]) >= first):
+            continue
+        ended = line == "...\n" or (ended and line != "---\n")
+        lines.append(line)
+    if not ended:
+        lines.append("...\n")
+    _replace(new, ["".join(lines).encode(), new.read_bytes()])
+    old.unlink()
+
+
+def _join_dumps(old: Path, new: Path, first: int) -> None:
+    """Put the whole frames of the old dump up to ``first`` in front of those of the new one."""
+    _replace(new, itertools.chain(_frames(old, until=first), _frames(new, behind=first)))
+    old.unlink()
+
+
+def _replace(file: Path, pieces: Iterable[bytes]) -> None:
+    """Put something else in the place of a file, all of it or nothing."""
+    whole = file.with_name(file.name + ".new")
+    with whole.open("wb") as out:
+        out.writelines(pieces)
+    whole.replace(file)
+
+
+def _frames(dump: Path, behind: float = -1, until: float = float("inf")) -> Iterator[bytes]:
+    """Yield the whole frames of a text dump with ``behind`` < step <= ``until``."""
+    if not dump.is_file():
+        return
+    with dump.open("rb") as file:
+        while frame := _next_frame(file):
+            step = int(frame.split(b"\n", 2)[1])
+            if behind < step <= until:
+                yield frame
+
+
+def _next_frame(file: BinaryIO) -> bytes | None:
+    """Return the next frame of a text dump, None if there is no other that is whole."""
+    head = [file.readline() for _ in range(9)]
+    if not head[8].endswith(b"\n"):
+        return None
+    if head[0] != b"ITEM: TIMESTEP\n" or not head[8].startswith(b"ITEM: ATOMS"):
+        raise UserError(f"{file.name} is no text dump with nothing but atoms: join it by hand")
+    rows = list(itertools.islice(file, int(head[3])))
+    whole = len(rows) == int(head[3]) and (not rows or rows[-1].endswith(b"\n"))
+    return b"".join([*head, *rows]) if whole else None

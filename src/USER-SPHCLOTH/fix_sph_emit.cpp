@@ -97,6 +97,8 @@ void FixSPHEmit::make_pattern()
   Vec3 first = std::fabs(normal[0]) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   first = (first - first.dot(normal) * normal).normalized();
   const Vec3 second = normal.cross(first);
+  sides[0] = first;
+  sides[1] = second;
   const double reach_a = disc ? 2.0 * extent[0] : extent[0];
   const double reach_b = disc ? 2.0 * extent[0] : extent[1];
   const double cells = (reach_a / spacing) * (reach_b / spacing);
@@ -177,23 +179,52 @@ void FixSPHEmit::emit_layer(double age)
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
   const tagint last = largest_id(atom, world);
 
+  bigint mine[2] = {0, count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
     add_particle(centre + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
   for (int i = before; i < atom->nlocal; i++) modify->create_attribute(i);
 
-  bigint made = atom->nlocal - before, all = 0;
-  MPI_Allreduce(&made, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all != wanted)
+  mine[0] = atom->nlocal - before;
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] != wanted)
     error->all(FLERR,
                "{}: {} of {} particles of a layer fell out of the box: move the opening inwards",
-               label, wanted - all, wanted);
-  atom->natoms += all;
+               label, wanted - all[0], wanted);
+  if (all[1] > 0) warn_of_backwater(all[1]);
+  atom->natoms += all[0];
   refresh_map(atom);
-  const double more = static_cast<double>(all) * mass_of_one();
+  const double more = static_cast<double>(all[0]) * mass_of_one();
   for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
-  emitted += all;
+  emitted += all[0];
   layers++;
+}
+
+// owned particles that are where a layer appears; the layer before is a spacing further
+
+bigint FixSPHEmit::count_in_the_way(double age) const
+{
+  const Vec3 normal = velocity.normalized(), middle = centre + age * velocity;
+  bigint n = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const Vec3 from = Eigen::Map<const Vec3>(atom->x[i]) - middle;
+    if (std::fabs(from.dot(normal)) >= 0.5 * spacing) continue;
+    const double a = std::fabs(from.dot(sides[0])), b = std::fabs(from.dot(sides[1]));
+    n += disc ? a * a + b * b <= extent[0] * extent[0]
+              : a <= 0.5 * extent[0] && b <= 0.5 * extent[1];
+  }
+  return n;
+}
+
+void FixSPHEmit::warn_of_backwater(bigint particles)
+{
+  if (warned) return;
+  warned = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "{}: {} particles are where a layer appears, at the time {}: water that is too "
+                   "dense bursts apart; move the opening away from what was poured, or pour slower",
+                   label, particles, physical_time(update));
 }
 
 void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)

@@ -58,6 +58,8 @@ class FixSPHEmit : public Fix {
   bigint layers;                // poured so far
   double momentum[3];           // that came in with the particles
   std::vector<Vec3> pattern;    // one layer, relative to the centre
+  Vec3 sides[2];                // unit vectors along those of a rectangle
+  bool warned = false;
 
   void read_options(ArgReader &);
   void make_pattern();
@@ -65,6 +67,8 @@ class FixSPHEmit : public Fix {
   bool layer_is_due() const;
   double mass_of_one() const;
   void emit_layer(double);
+  bigint count_in_the_way(double age) const;
+  void warn_of_backwater(bigint particles);
   void add_particle(const Vec3 &, tagint);
 };
 

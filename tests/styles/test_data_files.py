@@ -1,5 +1,7 @@
 """Data and restart files hold what pair_style and pair_coeff said: the same forces come out."""
 
+import struct
+
 import numpy as np
 import pytest
 from harness import by_id, instance
@@ -94,6 +96,27 @@ def test_restart(tmp_path, setting):
     again = instance()
     again.commands_string(f"read_restart {path}\ncomm_modify vel yes\n{BEHIND}")
     np.testing.assert_array_equal(forces_after(again, 6), by_id(lmp, "f"))
+
+
+def test_damaged_restart_files_are_named(tmp_path):
+    """The settings of the pair style, and the record of a fix, which ends with an ID of its own."""
+    path = tmp_path / "x.restart"
+    lmp = scene("", PAIR)
+    forces_after(lmp, 0)
+    lmp.command(f"write_restart {path}")
+    whole = path.read_bytes()
+    settings = whole.index(struct.pack("d", 0.1), whole.index(b"sph/tait"))
+    damage = {
+        settings: r"pair_style sph/tait: its settings in the restart file are damaged.* another",
+        whole.index(b"CHPS"): r"fix move sph/integrate: its record in the restart file is damaged.*"
+        "give the fix another ID",
+    }
+    for place, words in damage.items():
+        path.write_bytes(whole[:place] + b"\xff" * 8 + whole[place + 8 :])
+        again = instance()
+        with pytest.raises(Exception, match=words):
+            again.commands_string(f"read_restart {path}\ncomm_modify vel yes\n{BEHIND}")
+            forces_after(again, 0)
 
 
 def test_each_setting_matters():

@@ -30,6 +30,11 @@ SHEET_FIX = SHEET + "fix sheet cloth pbd/cloth\n"
 STEP = SHEET + "fix step water sph/integrate "
 SHIFT = SHEET + "fix shift water sph/shift "
 EMIT = SHEET + "fix pour water sph/emit "
+NINE_SHEETS = "".join(
+    f"create_cloth 2 1 size 0.2 0.2 center 0 0 {n / 10} spacing 0.1 group s{n}\n"
+    f"fix s{n} s{n} pbd/cloth\n"
+    for n in range(1, 10)
+)
 
 
 def case(name, script, message):
@@ -64,6 +69,13 @@ CASES = [
     case("coeff: no role", SHEET + "pair_coeff 1 1 nu 1", r"pair 1 1 has no role"),
     case("coeff: volume", SHEET + "pair_coeff 2 2 boundary volume 0", r"volume is '0'.*> 0"),
     case("coeff: pair", SHEET + "pair_coeff 1 2 gamma 5", r"unknown keyword 'gamma'"),
+    case("coeff: range", SHEET + "pair_coeff 1*5 1 none", r"first type is '1\*5'.*1 to 2, or a r"),
+    case("bond: range", SHEET + "bond_coeff 2* 1", r"bond type is '2\*'.*1 to 1, or a range"),
+    case(
+        "coeff: stiffness of two fluids",
+        SHEET + "pair_coeff 2 2 fluid 900 c0 20\npair_coeff 1 2 c0 10\nrun 0",
+        r"pair_coeff \(sph/tait\): a stiffness of pair 1 2 is for a fluid and a boundary.*I = J",
+    ),
     case("coeff: few", SHEET + "pair_coeff 1 1", r"pair_coeff"),
     case(
         "init: no role for a type",
@@ -80,6 +92,11 @@ CASES = [
         "run: continuity without a density",
         SHEET.replace("sph/tait 0.1", "sph/tait 0.1 density continuity") + "run 0",
         r"particle \d+ has density 0.*set group all sph/rho RHO0.*density summation",
+    ),
+    case(
+        "run: a density beyond all measure",
+        SHEET + "mass 1 1e60\nrun 0",
+        r"pair_style sph/tait: particle 50 has density .*overlap or the time step is too large",
     ),
     case("pair: delta", "pair_style sph/tait 0.1 delta -1", r"delta is '-1'.*>= 0"),
     case("pair: precision", "pair_style sph/tait 0.1 precision half", r"'half'.*double or mixed"),
@@ -163,6 +180,26 @@ CASES = [
         SHEET + "fix s cloth pbd/cloth rest d2_r",
         r"rest property 'd2_r'.*property/atom",
     ),
+    case(
+        "cloth: velocity of no pins",
+        SHEET + "fix s cloth pbd/cloth velocity 0 0 1",
+        r"fix s pbd/cloth: velocity is that of pins: name their group with 'pin'",
+    ),
+    case(
+        "cloth: velocity of no variable",
+        SHEET + "fix s cloth pbd/cloth pin cloth velocity 0 v_who 1",
+        r"fix s pbd/cloth: velocity is 'v_who': define that variable before",
+    ),
+    case(
+        "cloth: velocity of a string",
+        SHEET + "variable who string fast\nfix s cloth pbd/cloth pin cloth velocity 0 v_who 1",
+        r"fix s pbd/cloth: velocity is 'v_who': make it an equal- or atom-style variable",
+    ),
+    case(
+        "cloth: atom style",
+        "atom_style sph\nregion box block -1 1 -1 1 -1 1\ncreate_box 1 box\nfix s all pbd/cloth",
+        r"fix s pbd/cloth: atom_style sph has no bonds: use .*hybrid sph molecular",
+    ),
     case("cloth: empty", SHEET + "fix s nobody pbd/cloth", r"group nobody has no atoms"),
     case("cloth: no bonds", SHEET + "fix s water pbd/cloth\nrun 0", r"group water has no bonds"),
     case(
@@ -203,6 +240,27 @@ CASES = [
         "contact: group",
         SHEET_FIX + "fix c all cloth/contact 0.01\nrun 0",
         r"group all holds vertices",
+    ),
+    case(
+        "contact: cloth behind",
+        SHEET + "fix c water cloth/contact 0.01\nfix s cloth pbd/cloth\nrun 0",
+        r"fix c cloth/contact: fix s pbd/cloth is defined behind: define it before",
+    ),
+    case(
+        "contact: many sheets",
+        SHEET + NINE_SHEETS + "fix c water cloth/contact 0.01\nrun 0",
+        r"fix c cloth/contact: 9 cloths have sides, the most are 8: give 'sides no'",
+    ),
+    case(
+        "contact: two that part the fluid",
+        SHEET_FIX + "fix c water cloth/contact 0.01\nfix d water cloth/contact 0.01\nrun 0",
+        r"pair_style sph/tait: fix c and fix d cloth/contact both part .* one of them 'sides no'",
+    ),
+    case(
+        "contact: wall without fluid",
+        SHEET_FIX + "fix c water cloth/contact 0.01 wall yes\npair_style zero 0.2\n"
+        "pair_coeff * *\nrun 0",
+        r"fix c cloth/contact: 'wall' fills .*there is none: use 'pair_style sph/tait', or 'wall n",
     ),
     case(
         "contact: no triangles",
@@ -303,6 +361,14 @@ CASES = [
         "emit: out of the box",
         EMIT + "10 1 0.05 disc 0.99 0 0 0.1 velocity 0 0 -1\nrun 0",
         r"opening reaches out of the box",
+    ),
+    case(
+        "emit: fast",
+        SHEET.replace("boundary p p p", "boundary f f f")
+        + EMIT.removeprefix(SHEET)
+        + "100 1 0.05 disc 0 0 -0.95 0.1 velocity 0 0 -20\ntimestep 0.01\n"
+        "fix step water sph/integrate constant\nrun 3",
+        r"fix pour sph/emit: \d+ of \d+ particles of a layer fell out .* move the opening inwards",
     ),
     case(
         "emit: mass of a type",

@@ -1,11 +1,16 @@
 """Obstacles of triangles in fix cloth/contact: a ball, a table, a body that is pushed."""
 
+import re
+import subprocess
+
 import numpy as np
 import pytest
 import trimesh
 from harness import by_id, instance, last_frame, run, write
 from scenes import HEADER
 from scipy.spatial import cKDTree
+
+from sphcloth.programs import lammps_on
 
 RADIUS = 0.3
 
@@ -165,6 +170,27 @@ def test_ranks(tmp_path, ranks):
     assert len(set(partner)) == len(one)
 
 
+@pytest.mark.parametrize("carrier", ["nve", "rigid single"])
+def test_restart_continues_to_the_last_bit(tmp_path, carrier):
+    """In the midst of contacts, whose pushes act on the obstacle in the next step."""
+    fixes = (
+        f"{WEIGHT}fix carrier obstacle {carrier}\nfix s cloth pbd/cloth damping 5\n"
+        "fix c water cloth/contact 0.01 obstacle obstacle friction 0.3\n"
+        "thermo_style custom step f_c[8] f_c[9] f_c[10]\nthermo_modify format float %.17g"
+    )
+    end = "run 40\nwrite_dump all custom {} id x y z vx vy vz modify sort id format float %.17g"
+    first = f"run 80\nwrite_restart half.bin\n{end.format('whole.txt')}"
+    whole = scene(tmp_path, ball(), fixes, CLOTH, RAIN.format(speed=-3), first, mass=0.05)
+    start = "comm_modify vel yes\nread_restart half.bin\n"
+    behind = start + whole[whole.index("special_bonds") :].replace(first, end.format("again.txt"))
+    out = [run(write(tmp_path, text)) for text in (whole, behind)]
+    tables = [text.split("Step")[-1].splitlines()[1:3] for text in out]
+    assert tables[0] == tables[1]
+    assert all(float(word) for word in tables[0][0].split()[1:])
+    whole, again = (last_frame(tmp_path / f"{name}.txt") for name in ("whole", "again"))
+    assert np.array_equal(whole, again)
+
+
 @pytest.mark.parametrize(
     ("fixes", "words"),
     [
@@ -181,3 +207,21 @@ def test_errors(tmp_path, fixes, words):
     text = scene(tmp_path, ball(), fixes, cloth=CLOTH, drops="create_atoms 2 single 0 0 0.9")
     with pytest.raises(Exception, match=words):
         instance().commands_string(text)
+
+
+def test_a_triangle_larger_than_the_ghost_cut_off_is_named(tmp_path):
+    """A box of twelve triangles, cut in the middle by two ranks."""
+    text = scene(
+        tmp_path,
+        trimesh.creation.box(extents=(1.0, 1.0, 0.2)),
+        "fix c water cloth/contact 0.01 obstacle obstacle",
+        drops="create_atoms 2 single 0 0 0.9",
+    ).replace("comm_modify cutoff 0.7", "comm_modify cutoff 0.25")
+    text = text.replace("angle_style zero\nangle_coeff *\n", "angle_style none\n")
+    text = text.replace("read_data", "processors 2 1 1\nread_data", 1)
+    script = write(tmp_path, text)
+    command = [*lammps_on(2), "-in", script.name]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode != 0
+    words = r"fix c cloth/contact: the triangle of vertices \d+, \d+ and \d+ is larger than"
+    assert re.search(words + " the ghost cut-off: raise it with 'comm_modify cutoff'", done.stdout)

@@ -1,6 +1,9 @@
 """pair_style sph/tait against closed formulas, written here from the paper's equations."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -145,9 +148,10 @@ def test_boundary_counts_with_its_own_volume_and_pushes_back(pressure, factor):
     np.testing.assert_allclose(by_id(lmp, "f")[:, 0], [-force, force], rtol=1e-12)
 
 
-def test_measured_volume_of_a_lone_boundary_particle():
+@pytest.mark.parametrize("volume", ["", "volume auto", "volume 1e-3 volume auto"])
+def test_measured_volume_of_a_lone_boundary_particle(volume):
     coeff = f"fluid {RHO0} c0 {C0}"
-    lmp = two_particles(0.03, coeff=coeff, second="pair_coeff 2 2 boundary")
+    lmp = two_particles(0.03, coeff=coeff, second=f"pair_coeff 2 2 boundary {volume}")
     rho = wendland(0) + RHO0 / wendland(0) * wendland(0.03)
     np.testing.assert_allclose(by_id(lmp, "rho")[0], rho, rtol=1e-14)
 
@@ -727,3 +731,40 @@ def test_particles_of_no_role_take_no_part(tmp_path):
         if other:
             assert np.abs(by_id(lmp, "f")[~fluid]).max() == 0
     assert all(np.array_equal(a, b) for a, b in zip(*seen, strict=True))
+
+
+# Everybody is everybody's neighbour: lists of 290 MB, for which 100 MB are left.
+CROWDED = """
+import resource
+from lammps import lammps
+lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+lmp.commands_string('''
+    units si
+    atom_style sph
+    comm_modify vel yes
+    boundary f f f
+    region box block -1 1 -1 1 -1 1
+    create_box 1 box
+    mass 1 1e-9
+    region ball sphere 0 0 0 0.05
+    create_atoms 1 random 12000 7 ball
+    pair_style sph/tait 0.2
+    pair_coeff 1 1 fluid 1000 c0 20
+    neighbor 0.03 bin''')
+with open("/proc/self/statm") as statm:
+    used = int(statm.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (100 << 20),) * 2)
+try:
+    lmp.command("run 0")
+except Exception as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the limit is set by what /proc says is used")
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="reserves more memory")
+def test_lists_that_do_not_fit_the_memory_are_named():
+    command = [sys.executable, "-c", CROWDED]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    words = "pair_style sph/tait: not enough memory for the neighbours of 12000 particles within"
+    assert words in done.stdout, done.stdout + done.stderr

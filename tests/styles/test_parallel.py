@@ -5,6 +5,8 @@ import pytest
 from harness import instance, last_frame, run, write
 from scenes import DROP, END, MAKE_DROP
 
+from sphcloth.stress.case import SCENES
+
 # what a restart file does not hold; no thermo output here, which must not matter
 RESTARTED = """
 variable restart index mid.restart
@@ -92,6 +94,16 @@ def test_tilted_box(scene):
         cut = script.replace("read_data", f"processors {grid}\nread_data")
         run(write(scene, cut, "in.tilted"), ranks=ranks, dump="tilt.txt")
         assert largest_difference(scene, "tilt1.txt", "tilt.txt") < 1e-10
+
+
+def test_deforming_box(tmp_path):
+    """Water hits a free sheet while both go through faces that move."""
+    script = write(tmp_path, (SCENES / "in.equal").read_text(), "in.equal")
+    run(script)
+    for ranks in (1, 2):
+        settings = {"from": "data", "box": "deforming", "scheme": "block", "steps": 40}
+        run(script, ranks, **settings, dt=5e-4, end=f"{ranks}.txt")
+    assert largest_difference(tmp_path, "1.txt", "2.txt") < 1e-9
 
 
 def test_balancing_while_it_runs(scene):

@@ -5,6 +5,7 @@ import pytest
 from harness import by_id, instance, last_frame, run, write
 from scenes import DROP, END, FREE_SHEET, HEADER, MAKE_DROP
 from scipy.integrate import quad
+from test_stepping import own_steps
 
 # A slab of water over the plane z = 0, where there is a sheet of a given mesh, or a plane wall.
 SLAB = (
@@ -191,6 +192,26 @@ def test_a_mesh_behind_another_one_is_not_counted_again():
 def test_light_wet_cloth_shortens_the_step():
     light, heavy = (mesh(areal=a, pin="", scheme="global", steps=20) for a in (0.01, 1e3))
     assert light.extract_fix("step", 0, 0) < 0.3 * heavy.extract_fix("step", 0, 0)
+
+
+def test_a_mesh_that_comes_near_shortens_the_step():
+    """By the speed of each foot on the sheet, which turns, towards the particle above it."""
+    support, relative = 0.15, 0.2
+    off = "velocity 0 force 0 acoustic 0 viscous 0 density 0"
+    lmp = mesh(pin="", scheme=f"global {off} max 1e3 relative {relative}")
+    lmp.commands_string("velocity cloth ramp vz -6 12 x -0.7 0.7 units box\nrun 0")
+    kind, x, v = (by_id(lmp, name) for name in ("type", "x", "v"))
+    water, sheet = kind == 1, kind == 2
+    x, v, slope = x[water], v[water], np.ptp(v[sheet, 2]) / np.ptp(x[sheet, 0])
+    apart = x[:, None] - x[None]
+    r = np.linalg.norm(apart, axis=2) + np.diag(np.full(len(x), np.inf))
+    closing = -((v[:, None] - v[None]) * apart).sum(axis=2) / r
+    of_water = np.where(r < support, closing, 0).max(axis=1)
+    of_sheet = np.where(x[:, 2] < support, 3 + slope * x[:, 0] - v[:, 2], 0)
+    assert (of_sheet > of_water).sum() > 100 and (of_sheet < 0).sum() > 10
+    expected = relative * support / np.maximum(of_water, of_sheet)
+    np.testing.assert_allclose(own_steps(lmp)[water], expected, rtol=1e-9)
+    assert lmp.extract_fix("step", 0, 0) == pytest.approx(expected.min(), rel=1e-9)
 
 
 WALL_DROP = (

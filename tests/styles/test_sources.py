@@ -75,6 +75,52 @@ def test_without_a_drain_lammps_says_that_atoms_were_lost():
         pour(n=40, extra="thermo 100\nrun 1500")
 
 
+TILTED = """
+units si
+atom_style sph
+comm_modify vel yes
+boundary f p p
+region box prism -1 1 -1 1 -1 1 0.5 0 0
+create_box 1 box
+mass 1 0.125
+create_atoms 1 single {x} {y} 0
+pair_style sph/tait 0.1
+pair_coeff 1 1 fluid 1000 c0 20
+neighbor 0.03 bin
+neigh_modify every 1 delay 0 check yes
+timestep 1e-3
+group water type 1
+velocity all set {speed} 0 0 units box
+fix step water sph/integrate constant
+fix out water sph/drain
+run 200
+"""
+
+
+@pytest.mark.parametrize(
+    ("x", "speed", "y", "leaves"),
+    [
+        (-0.4, -1, 0.9, True),  # the face is at -0.53 there
+        (-0.7, -1, -0.9, False),  # and at -0.98 here
+        (0.9, 1, -0.9, True),  # the other one is at 1.03
+        (1.2, 1, 0.9, False),  # and at 1.48
+    ],
+)
+def test_the_faces_of_a_tilted_box_drain(x, speed, y, leaves):
+    lmp = instance()
+    lmp.commands_string(TILTED.format(x=x, y=y, speed=speed))
+    assert lmp.get_natoms() == 1 - leaves
+    assert lmp.extract_fix("out", 0, 0) == leaves
+
+
+def test_a_particle_without_a_place_does_not_leave():
+    lmp = pour(n=40, extra="fix out water sph/drain\nrun 10\n")
+    lmp.commands_string("variable most equal exp(1e4)\nfix push water addforce 0 0 v_most")
+    message = r"fix out sph/drain: particle \d+ is at .*(inf|nan).*does not leave.*smaller"
+    with pytest.raises(Exception, match=message):
+        lmp.command("run 10")
+
+
 def test_a_region_drains_inside_the_box():
     lmp = pour(n=400, extra="region low block INF INF INF INF INF 0.2\n")
     lmp.command("fix out water sph/drain region low")

@@ -148,10 +148,10 @@ def approach_speeds(lmp, support=0.1):
     return np.where(r < support, closing, 0).max(axis=1, initial=0)[kind == 1]
 
 
-def own_steps(lmp):
+def own_steps(lmp, column=0):
     owned = lmp.extract_setting("nlocal")
     order = np.argsort(lmp.numpy.extract_atom("id")[:owned])
-    return np.array(lmp.numpy.extract_fix("step", 1, 2)[:owned, 0])[order]
+    return np.array(lmp.numpy.extract_fix("step", 1, 2)[:owned, column])[order]
 
 
 def test_relative_limit_is_that_of_the_fastest_approach():

@@ -179,7 +179,7 @@ def test_pouring_on_two_ranks_and_after_a_restart(tmp_path):
 
 
 def test_time_goes_on_after_a_restart_file_of_the_middle_of_a_run(tmp_path):
-    """LAMMPS forgets there what time went by since the step last changed, and sources would wait."""
+    """LAMMPS forgets what time went by since the step last changed, and sources would wait."""
     text = POUR.format(n=300, dt=1e-3, opening="disc 0 0 0.8 0.12")
     script = text + RUN.format(before="restart 250 mid", steps=500, after="", dump="whole.txt")
     run(write(tmp_path, script))

@@ -424,6 +424,8 @@ def check_lmp(words: list[str]) -> None:
             script = next(arguments)
             if script not in ("in.script", "in.drop"):
                 text = SCRIPTS[script].read_text()
+        elif word == "-log":
+            next(arguments)
         else:
             assert word == "-var", word
             name, _ = next(arguments), next(arguments)

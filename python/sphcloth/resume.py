@@ -7,6 +7,7 @@ run that goes on has said at which step it began; then both become one file agai
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import re
 from collections.abc import Iterable, Iterator
@@ -83,18 +84,29 @@ def _first_step(log: Path) -> int | None:
 
 
 def _join_logs(old: Path, new: Path, first: int) -> None:
-    """Put the rows of the old log before ``first`` in front of the new one."""
-    lines, ended = [], True
-    for line in old.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True):
-        row = ROW.match(line)
-        if not line.endswith("\n") or (row and int(row[1]) >= first):
-            continue
-        ended = line == "...\n" or (ended and line != "---\n")
-        lines.append(line)
-    if not ended:
-        lines.append("...\n")
-    _replace(new, ["".join(lines).encode(), new.read_bytes()])
+    """Put the old log up to its rows from ``first`` on in front of the new one."""
+    text = old.read_text(encoding="utf-8", errors="replace")
+    whole = text[: text.rfind("\n") + 1].splitlines(keepends=True)
+    lines = list(itertools.takewhile(lambda line: _step_of(line) < first, whole))
+    _replace(new, ["".join(_with_end(lines)).encode(), new.read_bytes()])
     old.unlink()
+
+
+def _step_of(line: str) -> float:
+    """Return the step of a row of thermo output; of other lines less than any."""
+    row = ROW.match(line)
+    return int(row[1]) if row else -math.inf
+
+
+def _with_end(lines: list[str]) -> list[str]:
+    """End the table at the end of a log that was cut there, or leave it out where it has no row."""
+    if "---\n" not in lines:
+        return lines
+    start = len(lines) - 1 - lines[::-1].index("---\n")
+    table = lines[start:]
+    if not any(map(ROW.match, table)):
+        return lines[:start]
+    return lines if "...\n" in table else [*lines, "...\n"]
 
 
 def _join_dumps(old: Path, new: Path, first: int) -> None:

@@ -55,6 +55,17 @@ def test_what_was_written_twice_is_there_once(files: tuple[Path, Path]) -> None:
     assert dump.read_text() == dump_of(0, 20, 30, 40)
 
 
+def test_a_run_that_is_stopped_twice_from_the_same_file(files: tuple[Path, Path]) -> None:
+    log, dump = files
+    join(log, dump)
+    set_aside(log, dump)
+    log.write_text(log_of(20, 25, 30, 40, 50) + "...\n")
+    dump.write_text(dump_of(30, 40, 50))
+    join(log, dump)
+    assert ThermoTable.read(log)["Step"].tolist() == [0, 10, 20, 25, 30, 40, 50]
+    assert dump.read_text() == dump_of(0, 20, 30, 40, 50)
+
+
 def test_a_run_that_never_began_leaves_what_there_was(files: tuple[Path, Path]) -> None:
     log, dump = files
     before = kept(log).read_text(), kept(dump).read_text()

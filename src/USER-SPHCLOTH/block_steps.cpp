@@ -103,6 +103,7 @@ double BlockSteps::next_step() const
 void BlockSteps::choose()
 {
   want_steps();
+  if (!begun()) fix->limit_vertices();
   if (!begun() || at.line.ended()) begin_root();
   choose_levels();
   find_step_of_scene();

@@ -487,7 +487,7 @@ int FixSPHIntegrate::count_vertices() const
   return n;
 }
 
-// none knows its own before the first step has been taken
+// A mesh that fills the kernel knows how wet it is when the first step has been taken.
 
 StepLimit FixSPHIntegrate::tightest_vertex() const
 {

@@ -80,6 +80,7 @@ class FixSPHIntegrate : public Fix {
   double acceleration(int i, double by) const;
   double longest_step() const { return ceiling; }
   double next_output_time(double dt) const { return times.next(dt); }
+  void limit_vertices();    // finds what tightest_vertex() and vertex_step() tell
   sphcloth::StepLimit tightest_vertex() const;
   double vertex_step(int i) const;
   int count_vertices() const;
@@ -136,7 +137,6 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit tightest_particle();
   void count(const sphcloth::StepLimit &own);
   void count_blocks();
-  void limit_vertices();
   template <class Do> void for_vertices(Do something) const;
   sphcloth::StepLimit limit_of_vertex(int i, const FixPBDCloth &) const;
   double speed_and_force(int, const double *force, sphcloth::StepState &) const;

@@ -204,6 +204,7 @@ void SheetWalls::begin()
       return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
     });
   first.assign(atom->nlocal, -1);
+  if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
   for (std::size_t k = 0; k < feet.size(); k++) {
     Foot &foot = feet[k];
     foot.value = table(foot.distance / support(foot.particle));
@@ -297,7 +298,6 @@ double SheetWalls::approach(int i)
 
 void SheetWalls::end()
 {
-  if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
   for (SheetWall &sheet : sheets) {
     sheet.hand_over([this](int i, const Vec3 &on) {
       for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];

@@ -211,6 +211,24 @@ def test_another_scheme_before_and_behind(folder, monkeypatch):
     assert np.isfinite(by_id(lmp, "x")).all()
 
 
+def test_a_wet_vertex_limits_the_first_step_too(tmp_path, monkeypatch):
+    """Light vertices in water ask for a step below that of the water."""
+    monkeypatch.chdir(tmp_path)
+    run(write(tmp_path, MAKE_DROP, "in.make"))
+    wet = DROP.replace(
+        "group fluid type 1\n", "group fluid type 1\ndisplace_atoms fluid move 0 0 -0.03\n"
+    )
+    first = {}
+    for scheme in ("global", "block"):
+        lmp = instance()
+        lmp.commands_string(wet.replace("global", "global velocity 0 force 0"))
+        lmp.commands_string(f"run_style sph/adaptive {scheme}\nrun 0 post no")
+        first[scheme] = lmp.extract_fix("step", 0, 0)
+        lmp.close()
+    assert first["global"] < 0.5 * 0.5 * 0.05 / 30
+    assert 0.5 * first["global"] < first["block"] <= first["global"] * (1 + 1e-12)
+
+
 def test_with_cloth_and_contact_nothing_passes(tmp_path):
     run(write(tmp_path, MAKE_DROP, "in.make"))
     script = DROP + "run_style sph/adaptive block\n" + END

@@ -10,11 +10,12 @@ import itertools
 import math
 import os
 import re
+import warnings
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import BinaryIO
 
 from sphcloth.errors import UserError
+from sphcloth.trajectory import frame_texts
 
 BEFORE = ".before"
 # the last bytes of a restart file
@@ -111,7 +112,9 @@ def _with_end(lines: list[str]) -> list[str]:
 
 def _join_dumps(old: Path, new: Path, first: int) -> None:
     """Put the whole frames of the old dump up to ``first`` in front of those of the new one."""
-    _replace(new, itertools.chain(_frames(old, until=first), _frames(new, behind=first)))
+    with warnings.catch_warnings():  # that a frame was cut off
+        warnings.simplefilter("ignore")
+        _replace(new, itertools.chain(_frames(old, until=first), _frames(new, behind=first)))
     old.unlink()
 
 
@@ -123,24 +126,7 @@ def _replace(file: Path, pieces: Iterable[bytes]) -> None:
     whole.replace(file)
 
 
-def _frames(dump: Path, behind: float = -1, until: float = float("inf")) -> Iterator[bytes]:
+def _frames(dump: Path, behind: float = -math.inf, until: float = math.inf) -> Iterator[bytes]:
     """Yield the whole frames of a text dump with ``behind`` < step <= ``until``."""
-    if not dump.is_file():
-        return
-    with dump.open("rb") as file:
-        while frame := _next_frame(file):
-            step = int(frame.split(b"\n", 2)[1])
-            if behind < step <= until:
-                yield frame
-
-
-def _next_frame(file: BinaryIO) -> bytes | None:
-    """Return the next frame of a text dump, None if there is no other that is whole."""
-    head = [file.readline() for _ in range(9)]
-    if not head[8].endswith(b"\n"):
-        return None
-    if head[0] != b"ITEM: TIMESTEP\n" or not head[8].startswith(b"ITEM: ATOMS"):
-        raise UserError(f"{file.name} is no text dump with nothing but atoms: join it by hand")
-    rows = list(itertools.islice(file, int(head[3])))
-    whole = len(rows) == int(head[3]) and (not rows or rows[-1].endswith(b"\n"))
-    return b"".join([*head, *rows]) if whole else None
+    frames = frame_texts(dump) if dump.is_file() else ()
+    return (text for step, text in frames if behind < step <= until)

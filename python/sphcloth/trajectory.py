@@ -169,6 +169,17 @@ class Trajectory(Sequence[Frame]):
         return Frame(entry.step, time, entry.box, columns, entry.periodic, entry.tilt)
 
 
+def frame_texts(dump: Path) -> Iterator[tuple[int, bytes]]:
+    """Yield the step and the text of each complete frame of a text dump.
+
+    Raises:
+        UserError: not a dump (with the line), or columns missing.
+    """
+    with dump.open("rb") as file, dump.open("rb") as texts:
+        for entry in _index(file, dump):
+            yield entry.step, texts.read(entry.size)
+
+
 def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
     """Yield the place of each complete frame; warn about an incomplete last one."""
     line, offset = 1, 0

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import dump_frame
 from rich.console import Console
 
 from sphcloth.errors import UserError
@@ -22,14 +23,8 @@ def log_of(*steps: int) -> str:
     return HEAD + "".join(f"  - [{step}, {step / 1000}, ]\n" for step in steps)
 
 
-def dump_of(*steps: int, atoms: int = 2) -> str:
-    rows = "".join(f"{k + 1} 1 0.{k} 0 0\n" for k in range(atoms))
-    head = (
-        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n" + 3 * "0 1\n"
-    )
-    return "".join(
-        head.format(step, atoms) + "ITEM: ATOMS id type x y z\n" + rows for step in steps
-    )
+def dump_of(*steps: int) -> str:
+    return "".join(dump_frame(step, [[1, 1, 0.0, 0, 0], [2, 1, 0.1, 0, 0]]) for step in steps)
 
 
 @pytest.fixture
@@ -78,7 +73,7 @@ def test_a_run_that_never_began_leaves_what_there_was(files: tuple[Path, Path]) 
 def test_a_dump_of_another_form_is_not_thrown_away(files: tuple[Path, Path]) -> None:
     log, dump = files
     kept(dump).write_text("ITEM: UNITS\nsi\n" + dump_of(0))
-    with pytest.raises(UserError, match="join it by hand"):
+    with pytest.raises(UserError, match="without 'dump_modify time' or 'units'"):
         join(log, dump)
     assert kept(dump).exists()
 

@@ -331,6 +331,7 @@ PROVOKED = {
     + "fix step water sph/integrate constant\nvelocity water set 0 0 -900 units box"
     "\nthermo 1\nrun 20",
     "A jet that bursts apart": SCENE.replace("* 0.1", "* 0.125") + EMIT.format(1),
+    "Layers appear in water that is there": SCENE + EMIT.format(0.5),
     "The opening is outside": SCENE + EMIT.format(2),
     "The step falls below `min`": SCENE
     + "fix step water sph/integrate global min 1e-3\nvelocity water set 0 0 -100 units box\nrun 5",

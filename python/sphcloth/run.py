@@ -20,7 +20,7 @@ from sphcloth.errors import UserError
 from sphcloth.examples import find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
-from sphcloth.resume import BEFORE, join, newest_restart, set_aside
+from sphcloth.resume import join, kept, newest_restart, set_aside
 from sphcloth.summary import summarise
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -73,6 +73,7 @@ def run_example(
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
     out.mkdir(parents=True, exist_ok=True)
+    check_no_link(out / "pictures")
     log, dump = out / LOG, out / f"{name}.lammpstrj"
     if resume:
         if "again" not in example.defaults():
@@ -113,19 +114,18 @@ def _end_time(variables: Mapping[str, str]) -> float:
 
 def _remove_old_run(out: Path, name: str) -> None:
     """Remove the files that LAMMPS wrote in an earlier run."""
-    own = [LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data", f"{name}.restart.*", f"*{BEFORE}"]
-    _remove(out, own)
+    files = [out / file for file in (LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data")]
+    _remove([*files, *map(kept, files), *out.glob(f"{name}.restart.*")])
 
 
 def _remove_old_results(out: Path) -> None:
     """Remove what was found in an earlier run, lest one that fails early shows its numbers."""
-    check_no_link(out / "pictures")
-    _remove(out, ["summary.json", "pictures/frame_*.png", "*.png"])
+    _remove([out / "summary.json", *out.glob("pictures/frame_*.png"), *out.glob("*.png")])
 
 
-def _remove(folder: Path, patterns: Iterable[str]) -> None:
-    for path in [path for pattern in patterns for path in folder.glob(pattern)]:
-        path.unlink()
+def _remove(files: Iterable[Path]) -> None:
+    for file in files:
+        file.unlink(missing_ok=True)
 
 
 def copy_companions(script: Path, folder: Path) -> None:

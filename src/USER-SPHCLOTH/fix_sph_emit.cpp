@@ -179,7 +179,7 @@ void FixSPHEmit::emit_layer(double age)
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
   const tagint last = largest_id(atom, world);
 
-  bigint mine[2] = {0, count_in_the_way(age)}, all[2];
+  bigint mine[2] = {0, warned ? 0 : count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
     add_particle(centre + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
@@ -218,7 +218,6 @@ bigint FixSPHEmit::count_in_the_way(double age) const
 
 void FixSPHEmit::warn_of_backwater(bigint particles)
 {
-  if (warned) return;
   warned = true;
   if (comm->me == 0)
     error->warning(FLERR,

@@ -184,11 +184,12 @@ def test_a_report_shows_no_picture_from_elsewhere(tmp_path):
 
 def test_a_run_removes_nothing_behind_a_link(tmp_path):
     kept = written(tmp_path / "elsewhere" / "frame_0000.png", "x")
-    (tmp_path / "out").mkdir()
+    log = written(tmp_path / "out" / "log.lammps", "x")
     (tmp_path / "out" / "pictures").symlink_to(kept.parent)
     with pytest.raises(UserError, match="out/pictures is a link"):
         run_example("pour", "tiny", 1, tmp_path / "out", {}, None, None)
     assert kept.exists()
+    assert log.exists()
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"scheme": 1}', '{"walls_s": 3}', '"x"'])

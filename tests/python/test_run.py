@@ -68,6 +68,20 @@ def test_a_sheet_that_holds_is_success(drop: Path) -> None:
     assert "n/a" in text
 
 
+def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -> None:
+    drop.mkdir()
+    own = [drop / "log.lammps.before", drop / "drop.restart.1"]
+    others = [drop / "notes.before", drop / "other.restart.1"]
+    for file in [*own, *others]:
+        file.touch()
+    (drop / "log.lammps").symlink_to(drop.parent / "elsewhere")
+    code, _ = run(drop, "tiny")
+    assert code == 0
+    assert not any(file.exists() for file in own)
+    assert all(file.exists() for file in others)
+    assert not (drop.parent / "elsewhere").exists()
+
+
 def test_a_particle_through_the_sheet_is_failure(drop: Path) -> None:
     code, _ = run(drop, floor="0.1")
     summary = json.loads((drop / "summary.json").read_text())

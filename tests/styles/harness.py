@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,26 @@ BIN = Path(sys.executable).parent
 
 def run(script: Path, ranks: int = 1, **variables: object) -> str:
     """Run ``script`` in its own folder on ``ranks`` ranks; return what it printed."""
-    settings = [word for name, value in variables.items() for word in ("-var", name, str(value))]
-    command = [*lammps_on(ranks), "-in", script.name, *settings]
-    done = subprocess.run(command, cwd=script.parent, capture_output=True, text=True, timeout=300)
+    done = _started(script, ranks, variables, timeout=300)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
     return done.stdout
+
+
+def fail(script: Path, ranks: int) -> str:
+    """Run a script that must end in an error, all ranks within a minute; return what it printed."""
+    done = _started(script, ranks, {}, timeout=60)
+    assert done.returncode != 0
+    return done.stdout
+
+
+def _started(
+    script: Path, ranks: int, variables: Mapping[str, object], timeout: float
+) -> subprocess.CompletedProcess[str]:
+    settings = [word for name, value in variables.items() for word in ("-var", name, str(value))]
+    command = [*lammps_on(ranks), "-in", script.name, *settings]
+    return subprocess.run(
+        command, cwd=script.parent, capture_output=True, text=True, timeout=timeout
+    )
 
 
 def write(folder: Path, text: str, name: str = "in.test") -> Path:

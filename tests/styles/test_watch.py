@@ -1,11 +1,10 @@
 """fix sph/watch: it sees each breach, says what it was, keeps a good state, and changes nothing."""
 
 import re
-import subprocess
 
 import numpy as np
 import pytest
-from harness import BIN, by_id, instance, last_frame, run, write
+from harness import by_id, fail, instance, last_frame, run, write
 from scenes import DROP, END, FREE_SHEET, MAKE_DROP
 from test_sources import POUR
 
@@ -198,11 +197,8 @@ def test_a_watched_run_is_the_same_to_the_last_bit(drop, scheme, free, watched):
 
 def test_all_ranks_stop_at_a_breach_that_one_of_them_sees(drop):
     script = DROP + "fix watch all sph/watch every 1 speed 3.2 restart last\n" + END
-    script = write(drop, script, "in.breach")
-    command = [BIN / "mpiexec", "-n", "2", BIN / "lmp", "-in", script.name]
-    done = subprocess.run(command, cwd=drop, capture_output=True, text=True, timeout=60)
-    assert done.returncode != 0
-    assert done.stdout.count("ERROR: fix watch sph/watch: speed") == 1
+    said = fail(write(drop, script, "in.breach"), ranks=2)
+    assert said.count("ERROR: fix watch sph/watch: speed") == 1
 
 
 def test_restart_goes_on_with_the_balance_of_the_begin(tmp_path, monkeypatch):

@@ -216,6 +216,7 @@ def test_a_triangle_larger_than_the_ghost_cut_off_is_named(tmp_path):
     ).replace("comm_modify cutoff 0.7", "comm_modify cutoff 0.25")
     text = text.replace("angle_style zero\nangle_coeff *\n", "angle_style none\n")
     text = text.replace("read_data", "processors 2 1 1\nread_data", 1)
-    said = fail(write(tmp_path, text), ranks=2)
+    # the launcher may end everything before what one rank said has reached it: seen once
+    said = "".join(fail(write(tmp_path, text), ranks=2) for _ in range(3))
     words = r"fix c cloth/contact: the triangle of vertices \d+, \d+ and \d+ is larger than"
     assert re.search(words + " the ghost cut-off: raise it with 'comm_modify cutoff'", said)

@@ -81,22 +81,34 @@ std::array<Sweep, 3> ContactSurface::sweep_of_triangle(int t) const
   return sweep;
 }
 
+// with room for the way of the step
+
 void ContactSurface::set_boxes(double margin)
 {
   boxes.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); t++) {
     boxes[t].setEmpty();
-    double way_sq = 0.0;
     for (int s : triangles[t]) {
       boxes[t].extend(start[s]);
       boxes[t].extend(end[s]);
-      way_sq = std::max(way_sq, (end[s] - start[s]).squaredNorm());
     }
-    const Vec3 room = Vec3::Constant(margin + std::sqrt(way_sq));
-    boxes[t].min() -= room;
-    boxes[t].max() += room;
+    boxes[t].min().array() -= margin;
+    boxes[t].max().array() += margin;
   }
   grid.build(boxes);
+}
+
+void ContactSurface::set_discs(double reach)
+{
+  discs.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); t++) {
+    const auto &[a, b, c] = triangles[t];
+    discs[t] = disc_around(end[a], end[b], end[c]);
+    double way_sq = 0.0;
+    for (int s : triangles[t]) way_sq = std::max(way_sq, (end[s] - start[s]).squaredNorm());
+    discs[t].room = std::sqrt(way_sq);
+  }
+  disc_grid.build(discs, reach);
 }
 
 // How far vertices and particles may go before those who are near are looked for again: as far as until
@@ -109,26 +121,21 @@ double ContactSurface::room_to_move() const
 
 void ContactSurface::find_near()
 {
-  const double skin = room_to_move();
+  const double far = 2.0 * (rules->thickness + room_to_move());
   near.clear();
-  set_boxes(2.0 * rules->thickness + skin);
+  set_discs(far);
   start_then = start;
   end_then = end;
-  const Box &cloth_box = grid.bounds();
   found_at.resize(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
     const double *x = atom->x[i];
     found_at[i] = Vec3(x[0], x[1], x[2]);
     if (!may_move(i)) continue;
     const Sweep particle = sweep_of(i);
-    Box box(particle.start);
-    box.extend(particle.end);
-    box.min().array() -= skin;
-    box.max().array() += skin;
-    if (!cloth_box.intersects(box)) continue;
-    grid.query(box, [&](int t) {
-      if (boxes[t].intersects(box)) near.push_back({i, t});
-    });
+    const std::size_t first = near.size();
+    disc_grid.within(particle.end, far + (particle.end - particle.start).norm(),
+                     [&](int t) { near.push_back({i, t}); });
+    std::sort(near.begin() + first, near.end());    // in whatever order cells have them
   }
 }
 
@@ -267,14 +274,7 @@ void ContactSurface::find_sides(double reach, int sheet, std::vector<Sides> &sid
 {
   const Clock clock(counts->seconds);
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = place(s);
-  set_boxes(reach);
-  spheres.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); t++) {
-    const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
-    const Vec3 centre = (a + b + c) / 3.0;
-    spheres[t] = {centre,
-                  std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})};
-  }
+  set_discs(reach);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!may_move(i)) continue;
     const double *x = atom->x[i];
@@ -290,9 +290,7 @@ int ContactSurface::side_at(const Vec3 &p, double reach)
 {
   double nearest = std::numeric_limits<double>::max(), height = 0.0;
   bool beyond = false;
-  grid.query(Box(p), [&](int t) {
-    const double far = std::min(reach, nearest) * (1.0 + SEAM) + spheres[t].radius;
-    if ((p - spheres[t].centre).squaredNorm() > far * far) return;
+  disc_grid.nearest(p, reach, SEAM * reach, [&](int t) {
     const Vec3 &a = end[triangles[t][0]], &b = end[triangles[t][1]], &c = end[triangles[t][2]];
     Vec3 weight;
     const Vec3 out = distance_vector(p, a, b, c, weight);

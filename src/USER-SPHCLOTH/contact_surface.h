@@ -11,6 +11,7 @@
 
 #include "cloth_guest.h"
 #include "core/contact.h"
+#include "core/disc_grid.h"
 #include "core/sides.h"
 #include "platform.h"
 #include "triangle_set.h"
@@ -182,15 +183,12 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
   std::vector<Vec3> shares;    // contacts of each slot
   std::vector<Vec3> received;    // by owned slot
-  std::vector<sphcloth::Box> boxes, swept;    // of triangles: with room to move, in this step
+  std::vector<sphcloth::Box> boxes, swept;    // of triangles in a step
   std::vector<char> swept_for;    // which of the latter are known
-  struct Sphere {
-    Vec3 centre;
-    double radius;
-  };
-  std::vector<Sphere> spheres;    // around the triangles, at a list build
   sphcloth::BoxGrid grid;
-  std::vector<std::array<int, 2>> near;    // atom and triangle whose boxes overlap
+  std::vector<sphcloth::Disc> discs;    // around triangles, with room for the way back
+  sphcloth::DiscGrid disc_grid;
+  std::vector<std::array<int, 2>> near;    // atom and triangle that may meet before the next look
   std::vector<Vec3> found_at;    // of each atom, when they were found
   std::vector<Vec3> start_then, end_then;    // by slot, the same
   std::vector<Particle> particles;
@@ -224,6 +222,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
     }
   }
   void set_boxes(double margin);
+  void set_discs(double reach);
   int side_at(const Vec3 &p, double reach);
   void meet();
   // the sum of what each pair asks of the mass of its vertices

@@ -77,6 +77,8 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       lambda.force = args.at_least(keyword, 0.0);
     else if (keyword == "acoustic")
       lambda.acoustic = args.at_least(keyword, 0.0);
+    else if (keyword == "wetted")
+      lambda.wetted = args.at_least(keyword, 0.0);
     else if (keyword == "viscous")
       lambda.viscous = args.at_least(keyword, 0.0);
     else if (keyword == "density")
@@ -111,8 +113,8 @@ void FixSPHIntegrate::read_options(ArgReader &args)
       clamp_at_floor = args.choice(keyword, {"stop", "clamp"}) == 1;
     else
       args.unknown(keyword,
-                   "velocity, force, acoustic, viscous, density, relative, cloth, fluctuation, "
-                   "output, until, ratio, waking, sleep, min, max, growth, below");
+                   "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
+                   "fluctuation, output, until, ratio, waking, sleep, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",

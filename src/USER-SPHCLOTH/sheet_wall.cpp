@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -63,8 +64,9 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
       nearest = std::min(nearest, distance);
       near.push_back({t, distance});
     });
-    std::sort(near.begin(), near.end(),
-              [](const Candidate &a, const Candidate &b) { return a.distance < b.distance; });
+    std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
+      return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+    });
     if (near.empty() || near[0].distance > own + skin) continue;
     const std::size_t first = candidates.size();
     for (const Candidate &c : near)

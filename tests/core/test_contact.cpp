@@ -1,6 +1,7 @@
 #include "check.h"
 #include "core/box_grid.h"
 #include "core/contact.h"
+#include "core/disc_grid.h"
 #include "core/sides.h"
 
 #include <random>
@@ -177,4 +178,52 @@ CASE("grid: finds exactly the boxes that a brute force search finds")
   }
   grid.build({});
   grid.query(Box(vec()), [](int) { CHECK(false); });
+}
+
+CASE("grid: among discs of all sizes it finds the triangles near a point, and the nearest")
+{
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const auto vec = [&] { return Eigen::Vector3d(u(generator), u(generator), u(generator)); };
+  std::vector<std::array<Eigen::Vector3d, 3>> triangles;
+  std::vector<Disc> discs, moving;
+  for (int k = 0; k < 500; k++) {
+    const Eigen::Vector3d at = vec();
+    const double size = k % 50 == 0 ? 3.0 : 0.05;
+    triangles.push_back({at, at + size * vec(), at + (k == 7 ? 0.0 : size) * vec()});
+    discs.push_back(disc_around(triangles[k][0], triangles[k][1], triangles[k][2]));
+  }
+  const double far = 0.2, slack = 0.01, room = 0.1;
+  for (const Disc &disc : discs) {
+    moving.push_back(disc);
+    moving.back().room = room;
+  }
+  DiscGrid grid, roomy;
+  grid.build(discs, far);
+  roomy.build(moving, far);
+  int looked = 0, seen = 0;
+  for (int k = 0; k < 500; k++) {
+    const Eigen::Vector3d p = 1.3 * vec();
+    std::vector<double> distance;
+    for (const auto &[a, b, c] : triangles) {
+      Eigen::Vector3d weight;
+      distance.push_back(distance_vector(p, a, b, c, weight).norm());
+    }
+    const double nearest = *std::min_element(distance.begin(), distance.end());
+    std::set<int> near, all, more;
+    grid.nearest(p, far, slack, [&](int t) { CHECK(near.insert(t).second); });
+    grid.within(p, far, [&](int t) { CHECK(all.insert(t).second); });
+    roomy.within(p, far, [&](int t) { CHECK(more.insert(t).second); });
+    for (int t = 0; t < 500; t++) {
+      if (distance[t] <= std::min(far, nearest + slack)) CHECK(near.count(t) == 1);
+      if (distance[t] <= far) CHECK(all.count(t) == 1);
+      if (distance[t] <= far + room) CHECK(more.count(t) == 1);
+    }
+    if (nearest < far) looked++;
+    seen += static_cast<int>(near.size());
+  }
+  CHECK(looked > 100);
+  CHECK(seen < 6 * 500);    // hardly more than have to
+  grid.build({}, far);
+  grid.nearest(vec(), far, slack, [](int) { CHECK(false); });
 }

@@ -59,6 +59,9 @@ CASE("limits: of a vertex")
   StepState s{0.1, 4.0, 0.0, 20.0, 0.0, 0.0, 0.0};
   CHECK_NEAR(vertex_limit(lambda, s, 0.01).dt, 0.5 * 0.05 / 20.0, 1e-17);
   CHECK(vertex_limit(lambda, s, 0.01).by == Limit::WETTED);
+  lambda.wetted = 1.5;
+  CHECK_NEAR(vertex_limit(lambda, s, 0.01).dt, 1.5 * 0.05 / 20.0, 1e-17);
+  CHECK_NEAR(particle_limit(lambda, s).dt, 0.5 * 0.05 / 20.0, 1e-17);
   lambda.cloth = 0.2;
   CHECK_NEAR(vertex_limit(lambda, s, 0.01).dt, 0.2 * 0.01 / 2.0, 1e-17);
   CHECK(vertex_limit(lambda, s, 0.01).by == Limit::CLOTH);

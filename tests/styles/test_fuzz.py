@@ -130,9 +130,10 @@ def arguments(draw, style):
 
 
 class Worker:
-    """The program that does it, started anew where it died."""
+    """The program that does it, started anew where it died, in a folder for what commands write."""
 
-    def __init__(self):
+    def __init__(self, folder):
+        self.folder = folder
         self.process = None
 
     def ask(self, **order):
@@ -154,6 +155,7 @@ class Worker:
     def start(self):
         self.process = subprocess.Popen(
             [sys.executable, WORKER],
+            cwd=self.folder,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -175,8 +177,8 @@ class Worker:
 
 
 @pytest.fixture(scope="module")
-def worker():
-    one = Worker()
+def worker(tmp_path_factory):
+    one = Worker(tmp_path_factory.mktemp("written"))
     yield one
     one.stop()
 

@@ -126,10 +126,10 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
         block = "run_style sph/adaptive block"
         yield Finding("time step", said, block), Trial(_saves_updates, before=(block,))
     elif name in ("acoustic", "wetted"):
-        now = float(stepper.value("acoustic", "0.5"))
-        line = f"{stepper.line} ... acoustic {LOUDER}"
+        now = float(stepper.value(name, stepper.value("acoustic", "0.5")))
+        louder = f"{name} {LOUDER}"
         if now < float(LOUDER):
-            yield Finding("time step", said, line), _longer(f"acoustic {LOUDER}")
+            yield Finding("time step", said, f"{stepper.line} ... {louder}"), _longer(louder)
 
 
 def _limited(run: Evidence, stepper: Fix, name: str) -> float | None:

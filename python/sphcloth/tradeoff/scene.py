@@ -24,6 +24,7 @@ LIMITS = (
     "velocity",
     "force",
     "acoustic",
+    "wetted",
     "viscous",
     "density",
     "relative",

@@ -4,15 +4,11 @@
 #ifndef SPHCLOTH_CORE_BOX_GRID_H
 #define SPHCLOTH_CORE_BOX_GRID_H
 
-#include <Eigen/Geometry>
+#include "cell_grid.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace sphcloth {
-
-using Box = Eigen::AlignedBox3d;
 
 class BoxGrid {
  public:
@@ -20,80 +16,55 @@ class BoxGrid {
 
   void build(const std::vector<Box> &boxes)
   {
-    bounds_.setEmpty();
+    Box bounds;
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Box &box : boxes) {
-      bounds_.extend(box);
+      bounds.extend(box);
       mean += box.sizes();
     }
+    grid.bounds = bounds;
     if (boxes.empty()) return;
-    choose_cells(mean / static_cast<double>(boxes.size()), boxes.size());
+    grid.cut(bounds, mean / static_cast<double>(boxes.size()), boxes.size());
 
-    first_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
-    for (const Box &box : boxes) for_cells(box, [&](std::size_t c) { first_[c + 1]++; });
-    for (std::size_t c = 1; c < first_.size(); c++) first_[c] += first_[c - 1];
-    items_.resize(first_.back());
-    cursor_.assign(first_.begin(), first_.end() - 1);
+    begin.resize(boxes.size());
+    first.assign(grid.size() + 1, 0);
+    for (std::size_t b = 0; b < boxes.size(); b++) {
+      begin[b] = grid.of(boxes[b].min());
+      grid.for_cells(begin[b], grid.of(boxes[b].max()),
+                     [&](const CellGrid::Cell &, std::size_t c) { first[c + 1]++; });
+    }
+    for (std::size_t c = 1; c < first.size(); c++) first[c] += first[c - 1];
+    items.resize(first.back());
+    cursor.assign(first.begin(), first.end() - 1);
     for (std::size_t b = 0; b < boxes.size(); b++)
-      for_cells(boxes[b], [&](std::size_t c) { items_[cursor_[c]++] = static_cast<int>(b); });
+      grid.for_cells(begin[b], grid.of(boxes[b].max()), [&](const CellGrid::Cell &, std::size_t c) {
+        items[cursor[c]++] = static_cast<int>(b);
+      });
   }
 
-  const Box &bounds() const { return bounds_; }
+  const Box &bounds() const { return grid.bounds; }
 
-  // calls visit(b) once for every box b in the cells that `probe` overlaps; the caller still
-  // tests the box itself
+  // calls visit(b) once for every box b in the cells that `probe` overlaps, in the order of the cells;
+  // the caller still tests the box itself
 
-  template <class Visit> void query(const Box &probe, Visit visit)
+  template <class Visit> void query(const Box &probe, Visit visit) const
   {
-    const Box clipped = probe.intersection(bounds_);
-    if (bounds_.isEmpty() || clipped.isEmpty()) return;
-    found_.clear();
-    int cells = 0;
-    for_cells(clipped, [&](std::size_t c) {
-      found_.insert(found_.end(), items_.begin() + first_[c], items_.begin() + first_[c + 1]);
-      cells++;
+    const Box clipped = probe.intersection(grid.bounds);
+    if (grid.empty() || clipped.isEmpty()) return;
+    const CellGrid::Cell lo = grid.of(clipped.min()), hi = grid.of(clipped.max());
+    grid.for_cells(lo, hi, [&](const CellGrid::Cell &cell, std::size_t c) {
+      for (int n = first[c]; n < first[c + 1]; n++) {
+        const int b = items[n];
+        // one that lies in several of these cells is seen in the first of them
+        if ((cell == lo || cell == begin[b]).all()) visit(b);
+      }
     });
-    if (cells > 1) {
-      std::sort(found_.begin(), found_.end());
-      found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    }
-    for (int b : found_) visit(b);
   }
 
  private:
-  Box bounds_;
-  Eigen::Vector3d inv_cell_;
-  Eigen::Array3i cells_ = Eigen::Array3i::Zero();
-  std::vector<int> first_, cursor_, items_, found_;
-
-  // cells as large as the mean box, and not many more of them than boxes
-
-  void choose_cells(Eigen::Vector3d cell, std::size_t n_boxes)
-  {
-    const Eigen::Vector3d extent = bounds_.sizes();
-    const double floor = std::max(extent.maxCoeff() * 1e-3, 1e-300);
-    cell = cell.cwiseMax(floor);
-    const double limit = 4.0 * static_cast<double>(n_boxes) + 64.0;
-    for (;;) {
-      cells_ = (extent.array() / cell.array()).ceil().max(1.0).cast<int>();
-      if (cells_.cast<double>().prod() <= limit) break;
-      cell *= 1.26;
-    }
-    inv_cell_ = cells_.cast<double>() / extent.array().max(1e-300);
-  }
-
-  template <class Visit> void for_cells(const Box &box, Visit visit) const
-  {
-    const auto cell_of = [&](const Eigen::Vector3d &x) -> Eigen::Array3i {
-      const Eigen::Array3d c = ((x - bounds_.min()).cwiseProduct(inv_cell_)).array().floor();
-      return c.max(0.0).min((cells_ - 1).cast<double>()).template cast<int>();
-    };
-    const Eigen::Array3i lo = cell_of(box.min()), hi = cell_of(box.max());
-    for (int k = lo[2]; k <= hi[2]; k++)
-      for (int j = lo[1]; j <= hi[1]; j++)
-        for (int i = lo[0]; i <= hi[0]; i++)
-          visit((static_cast<std::size_t>(k) * cells_[1] + j) * cells_[0] + i);
-  }
+  CellGrid grid;
+  std::vector<CellGrid::Cell> begin;    // the first cell of each box
+  std::vector<int> first, cursor, items;
 };
 
 }    // namespace sphcloth

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace sphcloth {
 
@@ -68,6 +69,7 @@ struct StepCoefficients {
   double density = 0.1;      // largest relative change of density in one step
   double relative = 0.0;     // as velocity, of the speed at which a neighbour comes near
   double cloth = 0.0;        // way of a vertex over the shortest edge at it
+  std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
 };
 
 // what one particle brings along
@@ -125,7 +127,9 @@ inline StepLimit particle_limit(const StepCoefficients &lambda, const StepState 
 
 inline StepLimit vertex_limit(const StepCoefficients &lambda, const StepState &s, double edge)
 {
-  StepLimit limit = particle_limit(lambda, s);
+  StepCoefficients of_vertex = lambda;
+  of_vertex.acoustic = lambda.wetted.value_or(lambda.acoustic);
+  StepLimit limit = particle_limit(of_vertex, s);
   if (limit.by == Limit::ACOUSTIC) limit.by = Limit::WETTED;
   if (lambda.cloth > 0.0 && s.speed_sq > 0.0)
     limit.tighten(lambda.cloth * edge / std::sqrt(s.speed_sq), Limit::CLOTH);

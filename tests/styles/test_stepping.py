@@ -387,6 +387,19 @@ def test_light_wet_cloth_shortens_the_step():
     assert counts[WETTED] == wet.sum() > 4
 
 
+def test_wet_cloth_has_a_coefficient_of_its_own():
+    """Without it that of sound counts, and it changes nothing for water."""
+    dt, _ = dt_and_limit(wet_cloth(1.0))
+    same = dt_and_limit(wet_cloth(1.0, options="wetted 0.5"))
+    assert same == (dt, WETTED)
+    assert dt_and_limit(wet_cloth(1.0, options="wetted 1.0")) == (pytest.approx(2 * dt), WETTED)
+    assert dt_and_limit(wet_cloth(1.0, options="acoustic 1.0")) == (pytest.approx(2 * dt), WETTED)
+    both = wet_cloth(1.0, options="wetted 0.5 acoustic 1.0")
+    assert dt_and_limit(both) == (pytest.approx(dt), WETTED)
+    none = wet_cloth(1.0, options="wetted 0 force 0")
+    assert WETTED not in particles_by_limit(none)
+
+
 def test_cloth_limit_is_a_share_of_the_shortest_edge():
     turn = "velocity all set 0 0 3 units box"
     lmp = wet_cloth(options="velocity 0 cloth 0.2", height=0.5, extra=turn)

@@ -127,7 +127,7 @@ BUGS = [
         "to[d] = grid.along(d, x + reach)",
         "to[d] = std::max(from[d], grid.along(d, x + reach) - 1)", CORE),
     Bug("lists: fronts without their inner skin", "core/near_lists.h",
-        "far = support + skin + rounding", "far = support + rounding", CORE),
+        "far = limit[types_of_it] + skin[types_of_it]", "far = limit[types_of_it]", CORE),
     Bug("contact: out on the other side", "core/contact.h",
         "gap_start >= 0.0 ? 1.0 : -1.0", "gap_start >= 0.0 ? -1.0 : 1.0", CONTACT),
     Bug("contact: two vertices take each other's part", "core/contact.h",

@@ -84,6 +84,19 @@ void BlockSteps::begin_step()
   coarsest = at.line.coarsest();
 }
 
+int BlockSteps::mark_due(double **of, int column) const
+{
+  const double *its_level = rows[LEVEL], *call = rows[CALL];
+  int n = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!pair->is_fluid(atom->type[i])) continue;
+    const bool due = its_level[i] >= coarsest || call[i] != NONE;
+    of[i][column] = due;
+    n += due;
+  }
+  return n;
+}
+
 bool BlockSteps::ends_root() const
 {
   return at.line.now + TimeLine::ticks(at.deepest) == TimeLine::ticks(0);
@@ -566,6 +579,20 @@ void BlockSteps::unpack_reverse(int n, const int *list, const double *buf)
 {
   for (int k = 0; k < n; k++)
     if (const int its = static_cast<int>(buf[k]); its != UNTOUCHED) touch(list[k], its);
+}
+
+void BlockSteps::find_intervals(std::vector<Drift> &of_type) const
+{
+  if (!begun()) return;
+  std::vector<double> updates(of_type.size(), 0.0), particles = updates;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int type = atom->type[i];
+    if (!pair->is_fluid(type) || sleeps(i)) continue;
+    updates[type] += std::ldexp(1.0, static_cast<int>(rows[LEVEL][i]) - at.deepest);
+    particles[type] += 1.0;
+  }
+  for (std::size_t t = 0; t < of_type.size(); t++)
+    if (updates[t] > 0.0) of_type[t].interval = std::max(1.0, particles[t] / updates[t]);
 }
 
 int BlockSteps::sleepers() const

@@ -15,6 +15,7 @@
 #include "pointers.h"
 
 #include "core/criteria.h"
+#include "core/near_lists.h"
 #include "core/time_line.h"
 #include "particle_columns.h"
 
@@ -62,9 +63,10 @@ class BlockSteps : protected Pointers {
   bool begun() const { return at.line.root > 0.0; }
   void set_new(int i);    // a particle that comes in
 
-  // Time goes on.  Is a particle updated now?  Those who sleep stay where they are.
+  // Time goes on.  Who is updated now?  1 in a column of theirs, 0 for others; returns how many.  Those
+  // who sleep stay where they are.
   void begin_step();
-  bool is_due(int i) const { return rows[LEVEL][i] >= coarsest || rows[CALL][i] != NONE; }
+  int mark_due(double **of, int column) const;
   bool sleeps(int i) const { return rows[LEVEL][i] == ASLEEP; }
   void wake_moved();    // by others than the fluid
 
@@ -80,6 +82,9 @@ class BlockSteps : protected Pointers {
   double next_step() const;
   sphcloth::Limit limited_by() const { return at.limit; }
   bool arrives() const { return at.reaches_output && ends_root(); }
+
+  // in steps of the scene, of those of a type who do not sleep
+  void find_intervals(std::vector<sphcloth::Drift> &of_type) const;
 
   // of this rank: who sleeps, and how many updates it would have been so far, had everybody taken
   // exactly the step that the limits allow

@@ -277,11 +277,7 @@ void FixSPHIntegrate::select_due()
 {
   blocks->wake_moved();
   blocks->begin_step();
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!pair->is_fluid(atom->type[i])) continue;
-    state[i][ACTIVE] = blocks->is_due(i);
-    updates += state[i][ACTIVE];
-  }
+  updates += blocks->mark_due(state, ACTIVE);
   pair->set_active(state, ACTIVE);
 }
 

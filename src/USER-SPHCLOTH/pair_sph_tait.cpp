@@ -403,7 +403,7 @@ void PairSPHTait::new_lists()
   Particles p = particles();
   if (sheets) p.sides = sheets->sides();
   try {
-    fluid->list(p, reach.data());
+    fluid->list(p, reach.data(), drifts(p));
   } catch (const std::bad_alloc &) {
     error->one(
         FLERR,
@@ -411,6 +411,28 @@ void PairSPHTait::new_lists()
         "particles or vertices much nearer to each other than that?",
         STYLE, atom->nlocal, options.support);
   }
+}
+
+// As far as velocities tell, for a step that sound often asks for: the step itself is another after a
+// restart than before.
+
+const std::vector<Drift> &PairSPHTait::drifts(const Particles &p)
+{
+  drift_of.assign(atom->ntypes + 1, Drift());
+  for (int i = 0; i < p.n_all; i++) {
+    const double *v = p.v + 3 * i;
+    double &speed_sq = drift_of[p.type[i]].way;
+    speed_sq = std::max(speed_sq, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  constexpr double USUAL = 0.5;    // of h_s/c
+  double step = std::numeric_limits<double>::max();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(t))
+      step = std::min(step, USUAL * 0.5 * support(t) / equation_of_state(t).sound_speed());
+  for (Drift &drift : drift_of)
+    if (drift.way > 0.0) drift.way = step * std::sqrt(drift.way);
+  if (blocks) blocks->find_intervals(drift_of);
+  return drift_of;
 }
 
 bool PairSPHTait::is_measured(int t) const

@@ -176,6 +176,7 @@ class PairSPHTait : public Pair {
   bool measure_volume, extrapolate, any_fluid;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
   std::vector<double> reach;    // (ntypes+1)^2, with the skin
+  std::vector<sphcloth::Drift> drift_of;    // at the last list build
 
   // scratch, kept from step to step
   double **active;
@@ -201,6 +202,7 @@ class PairSPHTait : public Pair {
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;
   void new_lists();
+  const std::vector<sphcloth::Drift> &drifts(const sphcloth::Particles &);
   bool is_measured(int type) const;
   void measure_amounts(const sphcloth::Particles &, bool);
   void select(const sphcloth::Particles &);

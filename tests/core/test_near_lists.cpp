@@ -52,9 +52,21 @@ struct Watched {
   const std::vector<double> reach = std::vector<double>(9, SUPPORT + SKIN);
   const std::vector<double> support{0, 0, 0, 0, SUPPORT, SUPPORT, 0, SUPPORT, 0};
 
-  Watched()
+  Watched() { build(std::vector<Drift>(3)); }
+  void build(const std::vector<Drift> &drifts)
   {
-    lists.build(walk.x.data(), walk.type.data(), 200, 300, 2, reach.data(), support.data(), 3);
+    lists.build(walk.x.data(), walk.type.data(), 200, 300, 2, reach.data(), support.data(), 3,
+                drifts);
+  }
+  void follow() { lists.follow(walk.x.data(), walk.type.data(), walk.n); }
+  int in_fronts(int own, int t)
+  {
+    int n = 0;
+    for (int i = own - 1; i < 200; i += 2) {
+      lists.refresh(lists.slot(i));
+      n += lists(lists.slot(i), t).n;
+    }
+    return n;
   }
   // the largest number of neighbours that the fronts hold, and whether none is missing
   int check(int every)
@@ -79,10 +91,10 @@ CASE("the front of a list holds everyone inside the support while particles move
   Watched w;
   for (int step = 0; step < 30; step++) {
     if (step) w.walk.move(5e-4);
-    w.lists.follow(w.walk.x.data(), w.walk.n);
+    w.follow();
     w.check(1);
   }
-  CHECK(w.lists.inner_skin() > 0.0 && w.lists.inner_skin() < 0.5 * SKIN);
+  CHECK(w.lists.inner_skin(1, 1) > 0.0 && w.lists.inner_skin(1, 1) < 0.5 * SKIN);
 }
 
 CASE("a list that is refreshed late is as good as one refreshed at once")
@@ -90,7 +102,7 @@ CASE("a list that is refreshed late is as good as one refreshed at once")
   Watched w;
   for (int step = 0; step < 40; step++) {
     if (step) w.walk.move(3e-4);
-    w.lists.follow(w.walk.x.data(), w.walk.n);
+    w.follow();
     w.check(1 + step % 7);
   }
 }
@@ -102,21 +114,56 @@ CASE("an inner skin lasts longer the slower particles move, and is gone where th
     Watched w;
     for (int step = 0; step < 4; step++) {
       if (step) w.walk.move(by);
-      w.lists.follow(w.walk.x.data(), w.walk.n);
+      w.follow();
     }
-    CHECK(w.lists.inner_skin() < before);
+    CHECK(w.lists.inner_skin(1, 1) < before);
     w.check(1);
-    before = by > 5e-3 ? 1.0 : w.lists.inner_skin();
-    if (by > 5e-3) CHECK(w.lists.inner_skin() == 0.0);
+    before = by > 5e-3 ? 1.0 : w.lists.inner_skin(1, 1);
+    if (by > 5e-3) CHECK(w.lists.inner_skin(1, 1) == 0.0);
   }
 }
 
 CASE("types that do not interact have an empty front")
 {
   Watched w;
-  w.lists.follow(w.walk.x.data(), w.walk.n);
+  w.follow();
   w.lists.refresh(w.lists.slot(1));
   CHECK(w.walk.type[1] == 2);
   CHECK(w.lists(w.lists.slot(1), 2).n == 0);
   CHECK(w.lists.all(w.lists.slot(1), 2).n > 0);
+}
+
+CASE("the front is right as soon as lists are built, and as wide as particles will need it")
+{
+  Watched slow, fast;
+  slow.build({{}, {1e-5, 1.0}, {1e-5, 1.0}});
+  fast.build({{}, {1e-3, 1.0}, {1e-3, 1.0}});
+  slow.check(1);
+  CHECK(slow.lists.inner_skin(1, 1) > 0.0);
+  CHECK(fast.lists.inner_skin(1, 1) > slow.lists.inner_skin(1, 1));
+  CHECK(fast.in_fronts(1, 1) > slow.in_fronts(1, 1));
+}
+
+CASE("those who are evaluated seldom have a wider inner skin")
+{
+  Watched w;
+  w.build({{}, {1e-4, 4.0}, {1e-4, 1.0}});
+  CHECK(w.lists.inner_skin(1, 1) > w.lists.inner_skin(2, 1));
+}
+
+// Type 2 moves on and on, type 1 rests.
+
+CASE("fronts of those who rest among each other stay while others move")
+{
+  Watched w;
+  const double resting = w.lists.inner_skin(1, 1);
+  const int among_each_other = w.in_fronts(1, 1);
+  for (int step = 0; step < 60; step++) {
+    if (step)
+      for (int i = 1; i < w.walk.n; i += 2) w.walk.x[3 * i] += 4e-4;
+    w.follow();
+    w.check(1 + step % 3);
+    CHECK(w.in_fronts(1, 1) == among_each_other);
+  }
+  CHECK(w.lists.inner_skin(1, 1) == resting);
 }

@@ -13,7 +13,7 @@ std::unique_ptr<Fluid> Fluid::create(KernelName kernel, Precision precision)
   return with_kernel(kernel, [&](auto k) { return fluid_of_kernel<decltype(k)>(precision); });
 }
 
-void Fluid::list(const Particles &p, const double *reach)
+void Fluid::list(const Particles &p, const double *reach, const std::vector<Drift> &drifts)
 {
   const int n = model.n_types + 1;
   std::vector<double> support(n * n, 0.0);
@@ -23,7 +23,7 @@ void Fluid::list(const Particles &p, const double *reach)
         support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
   everyone = false;
   lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
-              model.dimension, p.sides);
+              model.dimension, drifts, p.sides);
 }
 
 bool Fluid::select(const Particles &p)

@@ -104,8 +104,8 @@ class Fluid {
 
   FluidModel model;
 
-  // new neighbour lists; reach as in NeighbourLists
-  void list(const Particles &, const double *reach);
+  // new neighbour lists; reach as in NeighbourLists, drifts as in NearLists
+  void list(const Particles &, const double *reach, const std::vector<Drift> &drifts);
 
   // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
   // False if nothing has changed.

@@ -2,14 +2,18 @@
 //
 // A list that serves for many steps holds about twice as many particles as are inside the support.
 // Those within the support and a small inner skin are moved to its front, and the loops run over
-// the front alone until some particle has moved by half of the inner skin.  The inner skin follows
-// from the motion: each particle that it adds costs a little at every step, and each step that it
-// lasts saves one pass over the lists.  (A dual list: Pall et al., J. Chem. Phys. 153 (2020) 134110.)
+// the front alone until particles of the two types may have come nearer by the inner skin.  The
+// inner skin follows from the motion: each particle that it adds costs a little at every evaluation,
+// and each evaluation that it lasts saves one pass over the list.  (A dual list: Pall et al., J. Chem.
+// Phys. 153 (2020) 134110.)
+//
+// Each type has an odometer: how far the fastest of its particles may have gone.  A front is valid up
+// to a sum of the readings of its two types, so particles that are evaluated seldom, or among
+// others that are slow, keep theirs while fronts elsewhere are found anew.
 //
 // Nothing is kept from one list to the next, so a run that is continued from a restart file goes on
-// with the same fronts.  Every rank decides for itself.  A list is refreshed when it is asked for,
-// from the positions at which the present inner skin began, so particles that nobody asks for cost
-// nothing.
+// with the same fronts.  Every rank decides for itself.  A front is found when it is asked for, from
+// the positions at which odometers were read last, so particles that nobody asks for cost nothing.
 
 #ifndef SPHCLOTH_CORE_NEAR_LISTS_H
 #define SPHCLOTH_CORE_NEAR_LISTS_H
@@ -18,48 +22,80 @@
 
 namespace sphcloth {
 
+// Of the particles of a type: how far the fastest goes from one evaluation to the next, as far as is
+// known, and after how many of them one is evaluated itself, on average.
+
+struct Drift {
+  double way = 0.0, interval = 1.0;
+};
+
 class NearLists {
  public:
-  // As NeighbourLists; support: [(n_types+1)^2], up to where two types interact, 0: never.
+  // As NeighbourLists; support: [(n_types+1)^2], up to where two types interact, 0: never; drifts:
+  // [n_types+1].
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
              const double *reach, const double *support, int dimension,
-             const Sides *sides = nullptr)
+             const std::vector<Drift> &drifts, const Sides *sides = nullptr)
   {
     give_back(held);    // its memory for what the lists are made of
-    outer.build(x, type, n_owned, n_all, n_types, reach, sides);
     types = n_types;
     dim = dimension;
+    drift = drifts;
     set_limits(reach, support);
-    front.assign(static_cast<std::size_t>(outer.slots()) * n_types, 0);
-    refreshed.assign(outer.slots(), 0);
+    for (int t = 1; t <= types; t++)
+      for (int other = 1; other <= types; other++) set_first_skin(t, other);
+    std::vector<double> near(limit);
+    for (std::size_t k = 0; k < near.size(); k++)
+      if (near[k] > 0.0) near[k] += skin[k];
+    outer.build(x, type, n_owned, n_all, n_types, reach, near.data(), front, sides);
+    distance.assign(types + 1, 0.0);
+    reading = distance;
+    until.resize(front.size());
+    current.assign(outer.slots(), 0);
     slot_of.resize(n_owned);
     longest_list = 0;
-    for (int slot = 0; slot < outer.slots(); slot++) {
+    for (int slot = 0, t = 1; slot < outer.slots(); slot++) {
+      while (slot >= outer.begin(t + 1)) t++;
       slot_of[outer.at(slot)] = slot;
-      for (int t = 1; t <= n_types; t++) longest_list = std::max(longest_list, outer(slot, t).n);
+      for (int other = 1; other <= n_types; other++) {
+        longest_list = std::max(longest_list, outer(slot, other).n);
+        until[of(slot, other)] = skin[pair(t, other)];
+      }
     }
     key.resize(whole_groups(longest_list) + 2 * LANES);
     spare.resize(key.size());
-    steps = -1;
+    evaluation = 0;
+    if (outer.slots() == 0) return;
+    hold(x, n_all);
+    steps = -1;    // the evaluation for which lists are new comes first
   }
 
   // Once per evaluation, before lists are read: x, [n_all][3], are the positions now.
-  void follow(const double *x, int n_all)
+  void follow(const double *x, const int *type, int n_all)
   {
     if (outer.slots() == 0) return;
-    if (steps < 0) return start(x, n_all, FIRST_SKIN * least_support);
-    const double moved = farthest(x, n_all) + rounding;
-    const double pace = moved / ++steps;
-    if (2.0 * moved > skin) start(x, n_all, lasting_skin(pace));
+    begin_evaluation();
+    steps++;
+    read_odometers(x, type, n_all);
+    if (!any_skin_is_gone()) return;
+    for (int t = 1; t <= types; t++) {
+      drift[t].way = (reading[t] - distance[t]) / std::max(1, steps);
+      distance[t] = reading[t];
+    }
+    for (int t = 1; t <= types; t++)
+      for (int other = 1; other <= types; other++) skin[pair(t, other)] = lasting_skin(t, other);
+    hold(x, n_all);
+    steps = 0;
   }
 
   // makes the front of all lists of one particle valid
   void refresh(int slot)
   {
-    if (refreshed[slot] == epoch) return;
-    refreshed[slot] = static_cast<std::uint8_t>(epoch);
-    const double *supports = &limit[type_of(slot) * (types + 1)];
-    for (int t = 1; t <= types; t++) move_to_front(slot, t, supports[t]);
+    if (current[slot] == evaluation) return;
+    current[slot] = static_cast<std::uint8_t>(evaluation);
+    const int t = type_of(slot);
+    for (int other = 1; other <= types; other++)
+      if (reading[t] + reading[other] > until[of(slot, other)]) move_to_front(slot, t, other);
   }
 
   // Of a value of each particle: the greatest among all neighbours of one, and whether all of them
@@ -88,15 +124,16 @@ class NearLists {
   // Everyone inside the support and some a little outside, as of the last refresh.
   Stretch operator()(int slot, int t) const { return {outer(slot, t).of, front[of(slot, t)]}; }
   int slot(int owned) const { return slot_of[owned]; }
-  double inner_skin() const { return skin; }
+  double inner_skin(int t, int other) const { return skin[pair(t, other)]; }
   // list, of one particle and type
   int longest() const { return longest_list; }
 
   double bytes() const
   {
     return outer.bytes() + sizeof(Place) * static_cast<double>(held.capacity()) +
+        sizeof(double) * static_cast<double>(until.capacity()) +
         sizeof(int) * static_cast<double>(front.capacity() + slot_of.capacity()) +
-        static_cast<double>(refreshed.capacity());
+        static_cast<double>(current.capacity());
   }
 
  private:
@@ -104,61 +141,84 @@ class NearLists {
     float x, y, z;
   };
 
-  // what refreshing a list costs over one evaluation of its front, about (measured)
-  static constexpr double REFRESH_COST = 0.4;
-  // inner skin over support while nothing is known of the motion
+  // what an entry of a list costs while its front is found, over one of the front in an evaluation,
+  // about (measured)
+  static constexpr double ENTRY_COST = 0.23;
+  // least inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
 
   NeighbourLists outer;
   int types = 0;
   std::vector<int> front, slot_of;    // [slot][type], [owned particle]
-  std::vector<std::uint8_t> refreshed;    // [slot], in which epoch
-  std::vector<double> limit;    // support of a pair of types, 0: never
-  AlignedVector<Place> held;    // positions at the begin of this inner skin
+  std::vector<double> until;    // [slot][type], sum of two readings
+  std::vector<std::uint8_t> current;    // [slot], the evaluation in which it was asked for
+  std::vector<double> limit, skin;    // of a pair of types: support, 0: never; inner skin
+  std::vector<double> widest, cost;    // what the skin of the lists allows; of finding a front
+  std::vector<Drift> drift;    // of a type
+  std::vector<double> distance, reading;    // of the odometers, when positions were held and now
+  AlignedVector<Place> held;    // positions then
   std::array<double, 3> centre{};
   AlignedVector<float> key;
   std::vector<int> spare;
 
   int dim = 3;
   int longest_list = 0;
-  int epoch = 0;    // 1 to 255
-  int steps = -1;    // evaluations since this inner skin began, -1: lists are new
-  double skin = 0.0, widest = 0.0;    // widest: what the skin of the lists allows
-  double least_support = 0.0;
+  int evaluation = 0;    // 1 to 255
+  int steps = 0;    // evaluations since positions were held
   double rounding = 0.0;    // of a distance in single precision
 
   std::size_t of(int slot, int t) const { return static_cast<std::size_t>(slot) * types + t - 1; }
+  int pair(int t, int other) const { return t * (types + 1) + other; }
 
   void set_limits(const double *reach, const double *support)
   {
     const int n = (types + 1) * (types + 1);
-    limit.assign(support, support + n);
-    least_support = widest = std::numeric_limits<double>::max();
+    limit.assign(n, 0.0);
+    skin.assign(n, 0.0);
+    widest.assign(n, 0.0);
+    cost.assign(n, 0.0);
     for (int k = 0; k < n; k++) {
       if (reach[k] == 0.0 || support[k] == 0.0) continue;
-      least_support = std::min(least_support, support[k]);
-      widest = std::min(widest, reach[k] - support[k]);
+      limit[k] = support[k];
+      widest[k] = reach[k] - support[k];
+      cost[k] = ENTRY_COST * std::pow(reach[k] / support[k], dim);
     }
   }
 
-  // For n evaluations a skin of 2 n pace, with a margin: the front then holds 1 + 2 n pace dim/H
-  // as many, and refreshing costs REFRESH_COST / (n + 1) per evaluation.  The n of least cost.
-  double lasting_skin(double pace) const
+  void set_first_skin(int t, int other)
   {
-    if (!(pace > 0.0)) return widest;
-    const double n = std::sqrt(REFRESH_COST * least_support / (2.0 * dim * pace)) - 0.5;
-    return 2.2 * pace * std::floor(std::clamp(n, 0.0, 1000.0));
+    const int k = pair(t, other);
+    skin[k] = std::min(widest[k], std::max(FIRST_SKIN * limit[k], lasting_skin(t, other)));
   }
 
-  void start(const double *x, int n_all, double inner_skin)
+  // For n evaluations of one particle a skin that two use up in the meantime, with a margin: the
+  // front then holds 1 + dim skin/H as many, and finding it costs cost/(n + 1) per evaluation.  The
+  // n of least cost.
+  double lasting_skin(int t, int other) const
   {
-    if (++epoch > std::numeric_limits<std::uint8_t>::max()) {
-      std::fill(refreshed.begin(), refreshed.end(), 0);
-      epoch = 1;
-    }
-    steps = 0;
-    skin = std::min(inner_skin, widest);
-    hold(x, n_all);
+    const int k = pair(t, other);
+    const double nearer = (drift[t].way + drift[other].way) * drift[t].interval;
+    if (!(nearer > 0.0)) return std::min(widest[k], FIRST_SKIN * limit[k]);
+    const double n = std::sqrt(cost[k] * limit[k] / (dim * nearer)) - 0.5;
+    return std::min(widest[k], 1.1 * nearer * std::floor(std::clamp(n, 0.0, 1000.0)));
+  }
+
+  void begin_evaluation()
+  {
+    if (++evaluation <= std::numeric_limits<std::uint8_t>::max()) return;
+    std::fill(current.begin(), current.end(), 0);
+    evaluation = 1;
+  }
+
+  // of a front that would be found now
+  bool any_skin_is_gone() const
+  {
+    for (int t = 1; t <= types; t++)
+      for (int other = 1; other <= types; other++)
+        if (const int k = pair(t, other);
+            limit[k] > 0.0 && reading[t] - distance[t] + reading[other] - distance[other] > skin[k])
+          return true;
+    return false;
   }
 
   void hold(const double *x, int n_all)
@@ -173,26 +233,51 @@ class NearLists {
                  static_cast<float>(x[3 * i + 2] - centre[2])};
   }
 
-  SPHCLOTH_MULTIVERSION double farthest(const double *x, int n_all) const
+  // Who has not moved reads nothing of what rounding does.
+  void read_odometers(const double *x, const int *type, int n_all)
   {
-    const double cx = centre[0], cy = centre[1], cz = centre[2];
-    float most = 0.0F;
-#pragma omp simd reduction(max : most)
-    for (int i = 0; i < n_all; i++) {
-      const float dx = static_cast<float>(x[3 * i] - cx) - held[i].x,
-                  dy = static_cast<float>(x[3 * i + 1] - cy) - held[i].y,
-                  dz = static_cast<float>(x[3 * i + 2] - cz) - held[i].z;
-      most = std::max(most, dx * dx + dy * dy + dz * dz);
+    for (int t = 1; t <= types; t++) reading[t] = 0.0;
+    add_farthest(x, type, n_all);
+    for (int t = 1; t <= types; t++) {
+      const double way = std::sqrt(reading[t]);
+      reading[t] = distance[t] + (way > 0.0 ? way + rounding : 0.0);
     }
-    return std::sqrt(static_cast<double>(most));
   }
 
-  SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t, double support)
+  // the largest squared distance from where particles of each type were held
+  SPHCLOTH_MULTIVERSION void add_farthest(const double *x, const int *type, int n_all)
   {
-    const Stretch list = outer(slot, t);
-    const int i = outer.at(slot);
-    if (list.n == 0 || support == 0.0) return;
-    const Place self = held[i];
+    constexpr int PIECE = 32 * LANES;
+    alignas(64) float sq[PIECE];
+    const double cx = centre[0], cy = centre[1], cz = centre[2];
+    for (int first = 0; first < n_all; first += PIECE) {
+      const int n = std::min(PIECE, n_all - first);
+      const double *y = x + 3 * static_cast<std::ptrdiff_t>(first);
+      const Place *before = held.data() + first;
+#pragma omp simd
+      for (int k = 0; k < n; k++) {
+        const float dx = static_cast<float>(y[3 * k] - cx) - before[k].x,
+                    dy = static_cast<float>(y[3 * k + 1] - cy) - before[k].y,
+                    dz = static_cast<float>(y[3 * k + 2] - cz) - before[k].z;
+        sq[k] = dx * dx + dy * dy + dz * dz;
+      }
+      const int *its = type + first;
+      for (int t = 1; t <= types; t++) {
+        float most = 0.0F;
+#pragma omp simd reduction(max : most)
+        for (int k = 0; k < n; k++) most = std::max(most, its[k] == t ? sq[k] : 0.0F);
+        reading[t] = std::max(reading[t], static_cast<double>(most));
+      }
+    }
+  }
+
+  SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t, int other)
+  {
+    const int types_of_it = pair(t, other);
+    until[of(slot, other)] = distance[t] + distance[other] + skin[types_of_it];
+    const Stretch list = outer(slot, other);
+    if (list.n == 0 || limit[types_of_it] == 0.0) return;
+    const Place self = held[outer.at(slot)];
     static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
@@ -204,9 +289,9 @@ class NearLists {
         sq[k] = dx * dx + dy * dy + dz * dz;
       }
     }
-    const double far = support + skin + rounding;
-    front[of(slot, t)] = partition(key.data(), outer.open(slot, t), list.n,
-                                   static_cast<float>(far * far), spare.data());
+    const double far = limit[types_of_it] + skin[types_of_it] + rounding;
+    front[of(slot, other)] = partition(key.data(), outer.open(slot, other), list.n,
+                                       static_cast<float>(far * far), spare.data());
   }
 
   SPHCLOTH_MULTIVERSION int greatest(const Stretch &near, const int *value) const

@@ -128,13 +128,27 @@ class NeighbourLists {
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
              const double *reach, const Sides *of_all = nullptr)
   {
+    std::vector<int> none;
+    build(x, type, n_owned, n_all, n_types, reach, nullptr, none, of_all);
+  }
+
+  // The same, and those nearer than `near`, [(n_types+1)^2], or null, come first in each list;
+  // front: [slot][type], how many they are.
+  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach, const double *near, std::vector<int> &front, const Sides *of_all)
+  {
     sides = of_all;
     sort_into_cells(x, type, n_owned, n_all, n_types, reach);
     lists.start(order.size(), n_types);
+    front.assign(near ? order.size() * n_types : 0, 0);
+    int *in_front = front.data();
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
-        for (int other = 1; other <= n_types; other++)
-          list(slot, other, reach[t * (n_types + 1) + other], t == other);
+        for (int other = 1; other <= n_types; other++) {
+          const int pair = t * (n_types + 1) + other;
+          const int n = list(slot, other, reach[pair], t == other);
+          if (near) *in_front++ = bring_to_front(slot, other, n, near[pair]);
+        }
     lists.finish();
     // lists live long, what they are made of need not
     for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
@@ -291,17 +305,31 @@ class NeighbourLists {
     for (int t = 1; t <= n_types + 1; t++) slots_of[t] += slots_of[t - 1];
   }
 
-  void list(int slot, int other, double reach, bool same_type)
+  // returns how many are listed; their squared distances are in `key`
+
+  int list(int slot, int other, double reach, bool same_type)
   {
     if (reach == 0.0) {
       lists.close(0);
-      return;
+      return 0;
     }
     const double far = reach + slack;
     const int n = candidates(slot, other, far, same_type);
     if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
-    lists.close(compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
-                        lists.room(n)));
+    const int listed = compact(key.data(), candidate.data(), n, static_cast<float>(far * far),
+                               key.data(), lists.room(n));
+    lists.close(listed);
+    return listed;
+  }
+
+  // those of the list just made, of n, that are nearer; returns how many
+
+  int bring_to_front(int slot, int other, int n, double near)
+  {
+    if (n == 0 || near == 0.0) return 0;
+    const double far = near + slack;
+    return partition(key.data(), lists.open(slot, other), n, static_cast<float>(far * far),
+                     candidate.data());
   }
 
   void leave_out_parted(Sides mine, int n)

@@ -4,6 +4,7 @@
 #include "core/disc_grid.h"
 #include "core/sides.h"
 
+#include <limits>
 #include <random>
 #include <set>
 
@@ -224,6 +225,16 @@ CASE("grid: among discs of all sizes it finds the triangles near a point, and th
   }
   CHECK(looked > 100);
   CHECK(seen < 6 * 500);    // hardly more than have to
+  const double none = std::numeric_limits<double>::quiet_NaN(),
+               infinite = std::numeric_limits<double>::infinity();
+  grid.nearest(Eigen::Vector3d(none, 0, 0), far, slack, [](int) { CHECK(false); });
+  grid.within(Eigen::Vector3d(none, 0, 0), none, [](int) { CHECK(false); });
+  int everybody = 0;
+  grid.within(Eigen::Vector3d(0, 0, infinite), infinite, [&](int) { everybody++; });
+  CHECK(everybody <= 500);
+  moving[3].centre[0] = infinite;
+  roomy.build(moving, far);
+  roomy.within(vec(), far, [](int t) { CHECK(t != 3); });
   grid.build({}, far);
   grid.nearest(vec(), far, slack, [](int) { CHECK(false); });
 }

@@ -25,6 +25,11 @@ struct CellGrid {
   {
     bounds = all;
     const Eigen::Vector3d extent = bounds.sizes();
+    if (!extent.allFinite()) {    // one cell for all
+      cells.setOnes();
+      inv_cell.setZero();
+      return;
+    }
     cell = cell.cwiseMax(std::max(extent.maxCoeff() * 1e-3, 1e-300));
     const double limit = 4.0 * static_cast<double>(n_items) + 64.0;
     for (;;) {
@@ -37,11 +42,16 @@ struct CellGrid {
 
   std::size_t size() const { return static_cast<std::size_t>(cells.prod()); }
 
-  // the cell of a place, or the nearest one
+  // the cell of a place, or the nearest one; any cell of a place that is no number
   Cell of(const Eigen::Vector3d &x) const
   {
-    const Eigen::Array3d c = ((x - bounds.min()).cwiseProduct(inv_cell)).array().floor();
-    return c.max(0.0).min((cells - 1).cast<double>()).template cast<int>();
+    Cell cell;
+    for (int d = 0; d < 3; d++) {
+      const double c = (x[d] - bounds.min()[d]) * inv_cell[d];
+      const int last = cells[d] - 1;
+      cell[d] = !(c > 0.0) ? 0 : c < last ? static_cast<int>(c) : last;
+    }
+    return cell;
   }
 
   std::size_t number(int i, int j, int k) const

@@ -81,21 +81,18 @@ std::array<Sweep, 3> ContactSurface::sweep_of_triangle(int t) const
   return sweep;
 }
 
-// with room for the way of the step
+// of the way of a triangle in this step, with room for contact
 
-void ContactSurface::set_boxes(double margin)
+Box ContactSurface::box_of_way(int t) const
 {
-  boxes.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); t++) {
-    boxes[t].setEmpty();
-    for (int s : triangles[t]) {
-      boxes[t].extend(start[s]);
-      boxes[t].extend(end[s]);
-    }
-    boxes[t].min().array() -= margin;
-    boxes[t].max().array() += margin;
+  Box box;
+  for (int s : triangles[t]) {
+    box.extend(start[s]);
+    box.extend(end[s]);
   }
-  grid.build(boxes);
+  box.min().array() -= 2.0 * rules->thickness;
+  box.max().array() += 2.0 * rules->thickness;
+  return box;
 }
 
 void ContactSurface::set_discs(double reach)
@@ -189,22 +186,13 @@ double ContactSurface::farthest_sq() const
   return farthest;
 }
 
-// of the way of a triangle in this step, made when somebody asks
+// made when somebody asks
 
 const Box &ContactSurface::swept_box(int t)
 {
-  Box &box = swept[t];
-  if (swept_for[t]) return box;
+  if (!swept_for[t]) swept[t] = box_of_way(t);
   swept_for[t] = true;
-  box.setEmpty();
-  for (int s : triangles[t]) {
-    box.extend(start[s]);
-    box.extend(end[s]);
-  }
-  const Vec3 reach = Vec3::Constant(2.0 * rules->thickness);
-  box.min() -= reach;
-  box.max() += reach;
-  return box;
+  return swept[t];
 }
 
 bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, double dt)
@@ -514,7 +502,9 @@ void ContactSurface::end_step()
 void ContactSurface::look_around()
 {
   load_sweeps();
-  set_boxes(2.0 * rules->thickness);
+  boxes.resize(triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); t++) boxes[t] = box_of_way(static_cast<int>(t));
+  grid.build(boxes);
   found_at.clear();    // the boxes are others now
   change.assign(halo.n_slots(), Vec3::Zero());
 }

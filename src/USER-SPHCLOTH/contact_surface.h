@@ -183,7 +183,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   std::vector<double> w_solver;    // the same, but for attached vertices, which take part
   std::vector<Vec3> shares;    // contacts of each slot
   std::vector<Vec3> received;    // by owned slot
-  std::vector<sphcloth::Box> boxes, swept;    // of triangles in a step
+  std::vector<sphcloth::Box> boxes, swept;    // of the ways of triangles
   std::vector<char> swept_for;    // which of the latter are known
   sphcloth::BoxGrid grid;
   std::vector<sphcloth::Disc> discs;    // around triangles, with room for the way back
@@ -203,6 +203,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   double room_to_move() const;
   double farthest_sq() const;
   double farthest_vertex_sq() const;
+  sphcloth::Box box_of_way(int t) const;
   const sphcloth::Box &swept_box(int t);
   void bound();
   // those of the near ones whose ways overlap in this step
@@ -221,7 +222,6 @@ class ContactSurface : public ClothGuest, public TriangleSet {
       if (swept_box(t).intersects(box)) visit(i, t, sweep);
     }
   }
-  void set_boxes(double margin);
   void set_discs(double reach);
   int side_at(const Vec3 &p, double reach);
   void meet();

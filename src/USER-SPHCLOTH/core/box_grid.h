@@ -42,8 +42,6 @@ class BoxGrid {
       });
   }
 
-  const Box &bounds() const { return grid.bounds; }
-
   // calls visit(b) once for every box b in the cells that `probe` overlaps, in the order of the cells;
   // the caller still tests the box itself
 

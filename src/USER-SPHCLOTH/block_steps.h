@@ -19,6 +19,7 @@
 #include "core/time_line.h"
 #include "particle_columns.h"
 
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -63,10 +64,10 @@ class BlockSteps : protected Pointers {
   bool begun() const { return at.line.root > 0.0; }
   void set_new(int i);    // a particle that comes in
 
-  // Time goes on.  Who is updated now?  1 in a column of theirs, 0 for others; returns how many.  Those
-  // who sleep stay where they are.
+  // Time goes on.  Who is updated now?  1 in a column of theirs, 0 for others; returns how many are, and
+  // how many are not.  Those who sleep stay where they are.
   void begin_step();
-  int mark_due(double **of, int column) const;
+  std::pair<int, int> mark_due(double **of, int column) const;
   bool sleeps(int i) const { return rows[LEVEL][i] == ASLEEP; }
   void wake_moved();    // by others than the fluid
 
@@ -156,10 +157,10 @@ class BlockSteps : protected Pointers {
   bool ends_root() const;
 
   void choose();
-  void want_steps();
-  void begin_root();
+  double want_steps();
+  void begin_root(double least);
   void fit_root(double best, double least);
-  void choose_levels();
+  int choose_level(int i);
   void find_step_of_scene();
   void respect_neighbours();
   int vertex_level(int i) const;
@@ -172,6 +173,7 @@ class BlockSteps : protected Pointers {
   void begin_own_step(int i);
   double half_step(int i) const;
 
+  void keep_forces(std::vector<double> &in) const;
   bool needs_external() const;
   void measure_impulses();
   void rest(int i);

@@ -5,6 +5,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "rank_error.h"
 
 #include <algorithm>
 #include <numeric>
@@ -55,8 +56,8 @@ int ClothTopology::image_here(int vertex, int i) const
 {
   const int j = image_near(vertex, i);
   if (j < 0)
-    error->one(
-        FLERR,
+    rank_error(
+        lmp, FLERR,
         "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
         "'comm_modify cutoff' to the size of two edges",
         owner, ids[vertex], atom->tag[i]);

@@ -2,6 +2,7 @@
 
 #include "arg_reader.h"
 #include "atom.h"
+#include "core/bytes.h"
 #include "core/constraints.h"
 #include "fix_pbd_cloth.h"
 #include "memory.h"
@@ -121,6 +122,5 @@ std::array<double, 3> ComputePBDLocal::measure_hinge(int m, int i) const
 
 double ComputePBDLocal::memory_usage()
 {
-  return static_cast<double>(room * columns.size() * sizeof(double) +
-                             rows.capacity() * sizeof(Row));
+  return static_cast<double>(room * columns.size() * sizeof(double)) + bytes_of(rows);
 }

@@ -8,6 +8,7 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "rank_error.h"
 #include "update.h"
 
 #include <algorithm>
@@ -295,7 +296,7 @@ void ContactSurface::move_zones(const ContactZones &zones)
     }
     const double apart = (sweep.end - sweep.start - way).norm();
     if (apart > rules->thickness)
-      error->one(FLERR,
+      rank_error(lmp, FLERR,
                  "{}: held vertex {} moves {} away from others in one step and crushes what is "
                  "between them: move pins slower or lower the time step",
                  label, atom->tag[i], apart);

@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "atom_tools.h"
+#include "core/bytes.h"
 #include "fix.h"
 #include "force.h"
 #include "neighbor.h"
@@ -505,7 +506,6 @@ void ContactSurface::look_around()
   boxes.resize(triangles.size());
   for (std::size_t t = 0; t < boxes.size(); t++) boxes[t] = box_of_way(static_cast<int>(t));
   grid.build(boxes);
-  found_at.clear();    // the boxes are others now
   change.assign(halo.n_slots(), Vec3::Zero());
 }
 
@@ -537,13 +537,8 @@ void ContactSurface::hand_over_pushes()
 
 double ContactSurface::memory_usage() const
 {
-  return halo.memory_usage() +
-      static_cast<double>(
-             sizeof(Vec3) *
-                 (start.capacity() + end.capacity() + change.capacity() + shares.capacity() +
-                  from.capacity() + received.capacity() + end_then.capacity()) +
-             sizeof(double) * (w.capacity() + w_solver.capacity()) +
-             sizeof(Box) * (boxes.capacity() + swept.capacity()) +
-             sizeof(Particle) * particles.capacity() + sizeof(Pair) * pairs.capacity() +
-             sizeof(near[0]) * near.capacity() + sizeof(Vec3) * found_at.capacity());
+  return halo.memory_usage() + grid.bytes() + disc_grid.bytes() +
+      bytes_of(start, end, change, from, now, w, w_solver, shares, received) +
+      bytes_of(boxes, swept, swept_for, discs, near, found_at, start_then, end_then) +
+      bytes_of(particles, moved, entry, pairs);
 }

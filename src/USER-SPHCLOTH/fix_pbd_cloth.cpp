@@ -10,6 +10,7 @@
 #include "atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
+#include "core/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_sph_integrate.h"
@@ -17,6 +18,7 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
+#include "rank_error.h"
 #include "restart_record.h"
 #include "sph_adaptive.h"
 #include "update.h"
@@ -558,7 +560,7 @@ void FixPBDCloth::store()
   }
   const Vec3 from_holders = (gained - met) / (update->dt * force->ftm2v) - external;
   if (!std::isfinite(from_holders.sum()))
-    error->one(FLERR,
+    rank_error(lmp, FLERR,
                "{}: the cloth flew apart in step {}: hinges may contradict each other or have no "
                "stiff edges, or the time step is too large",
                label, update->ntimestep);
@@ -848,8 +850,5 @@ double FixPBDCloth::memory_usage()
 {
   return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax +
       constraints.distance.bytes() + constraints.bending.bytes() +
-      static_cast<double>(sizeof(Vertex) *
-                          (p.capacity() + v.capacity() + start.capacity() + way.capacity() +
-                           change.capacity())) +
-      halo.memory_usage();
+      bytes_of(p, v, start, way, change) + halo.memory_usage();
 }

@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "group.h"
+#include "rank_error.h"
 #include "region.h"
 #include "restart_record.h"
 
@@ -74,7 +75,7 @@ bool FixSPHDrain::leaves(int i) const
 {
   const double *x = atom->x[i];
   if (!std::isfinite(0.0 * x[0] + 0.0 * x[1] + 0.0 * x[2]))
-    error->one(FLERR,
+    rank_error(lmp, FLERR,
                "{}: particle {} is at {} {} {}: it does not leave, the run has failed; look at the "
                "forces on it, or take a smaller time step",
                label, atom->tag[i], x[0], x[1], x[2]);

@@ -17,6 +17,7 @@
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
+#include "rank_error.h"
 #include "restart_record.h"
 #include "sph_adaptive.h"
 #include "update.h"
@@ -277,8 +278,9 @@ void FixSPHIntegrate::select_due()
 {
   blocks->wake_moved();
   blocks->begin_step();
-  updates += blocks->mark_due(state, ACTIVE);
-  pair->set_active(state, ACTIVE);
+  const auto [due, rest] = blocks->mark_due(state, ACTIVE);
+  updates += due;
+  pair->set_active(rest ? state : nullptr, ACTIVE);
 }
 
 // From the last update, a time T ago, to now: v = v_last + T a, x = x_last + T v.  What is added to v
@@ -433,15 +435,12 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
    steps in powers of two
 ------------------------------------------------------------------------- */
 
-StepLimit FixSPHIntegrate::bounded_limit(int i, const std::array<double, 3> &external,
-                                         double before) const
+StepLimit FixSPHIntegrate::bounded_limit(int i, const double *f, double before) const
 {
-  const double *f = atom->f[i];
-  const double total[3] = {f[0] + external[0], f[1] + external[1], f[2] + external[2]};
-  const StepLimit wanted = particle_limit(lambda, particle_state(i, total));
+  const StepLimit wanted = particle_limit(lambda, particle_state(i, f));
   const StepLimit step = bounded_step(wanted, before, growth, floor, ceiling);
   if (is_too_short(step))
-    error->one(FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
+    rank_error(lmp, FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
   return step;
 }
 
@@ -456,10 +455,10 @@ double FixSPHIntegrate::acceleration(int i, double by) const
   return by * force->ftm2v / atom_mass(atom, i);
 }
 
-void FixSPHIntegrate::set_own_step(int i, double dt)
+void FixSPHIntegrate::set_own_step(int i, double dt, double now)
 {
   state[i][OWN_STEP] = dt;
-  state[i][LAST_UPDATE] = physical_time(update);
+  state[i][LAST_UPDATE] = now;
 }
 
 // Vertices move in every step of the scene, which is no longer than what any of them allows.
@@ -529,7 +528,7 @@ void FixSPHIntegrate::count(const StepLimit &own)
 
 // what every kind of particle has; returns its mass
 
-double FixSPHIntegrate::speed_and_force(int i, const double *f, StepState &s) const
+inline double FixSPHIntegrate::speed_and_force(int i, const double *f, StepState &s) const
 {
   const double mass = atom_mass(atom, i);
   const double *v = atom->v[i];
@@ -540,7 +539,7 @@ double FixSPHIntegrate::speed_and_force(int i, const double *f, StepState &s) co
   return mass;
 }
 
-StepState FixSPHIntegrate::particle_state(int i, const double *f) const
+inline StepState FixSPHIntegrate::particle_state(int i, const double *f) const
 {
   StepState s{};
   speed_and_force(i, f, s);
@@ -550,19 +549,24 @@ StepState FixSPHIntegrate::particle_state(int i, const double *f) const
   s.sound = eos.sound_speed(s.rho);
   if (lambda.relative > 0.0) s.approach = pair->approach_speed(i);
   const bool flies = pair->pressure_term()[i] == 0.0;
-  if (flies) s.until_pressed = until_pressed(i, eos.rho0 - s.rho);
+  if (flies) s.until_pressed = until_pressed(i, eos.rho0 - s.rho, s.sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!flies || scheme == SteppingScheme::INDIVIDUAL) s.drho = atom->drho[i];
   return s;
 }
 
 // Neighbours under a pressure p push each other and it together: the density grows ever faster, by
-// p/h_s^2.  With one step for all theirs is short enough.
+// p/h_s^2.  With one step for all theirs is short enough; nor are they asked where its own sound, or the
+// ceiling, allows less.
 
-double FixSPHIntegrate::until_pressed(int i, double gap) const
+double FixSPHIntegrate::until_pressed(int i, double gap, double sound) const
 {
-  if (scheme == SteppingScheme::GLOBAL) return time_to_cross(gap, atom->drho[i], 0.0);
-  const double smoothing = 0.5 * pair->support(atom->type[i]), ratio = atom->rho[i] / smoothing;
+  const double alone = time_to_cross(gap, atom->drho[i], 0.0);
+  const double smoothing = 0.5 * pair->support(atom->type[i]);
+  const double by_sound = lambda.acoustic * smoothing / sound;
+  if (scheme == SteppingScheme::GLOBAL || 0.5 * alone <= by_sound || ceiling <= by_sound)
+    return alone;
+  const double ratio = atom->rho[i] / smoothing;
   return time_to_cross(gap, atom->drho[i], pair->pressure_term_beside(i) * ratio * ratio);
 }
 

@@ -68,13 +68,12 @@ class FixSPHIntegrate : public Fix {
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();
 
-  // What BlockSteps asks.  The step that particle i allows, between floor and ceiling, with the force
-  // of others than the fluid, after a step `before` (0: none); what it is given; the ceiling; when output is due next; the same for vertices of cloth,
-  // 0 for what is none.
+  // What BlockSteps asks.  The step that particle i allows, between floor and ceiling, under a force, after
+  // a step `before` (0: none); what it is given; the ceiling; when output is due next; the same for vertices
+  // of cloth, 0 for what is none.
   bool wants_force() const { return lambda.force > 0.0; }
-  sphcloth::StepLimit bounded_limit(int i, const std::array<double, 3> &external,
-                                    double before) const;
-  void set_own_step(int i, double dt);
+  sphcloth::StepLimit bounded_limit(int i, const double *f, double before) const;
+  void set_own_step(int i, double dt, double now);
   // that sound needs across the support; by a force
   double sound_time(int i) const;
   double acceleration(int i, double by) const;
@@ -141,7 +140,7 @@ class FixSPHIntegrate : public Fix {
   sphcloth::StepLimit limit_of_vertex(int i, const FixPBDCloth &) const;
   double speed_and_force(int, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int, const double *force) const;
-  double until_pressed(int, double gap) const;
+  double until_pressed(int, double gap, double sound) const;
   sphcloth::StepState vertex_state(int) const;
   void apply(double);
   void reschedule_dumps();

@@ -6,6 +6,7 @@
 #include "arg_reader.h"
 #include "atom.h"
 #include "comm.h"
+#include "core/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_wall_sph.h"
@@ -257,9 +258,4 @@ void FixSPHShift::restart(char *buf)
   counts[MOVED] = comm->me == 0 ? moved : 0.0;
 }
 
-double FixSPHShift::memory_usage()
-{
-  return static_cast<double>(sizeof(Crowd) * crowd.capacity() +
-                             sizeof(double) * (open.capacity() + own_speed.capacity()) +
-                             sizeof(Volume) * volumes.capacity() + left.capacity());
-}
+double FixSPHShift::memory_usage() { return bytes_of(crowd, open, own_speed, volumes, left); }

@@ -12,6 +12,7 @@
 #include "input.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
+#include "rank_error.h"
 #include "update.h"
 #include "variable.h"
 
@@ -250,7 +251,7 @@ bool FixWallSPH::measure(int i, double back)
   for (std::size_t k = 0; k < walls.size(); k++) {
     const double delta = (walls[k].distance(x) - back * departure(i, k)) / support;
     if (delta < -1.0)
-      error->one(FLERR,
+      rank_error(lmp, FLERR,
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
                  "start it in front, or lower the time step",
                  label, atom->tag[i], FACES[walls[k].face]);

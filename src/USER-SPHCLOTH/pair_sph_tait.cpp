@@ -8,6 +8,7 @@
 #include "atom_tools.h"
 #include "block_steps.h"
 #include "comm.h"
+#include "core/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_cloth_contact.h"
@@ -16,6 +17,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "rank_error.h"
 #include "timer.h"
 #include "update.h"
 
@@ -292,6 +294,11 @@ void PairSPHTait::select(const Particles &p)
   if (!fluid->select(p)) return;
   if (!blocks) return;
   active_fluid.clear();
+  if (!p.active) {
+    for (int i = 0; i < atom->nlocal; i++)
+      if (materials.is_fluid(atom->type[i])) active_fluid.push_back(i);
+    return;
+  }
   for (int t = 1; t <= atom->ntypes; t++)
     if (materials.is_fluid(t))
       for (const int slot : fluid->active().of(t)) active_fluid.push_back(fluid->order().at(slot));
@@ -396,7 +403,7 @@ void PairSPHTait::new_lists()
       amount[i] = materials.type(itype).volume;
     const double *v = atom->v[i];
     if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
-      error->one(FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
+      rank_error(lmp, FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
                  atom->tag[i], v[0], v[1], v[2]);
   }
   evaluated_order = order_of_atoms(atom);
@@ -405,8 +412,8 @@ void PairSPHTait::new_lists()
   try {
     fluid->list(p, reach.data(), drifts(p));
   } catch (const std::bad_alloc &) {
-    error->one(
-        FLERR,
+    rank_error(
+        lmp, FLERR,
         "{}: not enough memory for the neighbours of {} particles within the support {}: are "
         "particles or vertices much nearer to each other than that?",
         STYLE, atom->nlocal, options.support);
@@ -555,7 +562,7 @@ void PairSPHTait::check_densities() const
 {
   for (int i = 0; i < atom->nlocal; i++)
     if (is_fluid(atom->type[i]) && !(atom->rho[i] > 0.0))
-      error->one(FLERR,
+      rank_error(lmp, FLERR,
                  "{}: particle {} has density {}: give every fluid particle one, 'set group all "
                  "sph/rho RHO0', or use 'density summation'",
                  STYLE, atom->tag[i], atom->rho[i]);
@@ -574,7 +581,7 @@ void PairSPHTait::pressures(const Particles &p, bool of_all)
     for (SheetWalls *mesh : meshes) term *= mesh->stretch(i);
     // neither true of what is not a number
     if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
-      error->one(FLERR,
+      rank_error(lmp, FLERR,
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
   };
@@ -800,8 +807,5 @@ void PairSPHTait::write_data_all(FILE *fp)
 double PairSPHTait::memory_usage()
 {
   return Pair::memory_usage() + (fluid ? fluid->bytes() : 0.0) +
-      static_cast<double>(sizeof(double) *
-                              (amount.capacity() + pressure.capacity() + rate.capacity() +
-                               gradient.capacity() + approach.capacity()) +
-                          sizeof(int) * active_fluid.capacity());
+      bytes_of(amount, pressure, rate, gradient, approach, active_fluid);
 }

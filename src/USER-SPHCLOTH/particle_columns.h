@@ -4,6 +4,8 @@
 #ifndef SPHCLOTH_PARTICLE_COLUMNS_H
 #define SPHCLOTH_PARTICLE_COLUMNS_H
 
+#include "core/bytes.h"
+
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -43,9 +45,9 @@ class ParticleColumns {
 
   double bytes() const
   {
-    double n = 0.0;
-    for (const auto &column : columns) n += static_cast<double>(column.capacity());
-    return n * sizeof(double);
+    double sum = 0.0;
+    for (const auto &column : columns) sum += sphcloth::bytes_of(column);
+    return sum;
   }
 
  private:

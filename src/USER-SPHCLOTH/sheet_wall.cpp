@@ -7,6 +7,7 @@
 #include "force.h"
 #include "neighbor.h"
 #include "pair_sph_tait.h"
+#include "rank_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -170,7 +171,7 @@ void SheetWalls::add(const ContactMesh *mesh, TriangleSet *set)
 {
   for (int i = 0; i < atom->nlocal; i++)
     if (mesh->has_vertex(i) && pair->is_boundary(atom->type[i]))
-      error->one(FLERR,
+      rank_error(lmp, FLERR,
                  "{}: vertex {} is of type {}, a boundary type, and would press twice with 'wall': "
                  "use 'pair_coeff {} {} none', or 'wall no'",
                  label, atom->tag[i], atom->type[i], atom->type[i], atom->type[i]);

@@ -5,6 +5,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "rank_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,8 +57,8 @@ void TriangleSet::add_triangles(const std::vector<int> &reach)
       if (members[0] != vertex) continue;
       const int j = cloth.image_near(members[1], i), l = cloth.image_near(members[2], i);
       if ((j < 0 || l < 0) && i < atom->nlocal)
-        error->one(
-            FLERR,
+        rank_error(
+            lmp, FLERR,
             "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
             "it with 'comm_modify cutoff', or refine the mesh",
             label, cloth.ids[vertex], cloth.ids[members[1]], cloth.ids[members[2]]);
@@ -80,8 +81,8 @@ void TriangleSet::check_reach(double far)
     }
   const double needed = std::sqrt(longest_sq) + far, reach = comm->get_comm_cutoff();
   if (needed > reach)
-    error->one(
-        FLERR,
+    rank_error(
+        lmp, FLERR,
         "{}: the longest edge of the mesh and the reach of its triangles are {}, more than the ghost "
         "cut-off {}: raise it with 'comm_modify cutoff', or refine the mesh",
         label, needed, reach);

@@ -2,6 +2,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "core/bytes.h"
 #include "domain.h"
 #include "fix.h"
 
@@ -249,6 +250,5 @@ void VertexHalo::transfer(Channel &c, bool reverse, const Data *data, Store stor
 
 double VertexHalo::memory_usage() const
 {
-  return static_cast<double>(sizeof(int) * (atoms.capacity() + slot_by_atom.capacity()) +
-                             sizeof(double) * link.capacity() + sizeof(Vec3) * buffer.capacity());
+  return sphcloth::bytes_of(atoms, slot_by_atom, link, buffer);
 }

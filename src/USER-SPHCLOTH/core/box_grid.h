@@ -4,6 +4,7 @@
 #ifndef SPHCLOTH_CORE_BOX_GRID_H
 #define SPHCLOTH_CORE_BOX_GRID_H
 
+#include "bytes.h"
 #include "cell_grid.h"
 
 #include <vector>
@@ -58,6 +59,8 @@ class BoxGrid {
       }
     });
   }
+
+  double bytes() const { return bytes_of(begin, first, cursor, items); }
 
  private:
   CellGrid grid;

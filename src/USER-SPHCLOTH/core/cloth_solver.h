@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "bytes.h"
 #include "constraints.h"
 #include "simd.h"
 
@@ -75,8 +76,9 @@ template <std::size_t N> class Constraints {
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
-    return static_cast<double>(rest.capacity()) * (5 * sizeof(double) + N * sizeof(int)) +
-        static_cast<double>(given.capacity()) * sizeof(double);
+    double sum = bytes_of(rest, k, compliance, most, lambda, given);
+    for (const std::vector<int> &vertex : slot) sum += bytes_of(vertex);
+    return sum;
   }
 
   std::vector<int> begin{0};    // of each colour, and the end

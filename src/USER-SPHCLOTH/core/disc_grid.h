@@ -7,6 +7,7 @@
 #ifndef SPHCLOTH_CORE_DISC_GRID_H
 #define SPHCLOTH_CORE_DISC_GRID_H
 
+#include "bytes.h"
 #include "cell_grid.h"
 #include "simd.h"
 
@@ -72,6 +73,14 @@ class DiscGrid {
       if (size.look(p, far)) least_sq = size.measure(p, least_sq);
     const double most = std::min(far, std::sqrt(least_sq) + slack);
     for (Size &size : sizes) size.visit_near(p, most, visit);
+  }
+
+  double bytes() const
+  {
+    double sum = 0.0;
+    for (const Size &s : sizes)
+      sum += bytes_of(s.members, s.first, s.cursor, s.items, s.x, s.y, s.z, s.disc, s.distance_sq);
+    return sum;
   }
 
  private:

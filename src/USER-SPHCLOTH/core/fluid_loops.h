@@ -845,11 +845,7 @@ double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
 
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
-  return lists.bytes() + static_cast<double>(selection.slots.capacity()) * sizeof(int) +
-      static_cast<double>(sites.capacity()) * sizeof(Site) +
-      static_cast<double>(motions.capacity()) * sizeof(Motion) +
-      static_cast<double>(gradients.capacity()) * sizeof(Gradient) +
-      static_cast<double>(spans.capacity()) * sizeof(Real);
+  return lists.bytes() + bytes_of(selection.slots, sites, motions, gradients, spans);
 }
 
 template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)

@@ -128,13 +128,7 @@ class NearLists {
   // list, of one particle and type
   int longest() const { return longest_list; }
 
-  double bytes() const
-  {
-    return outer.bytes() + sizeof(Place) * static_cast<double>(held.capacity()) +
-        sizeof(double) * static_cast<double>(until.capacity()) +
-        sizeof(int) * static_cast<double>(front.capacity() + slot_of.capacity()) +
-        static_cast<double>(current.capacity());
-  }
+  double bytes() const { return outer.bytes() + bytes_of(held, until, front, slot_of, current); }
 
  private:
   struct Place {

@@ -16,6 +16,7 @@
 #include <limits>
 #include <vector>
 
+#include "bytes.h"
 #include "sides.h"
 #include "simd.h"
 
@@ -107,11 +108,7 @@ class Stretches {
     trimmed.assign(entries.begin(), entries.begin() + need);
     entries.swap(trimmed);
   }
-  double bytes() const
-  {
-    return sizeof(int) * static_cast<double>(entries.capacity()) +
-        sizeof(std::int64_t) * static_cast<double>(first.capacity());
-  }
+  double bytes() const { return bytes_of(entries, first); }
 
  private:
   static constexpr int SLACK = 2 * LANES;
@@ -165,10 +162,7 @@ class NeighbourLists {
   int *open(int slot, int t) { return lists.open(slot, t); }
   double bytes() const
   {
-    return lists.bytes() + sizeof(float) * static_cast<double>(3 * px.capacity() + key.capacity()) +
-        sizeof(int) *
-        static_cast<double>(id.capacity() + order.capacity() + place.capacity() +
-                            cell_start.capacity() + cell.capacity() + candidate.capacity());
+    return lists.bytes() + bytes_of(px, py, pz, key, id, order, place, cell_start, cell, candidate);
   }
 
  private:

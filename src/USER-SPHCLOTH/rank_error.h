@@ -3,10 +3,10 @@
 #ifndef SPHCLOTH_RANK_ERROR_H
 #define SPHCLOTH_RANK_ERROR_H
 
-#include "comm.h"
 #include "error.h"
 #include "lammps.h"
 #include "platform.h"
+#include "universe.h"
 
 #include <string>
 #include <utility>
@@ -24,7 +24,7 @@ template <class... Words>
   try {
     lmp->error->one(file, line, format, std::forward<Words>(words)...);
   } catch (...) {
-    if (lmp->comm->nprocs > 1) platform::usleep(static_cast<int>(PATIENCE * 1e6));
+    if (lmp->universe->nprocs > 1) platform::usleep(static_cast<int>(PATIENCE * 1e6));
     throw;
   }
 }

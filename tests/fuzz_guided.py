@@ -122,6 +122,9 @@ def give_arguments(path: Path) -> None:
     # a table would be written wherever the words say
     if style not in STYLES or style == "tables" or not (words.isascii() and words.isprintable()):
         return
+    # LAMMPS's own reader aborts there, whatever the style
+    if style in ("bond", "hinge") and not words.partition("#")[0].split():
+        return
     with lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
         lmp.commands_string(set_up(style))
         error = attempt(lmp, f"{STYLES[style][0]} {words}")

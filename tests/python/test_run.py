@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import io
 import json
+import os
 from pathlib import Path
 
 import pytest
 from conftest import CLOTH_SCRIPT
 from rich.console import Console
 
+import sphcloth.run
 from sphcloth import examples
 from sphcloth.errors import UserError
 from sphcloth.run import run_example
+from sphcloth.stress.processes import descendants
 
 SCRIPT = f"""\
 variable        t_end index 0.5
@@ -114,6 +117,20 @@ def test_pictures_are_drawn(drop: Path) -> None:
     assert (drop / "copy.json").read_text() == (drop / "summary.json").read_text()
     names = ["contact_sheet.png", "history.png", "pictures/frame_0000.png"]
     assert all((drop / name).stat().st_size > 1000 for name in names)
+
+
+def test_a_run_that_is_interrupted_ends_lammps_and_sums_up_what_was_reached(
+    drop: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sphcloth.run, "_describe", interrupt)
+    before = set(descendants(os.getpid()))
+    _, text = run(drop, t_end="1e5", ranks=2)
+    assert "stopped: the summary is of what was reached" in text and "time reached" in text
+    assert set(descendants(os.getpid())) <= before
+    assert json.loads((drop / "summary.json").read_text())["time"] < 1e5
 
 
 def test_size_and_settings_reach_the_script(drop: Path) -> None:

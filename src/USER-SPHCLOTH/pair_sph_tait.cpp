@@ -211,15 +211,18 @@ double PairSPHTait::init_one(int i, int j)
                "and {}: raise it to the support plus the skin",
                STYLE, comm->cutghostuser, radius, i, j);
 
-  // LAMMPS counts the images of a box within the cut-off in an int
-  constexpr double MOST_BOXES = 1000.0;
+  // LAMMPS counts the images of a box within the cut-off in an int, and makes ghosts of all of them
+  constexpr double MOST_BOXES = 1000.0, MOST_IMAGES = 1000.0;
   const double box = std::max({domain->prd[0], domain->prd[1], domain->prd[2]});
-  if (radius > MOST_BOXES * box)
+  double images = 1.0;
+  for (int d = 0; d < domain->dimension; d++)
+    if (domain->periodicity[d]) images *= 1.0 + 2.0 * radius / domain->prd[d];
+  if (radius > MOST_BOXES * box || images > MOST_IMAGES)
     error->all(
         FLERR,
-        "{}: the support {} of types {} and {} is more than {:.0f} times the box, {}: give H "
-        "and 'support' in the units of the box",
-        STYLE, radius, i, j, MOST_BOXES, box);
+        "{}: the support {} of types {} and {} is {:.3g} times the box, {}, and reaches over "
+        "{:.3g} images of it: give H and 'support' in the units of the box",
+        STYLE, radius, i, j, radius / box, box, images);
 
   FluidModel &model = fluid->model;
   PairTerms t = materials.mix(i, j, options.kernel);

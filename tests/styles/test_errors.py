@@ -82,6 +82,11 @@ CASES = [
         SHEET.replace("pair_coeff 2 2 boundary", "") + "run 0",
         r"All pair coeffs are not set",
     ),
+    case(
+        "init: a support in millimetres",
+        SHEET.replace("sph/tait 0.1", "sph/tait 100") + "run 0",
+        r"the support 100 of types 1 and 1 is 50 times the box, 2, and reaches over .*units",
+    ),
     case("init: ghost velocities", SHEET + "comm_modify vel no\nrun 0", r"comm_modify vel yes"),
     case(
         "init: excluded pairs",
@@ -109,7 +114,7 @@ CASES = [
     case(
         "init: support in other units than the box",
         SHEET.replace("sph/tait 0.1", "sph/tait 1e300") + "run 0",
-        r"support 1e\+300 of types 1 and 1 is more than 1000 times the box, 2.*units",
+        r"support 1e\+300 of types 1 and 1 is 5e\+299 times the box, 2, .*units",
     ),
     case(
         "init: atom style without density",

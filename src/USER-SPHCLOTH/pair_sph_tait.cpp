@@ -297,11 +297,6 @@ void PairSPHTait::select(const Particles &p)
   if (!fluid->select(p)) return;
   if (!blocks) return;
   active_fluid.clear();
-  if (!p.active) {
-    for (int i = 0; i < atom->nlocal; i++)
-      if (materials.is_fluid(atom->type[i])) active_fluid.push_back(i);
-    return;
-  }
   for (int t = 1; t <= atom->ntypes; t++)
     if (materials.is_fluid(t))
       for (const int slot : fluid->active().of(t)) active_fluid.push_back(fluid->order().at(slot));

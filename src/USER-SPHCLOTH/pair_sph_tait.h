@@ -187,7 +187,7 @@ class PairSPHTait : public Pair {
   std::vector<double> rate;
   std::vector<double> approach;    // empty unless it is asked for
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
-  std::vector<int> active_fluid;    // with block steps only: of the lists, or all as they come
+  std::vector<int> active_fluid;    // in the order of the lists, with block steps only
   std::uint64_t evaluated_order = 0;    // of the owned atoms in the arrays
   Stage stage;
 

@@ -22,13 +22,25 @@ static constexpr double TIE = 1e-9;
 
 static Eigen::Vector3d place_of(const double *x) { return {x[0], x[1], x[2]}; }
 
+// from the nearest point of the line from a to b to p
+
+static Eigen::Vector3d gap_to_line(const Eigen::Vector3d &p, const Eigen::Vector3d &a,
+                                   const Eigen::Vector3d &b)
+{
+  const Eigen::Vector3d way = b - a, gap = p - a;
+  const double length_sq = way.squaredNorm();
+  const double at = length_sq > 0.0 ? std::clamp(way.dot(gap) / length_sq, 0.0, 1.0) : 0.0;
+  return gap - at * way;
+}
+
 Eigen::Vector3d SheetWall::gap_to(const Vec3 &p, int t, Vec3 &weight) const
 {
   const std::array<int, 3> &s = set->triangles[t];
   return distance_vector(p, set->place(s[0]), set->place(s[1]), set->place(s[2]), weight);
 }
 
-// Until the next build particle and triangle come nearer by the skin at most, or go away by it.
+// Until the next build particle and triangle come nearer by the skin at most, or go away by it.  Who is
+// beyond the border sees the fluid on both sides until then, and nothing is filled.
 
 void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
 {
@@ -36,20 +48,33 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
   forces.assign(set->halo.n_slots(), Vec3::Zero());
   wetting = forces;
   candidates.clear();
+  borders.clear();
   seekers.clear();
   double farthest = 0.0;
   for (int i = 0; i < atom->nlocal; i++) farthest = std::max(farthest, reach(i));
   if (farthest == 0.0 || set->triangles.empty()) return;
 
-  std::vector<Box> boxes(set->triangles.size());
+  std::vector<Box> boxes(set->triangles.size()), border_boxes;
+  std::vector<std::array<int, 2>> edges;    // of the border
+  const auto box_of = [&](const auto &slots) {
+    Box box;
+    for (int s : slots) box.extend(set->place(s));
+    box.min().array() -= farthest + skin;
+    box.max().array() += farthest + skin;
+    return box;
+  };
   for (std::size_t t = 0; t < boxes.size(); t++) {
-    boxes[t].setEmpty();
-    for (int s : set->triangles[t]) boxes[t].extend(set->place(s));
-    boxes[t].min().array() -= farthest + skin;
-    boxes[t].max().array() += farthest + skin;
+    const std::array<int, 3> &s = set->triangles[t];
+    boxes[t] = box_of(s);
+    for (int q = 0; q < 3; q++) {
+      if (!set->is_border(set->element[t], q)) continue;
+      edges.push_back({s[(q + 1) % 3], s[(q + 2) % 3]});
+      border_boxes.push_back(box_of(edges.back()));
+    }
   }
-  BoxGrid grid;
+  BoxGrid grid, border_grid;
   grid.build(boxes);
+  border_grid.build(border_boxes);
   std::vector<Candidate> near;
   for (int i = 0; i < atom->nlocal; i++) {
     const double own = reach(i);
@@ -68,12 +93,30 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
     std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
       return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
     });
-    if (near.empty() || near[0].distance > own + skin) continue;
-    const std::size_t first = candidates.size();
+    if (near.empty() || near[0].distance > own + skin || is_beyond(p, near)) continue;
+    Seeker seeker{i, own, candidates.size(), 0, borders.size(), 0};
     for (const Candidate &c : near)
       if (c.distance <= nearest + 2.0 * skin) candidates.push_back(c);
-    seekers.push_back({i, own, first, candidates.size()});
+    border_grid.query(Box(p), [&](int b) {
+      if (gap_to_line(p, set->place(edges[b][0]), set->place(edges[b][1])).norm() <= own + skin)
+        borders.push_back(edges[b]);
+    });
+    seeker.last = candidates.size();
+    seeker.last_border = borders.size();
+    seekers.push_back(seeker);
   }
+}
+
+bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
+{
+  for (const Candidate &c : nearest_first) {
+    if (c.distance > nearest_first[0].distance * (1.0 + TIE)) break;
+    Vec3 weight;
+    gap_to(p, c.triangle, weight);
+    for (int q = 0; q < 3; q++)
+      if (weight[q] <= 0.0 && set->is_border(set->element[c.triangle], q)) return true;
+  }
+  return false;
 }
 
 void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
@@ -100,32 +143,24 @@ void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
     foot.sheet = sheet;
     foot.vertices = set->triangles[triangle];
     foot.normal = nearest / foot.distance;
-    foot.share = foot.weight.minCoeff() > 0.0 ? 1.0 : share_of(p, seeker, foot.distance);
+    find_border(p - nearest, seeker, foot);
     feet.push_back(foot);
   }
 }
 
-// Where the sheet ends the fluid does not: what it fills falls to nothing in its own plane beyond the
-// border.  Of triangles that are equally near, the one that is seen most from the front counts.
+// Of the space behind the plane only what the sheet hides is filled: what is beyond its border is seen.
 
-double SheetWall::share_of(const Vec3 &p, const Seeker &seeker, double distance) const
+void SheetWall::find_border(const Vec3 &at, const Seeker &seeker, Foot &foot) const
 {
-  bool beyond = false;
-  double front = 0.0;
-  for (std::size_t k = seeker.first; k < seeker.last; k++) {
-    if (candidates[k].distance - skin > distance) break;
-    const int t = candidates[k].triangle;
-    Vec3 weight;
-    const Vec3 gap = gap_to(p, t, weight);
-    if (gap.norm() > distance * (1.0 + TIE)) continue;
-    for (int q = 0; q < 3; q++)
-      beyond = beyond || (weight[q] <= 0.0 && set->is_border(set->element[t], q));
-    const std::array<int, 3> &s = set->triangles[t];
-    const Vec3 a = set->place(s[0]);
-    const Vec3 normal = (set->place(s[1]) - a).cross(set->place(s[2]) - a).normalized();
-    front = std::max(front, std::fabs(normal.dot(gap)) / distance);
+  foot.border_distance = seeker.reach;
+  for (std::size_t b = seeker.first_border; b < seeker.last_border; b++) {
+    const Vec3 gap = gap_to_line(at, set->place(borders[b][0]), set->place(borders[b][1]));
+    const double distance = gap.norm();
+    if (distance >= foot.border_distance) continue;
+    foot.border_distance = distance;
+    const Vec3 in_plane = gap - gap.dot(foot.normal) * foot.normal;
+    foot.from_border = distance > 0.0 ? Vec3(in_plane / distance) : Vec3::Zero();
   }
-  return beyond ? std::min(front, 1.0) : 1.0;
 }
 
 Eigen::Vector3d SheetWall::velocity_at(const Foot &foot) const
@@ -211,6 +246,7 @@ void SheetWalls::begin()
   for (std::size_t k = 0; k < feet.size(); k++) {
     Foot &foot = feet[k];
     foot.value = table(foot.distance / support(foot.particle));
+    foot.beyond = table(foot.border_distance / support(foot.particle));
     int &begin = first[foot.particle];
     if (begin < 0) begin = static_cast<int>(k);
     for (std::size_t nearer = begin; nearer < k; nearer++)
@@ -227,7 +263,7 @@ template <class Do> void SheetWalls::for_feet(int i, Do something)
 double SheetWalls::stretch(int i)
 {
   double gamma = 1.0;
-  for_feet(i, [&](const Foot &foot) { gamma *= 1.0 - foot.share * foot.value.lambda; });
+  for_feet(i, [&](const Foot &foot) { gamma *= 1.0 - covered(foot); });
   return 1.0 / gamma;
 }
 
@@ -235,20 +271,28 @@ double SheetWalls::density_rate(int i, double back)
 {
   double rate = 0.0;
   for_feet(i, [&](Foot foot) {
-    const double away = velocity_from(foot).dot(foot.normal);
-    foot.value = table((foot.distance - back * away) / support(i));
-    rate += rise(foot) * away;
+    const Vec3 velocity = velocity_from(foot);
+    foot.value = table((foot.distance - back * velocity.dot(foot.normal)) / support(i));
+    rate += rise(foot).dot(velocity);
   });
   return rate;
 }
 
-// d rho_i / d distance
+// the share of its kernel, behind the plane and not beyond the border
 
-double SheetWalls::rise(const Foot &foot) const
+double SheetWalls::covered(const Foot &foot)
+{
+  return foot.share * foot.value.lambda * (1.0 - foot.beyond.lambda);
+}
+
+// the gradient of its density where it is moved
+
+Eigen::Vector3d SheetWalls::rise(const Foot &foot) const
 {
   const int i = foot.particle;
-  const double slope = foot.share * foot.value.slope / support(i);
-  return atom->rho[i] * slope / (1.0 - foot.share * foot.value.lambda);
+  const Vec3 slope = foot.value.slope * (1.0 - foot.beyond.lambda) * foot.normal -
+      foot.value.lambda * foot.beyond.slope * foot.from_border;
+  return atom->rho[i] * foot.share / (support(i) * (1.0 - covered(foot))) * slope;
 }
 
 Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
@@ -275,16 +319,16 @@ void SheetWalls::push(int i, double pressure_term, double times, bool first_push
     const double away = velocity.dot(foot.normal);
     const double friction = nu * foot.share * 2.0 * eos.rho0 / atom->rho[i] *
         wall_friction(foot.value, foot.distance / support(i), support(i));
-    const Vec3 accel = -pressure_term * rise(foot) * foot.normal -
-        times * friction * (velocity - away * foot.normal);
+    const Vec3 accel =
+        -pressure_term * rise(foot) - times * friction * (velocity - away * foot.normal);
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
     sheets[foot.sheet].give(foot, -force_on);
     if (!first_push) return;
-    atom->drho[i] += rise(foot) * away;
+    atom->drho[i] += rise(foot).dot(velocity);
     pair->add_virial(i, foot.distance * foot.normal, force_on);
     if (wetting_wanted) {
-      const double moves = 2.0 * mass * foot.share * foot.value.lambda;
+      const double moves = 2.0 * mass * covered(foot);
       sheets[foot.sheet].wet(foot, Vec3(moves, moves * eos.sound_speed(), 0.0));
     }
   });

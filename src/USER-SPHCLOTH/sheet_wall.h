@@ -25,8 +25,11 @@ struct Foot {
   std::array<int, 3> vertices{};    // slots
   Eigen::Vector3d weight, normal;    // barycentric; from the mesh to the particle
   double distance = 0.0;
-  double share = 1.0;    // of what a plane would be
-  sphcloth::WallTable::Value value{0.0, 0.0};
+  Eigen::Vector3d from_border =
+      Eigen::Vector3d::Zero();    // in the plane, unit; 0: the border is far
+  double border_distance = 0.0;
+  double share = 1.0;    // of what fills, beside other meshes
+  sphcloth::WallTable::Value value{0.0, 0.0}, beyond{0.0, 0.0};    // of plane and border
 };
 
 class SheetWall : protected Pointers {
@@ -64,15 +67,18 @@ class SheetWall : protected Pointers {
     int particle;
     double reach;
     std::size_t first, last;    // candidates, nearest first
+    std::size_t first_border, last_border;
   };
   TriangleSet *set;
   double skin = 0.0;
   std::vector<Candidate> candidates;
+  std::vector<std::array<int, 2>> borders;    // slots of the ends
   std::vector<Seeker> seekers;
   std::vector<Vec3> forces, wetting;    // by slot
 
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
-  double share_of(const Vec3 &p, const Seeker &, double distance) const;
+  bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
+  void find_border(const Vec3 &at, const Seeker &, Foot &) const;
   static void spread(const Foot &, const Vec3 &, std::vector<Vec3> &);
   void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
 };
@@ -134,7 +140,8 @@ class SheetWalls : protected Pointers {
   template <class Do> void for_feet(int i, Do something);
   void push(int i, double pressure_term, double times, bool first_push);
   double support(int i) const;
-  double rise(const Foot &) const;
+  static double covered(const Foot &);
+  Vec3 rise(const Foot &) const;
   Vec3 velocity_from(const Foot &) const;
 };
 

@@ -159,20 +159,73 @@ def test_what_the_mesh_gets_is_the_opposite(newton):
     assert np.abs(torque[2]) < 1e-2 * np.abs(np.cross(x, f)).sum()
 
 
-def test_nothing_is_filled_beyond_the_border():
-    """One particle moves out over the border of the sheet, in its plane and above it."""
+def test_what_is_filled_ends_at_the_border():
+    """One particle above the sheet, which ends at 0.7, and beyond."""
+    support, z = 0.15, 0.02
 
-    def rho(x, z):
+    def rho(x, z=z):
         lmp = mesh()
         lmp.commands_string(f"group one id 1\nset group one x {x} y 0 z {z}\nrun 0")
         return by_id(lmp, "rho")[0]
 
     alone = rho(0.9, 0.5)
-    assert rho(0.69, 0.02) - alone > 50
-    assert rho(0.72, 0.0) == pytest.approx(alone, abs=1e-6)
-    assert rho(0.86, 0.02) == alone
-    steps = np.array([rho(x, 0.02) for x in np.linspace(0.66, 0.76, 11)])
-    assert (np.diff(steps) < 1e-9).all() and np.diff(steps).min() > -40
+    for x in (0.5, 0.58, 0.66, 0.69):
+        seen = covered(min(0.7 - x, support), support)
+        gamma = 1 - covered(z, support) * (1 - seen)
+        assert rho(x) == pytest.approx(alone / gamma, rel=1e-6), x
+    for x, z in ((0.71, 0.02), (0.72, 0.0), (0.86, 0.02)):
+        assert rho(x, z) == alone, (x, z)
+
+
+# Water all around the border of a sheet, between two layers of particles, and the same without.
+HEM = (
+    SLAB.replace("-0.3 0.3 -0.3 0.3 0 0.3 units", "-0.3 0.3 -0.3 0.3 -0.3 0.3 units")
+    .replace("displace_atoms all random 0.01 0.01 0.01 5 units box", "")
+    .replace("boundary f f f", "boundary f f f\n")
+)
+HALF = "create_cloth 2 2.0 center -0.4 0 0 size 0.8 1.4 spacing 0.1 pattern square group cloth"
+
+
+def hem(sheet="", wall="", moved=0.0, mass=0.13, right=0.3):
+    lmp = instance()
+    lmp.commands_string(
+        HEM.replace("-0.3 0.3 -0.3 0.3 -0.3", f"-0.3 {right} -0.3 0.3 -0.3").format(
+            wall=wall,
+            sheet=sheet,
+            density="summation",
+            scheme="constant",
+            steps=0,
+            mass=mass,
+        )
+    )
+    if moved:
+        lmp.commands_string(f"displace_atoms cloth move {moved} 0 0 units box\nrun 0")
+    return lmp
+
+
+@pytest.mark.parametrize("moved", [-0.02, 0.0, 0.01, 0.04])
+def test_water_around_a_border_has_the_density_of_water(moved):
+    """What is hidden is filled, and no more: but for the grid of the lattice."""
+    fixes = MESH.format(pin="pin cloth").replace("sides no", "sides yes")
+    sheet, none = hem(HALF, fixes, moved), hem()
+    x = fluid(sheet, "x")
+    change = fluid(sheet, "rho") / fluid(none, "rho") - 1
+    inner = np.abs(x[:, 1:]).max(axis=1) < 0.1
+    far, near = inner & (np.abs(x[:, 0] + 0.2) < 0.03), inner & (np.abs(x[:, 0] - moved) < 0.1)
+    assert 1e-3 < np.abs(change[far]).max() < 0.03
+    assert np.abs(change[near]).max() < 0.06
+
+
+def test_a_border_at_a_plane_wall():
+    """Water in the corner has the density that it has at the wall without the sheet."""
+    walls = "fix side fluid wall/sph xhi 0"
+    fixes = MESH.format(pin="pin cloth").replace("sides no", "sides yes")
+    sheet, none = hem(HALF, fixes + "\n" + walls, right=0), hem(wall=walls, right=0)
+    x = fluid(sheet, "x")
+    near = (np.abs(x[:, 1:]).max(axis=1) < 0.1) & (np.abs(x[:, 0] + 0.05) < 0.03)
+    assert near.sum() > 8
+    change = fluid(sheet, "rho") / fluid(none, "rho") - 1
+    assert np.abs(change[near]).max() < 0.06
 
 
 def test_a_mesh_behind_another_one_is_not_counted_again():

@@ -144,7 +144,7 @@ double BlockSteps::want_steps()
   return least;
 }
 
-// Everybody begins a step: it may be of any length.
+// Everybody begins a step: it may be of any length, but roots end at output times.
 
 void BlockSteps::begin_root(double least)
 {
@@ -157,16 +157,8 @@ void BlockSteps::begin_root(double least)
   mine.count[0] += UPDATES_PER_VERTEX * fix->count_vertices();    // whatever they want
   MPI_Allreduce(mine.count.data(), all.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
 
-  fit_root(all.best_root(least_of_all, OVERHEAD), least_of_all);
-}
-
-// It ends at an output time, or before it where a shorter one fits.
-
-void BlockSteps::fit_root(double best, double least)
-{
-  const double next = fix->next_output_time(least), remaining = next - physical_time(update);
-  while (best > remaining && best > least) best *= 0.5;
-  const double root = best <= least ? step_towards(remaining, best) : best;
+  const double next = fix->next_output_time(least_of_all), remaining = next - physical_time(update);
+  const double root = all.root_towards(remaining, least_of_all, OVERHEAD);
   const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root;
   for (const int i : pair->active_particles()) rows[UNTIL][i] = (rows[UNTIL][i] - end) * ratio;
   at.line = {root, 0};

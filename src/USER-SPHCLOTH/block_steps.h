@@ -159,7 +159,6 @@ class BlockSteps : protected Pointers {
   void choose();
   double want_steps();
   void begin_root(double least);
-  void fit_root(double best, double least);
   int choose_level(int i);
   void find_step_of_scene();
   void respect_neighbours();

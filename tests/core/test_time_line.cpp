@@ -67,3 +67,27 @@ CASE("wanted steps: nobody gets more than wanted, whatever the root")
   CHECK(line.root > 5e-5);
   for (const double dt : wanted) CHECK(line.step(line.level_of(dt)) <= dt * (1.0 + 1e-12));
 }
+
+CASE("wanted steps: equal roots arrive at an output time, and cost little more")
+{
+  // as above: steps of 0.275 and 1.1 are best
+  std::vector<double> wanted(10, 0.3);
+  wanted.resize(1000, 1.1);
+  WantedSteps two;
+  for (const double dt : wanted) two.add(dt, 0.3);
+  const double best = two.best_root(0.3, 0.0), best_cost = cost(wanted, best);
+  for (double remaining = 1.2; remaining < 17.0; remaining += 0.37) {
+    const double root = two.root_towards(remaining, 0.3, 0.0), roots = remaining / root;
+    CHECK_NEAR(roots, std::round(roots), 1e-12);
+    CHECK(root <= 1.1);
+    const double shortened = std::ceil(remaining / best) * best / remaining;
+    CHECK(cost(wanted, root) < 1.01 * shortened * best_cost);
+  }
+  CHECK_NEAR(two.root_towards(0.9, 0.3, 0.0), 0.9, 0.0);
+  CHECK_NEAR(two.root_towards(100.0, 0.3, 0.0), two.best_root(0.3, 0.0), 0.0);
+
+  WantedSteps one;
+  for (int k = 0; k < 100; k++) one.add(0.3, 0.3);
+  CHECK_NEAR(one.root_towards(0.5, 0.3, 0.0), 0.25, 1e-15);
+  CHECK_NEAR(one.root_towards(0.7, 0.3, 0.0), 0.3, 1e-15);
+}

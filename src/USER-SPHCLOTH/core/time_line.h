@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "criteria.h"
 
 namespace sphcloth {
 
@@ -67,32 +70,66 @@ class WantedSteps {
   double best_root(double least, double overhead) const
   {
     double best = 0.0, best_cost = 0.0;
-    int end = N;
-    while (end > 0 && !count[end - 1]) end--;
     for (int shift = 0; shift < PARTS; shift++) {
       const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
-      int longest = 0;
-      const double cost = work_per_time(shift, end, overhead, longest) / shortest;
+      const Work work = of_ladder(shift, TimeLine::DEEPEST, overhead);
+      const double cost = work.per_shortest / shortest;
       if (shift > 0 && cost >= best_cost) continue;
       best_cost = cost;
-      best = std::ldexp(shortest, longest);
+      best = std::ldexp(shortest, work.longest);
     }
     return best;
   }
 
- private:
-  // of the counts before `end`, in units of the shortest step; longest: the octave of the longest step
-  double work_per_time(int shift, int end, double overhead, int &longest) const
+  // The same where a root has to end `remaining` from now: that and up to twice as many equal roots,
+  // whichever cost least.  Far away any root will do, and one step for all arrives as it does
+  // elsewhere.
+  double root_towards(double remaining, double least, double overhead) const
   {
-    double updates = 0.0, particles = 0.0;
-    for (int k = 0; k < end; k++) {
-      if (!count[k]) continue;
-      const int octave = (k + shift) / PARTS;
-      updates += std::ldexp(count[k], -octave);
-      particles += count[k];
-      longest = octave;
+    constexpr int FAR = 16;    // roots
+    constexpr double ROUNDING = 1e-9;
+    const double best = best_root(least, overhead), roots = remaining / best;
+    if (best <= least) return step_towards(remaining, best);
+    if (roots > FAR) return best;
+    const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * roots)));
+    double root = 0.0, least_cost = std::numeric_limits<double>::infinity();
+    for (int n = fewest; n < 2 * fewest; n++) {
+      const double cost = cost_of(remaining / n, least, overhead);
+      if (cost >= least_cost) continue;
+      least_cost = cost;
+      root = remaining / n;
     }
-    return updates + overhead * particles;
+    return root;
+  }
+
+ private:
+  struct Work {
+    double per_shortest = 0.0;    // step
+    int longest = 0;    // octave of a step that somebody takes
+  };
+
+  double cost_of(double root, double least, double overhead) const
+  {
+    const TimeLine line{root};
+    const int deepest = line.level_of(least);
+    const double above = std::log2(least / line.step(deepest));
+    const int shift = std::max(0, static_cast<int>(std::ceil(PARTS * above)));
+    return of_ladder(shift, deepest, overhead).per_shortest / line.step(deepest);
+  }
+
+  // of octaves up to `highest`, the first of which begins `shift` parts below the least wanted step
+  Work of_ladder(int shift, int highest, double overhead) const
+  {
+    Work work;
+    double particles = 0.0;
+    for (int k = 0; k < N; k++) {
+      if (!count[k]) continue;
+      work.longest = std::min(highest, (k + shift) / PARTS);
+      work.per_shortest += std::ldexp(count[k], -work.longest);
+      particles += count[k];
+    }
+    work.per_shortest += overhead * particles;
+    return work;
   }
 };
 

@@ -35,6 +35,21 @@ void BlockSteps::init(PairSPHTait *style)
   pair->set_blocks(this);
   known = false;
   apart = options.ratio == 4 ? 2 : 1;
+  least_apart.assign(atom->ntypes + 1, apart);
+  for (int t = 1; t <= atom->ntypes; t++)
+    for (int u = 1; u <= atom->ntypes; u++)
+      least_apart[t] = std::min(least_apart[t], levels_apart(t, u));
+}
+
+// How many levels may a particle be above a neighbour of another type?  What a coarse one gives for its
+// whole step comes at once, and a fine one bears that no longer than about twice its own acoustic
+// step: while pressures balance, it moves to and fro by p/(2 rho H) times the square of that time.
+
+int BlockSteps::levels_apart(int type, int neighbour) const
+{
+  if (!pair->is_fluid(type) || !pair->is_fluid(neighbour)) return apart;
+  const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbour)));
+  return octaves > 0.0 ? std::clamp(2 - static_cast<int>(octaves), 0, apart) : apart;
 }
 
 void BlockSteps::make_room()
@@ -226,7 +241,7 @@ void BlockSteps::respect_neighbours()
   comm->forward_comm(fix, 1);
   NearLists &lists = pair->order();
   for (const int i : pair->active_particles())
-    if (lists.greatest(lists.slot(i), level.data()) > level[i] + apart)
+    if (lists.greatest(lists.slot(i), level.data()) > level[i] + least_apart[atom->type[i]])
       rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
 }
@@ -234,9 +249,13 @@ void BlockSteps::respect_neighbours()
 int BlockSteps::level_beside(int i)
 {
   int own = level[i];
-  for_neighbours(i, [&](int j) {
-    if (level[j] - apart > own && pair->inside_support(i, j)) own = level[j] - apart;
-  });
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const int most = levels_apart(atom->type[i], t);
+    const Stretch near = pair->neighbours(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (const int j = near.of[k]; level[j] - most > own && pair->inside_support(i, j))
+        own = level[j] - most;
+  }
   return own;
 }
 

@@ -136,6 +136,7 @@ class BlockSteps : protected Pointers {
   ParticleColumns &rows;
   Place at;
   int apart;    // levels that neighbours may be apart
+  std::vector<int> least_apart;    // by type, from those of other types too
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
   double ideal;
@@ -152,6 +153,7 @@ class BlockSteps : protected Pointers {
   std::vector<int> slots;    // of those who need impulses
   std::vector<int> boundaries, impelled;    // owned, the latter in the last evaluation
 
+  int levels_apart(int type, int neighbour) const;
   void make_room();
   void know_all();
   bool ends_root() const;

@@ -530,3 +530,53 @@ def test_steps_that_jump_do_not_feed_a_sheet(edge, hinge, end):
         substeps = lmp.extract_fix("most", 0, 1, 1)
     assert max(energy) < 1.0
     assert 20 < substeps < 60
+
+
+# Fine water in the middle of coarse water, of a quarter of the spacing, under pressure.
+UNDER_PRESSURE = """
+units si
+atom_style sph
+atom_modify map yes
+comm_modify vel yes
+boundary p p p
+region box block -0.2 0.2 -0.2 0.2 -0.2 0.2
+create_box 2 box
+region fine block -0.04 0.04 -0.04 0.04 -0.04 0.04 units box
+region coarse block -0.04 0.04 -0.04 0.04 -0.04 0.04 side out units box
+lattice sc 0.04 origin 0.5 0.5 0.5
+create_atoms 1 region coarse
+lattice sc 0.01 origin 0.5 0.5 0.5
+create_atoms 2 region fine
+group fine type 2
+mass 1 0.0672
+mass 2 0.00105
+set group all sph/rho 1000
+pair_style sph/tait 0.104
+pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
+pair_coeff 2 2 fluid 1000 c0 20 alpha 0.1 support 0.026
+neighbor 0.01 bin
+neigh_modify every 1 delay 0 check yes
+timestep 2e-4
+fix step all sph/integrate constant
+run_style sph/adaptive constant
+fix drag all viscous 0.2 scale 1 5
+run 1500
+unfix drag
+timestep {dt}
+fix step all sph/integrate global velocity 0 force 0 viscous 0 density 0 acoustic 0.8 until 0.35
+run_style sph/adaptive {scheme}
+run 100000
+"""
+
+
+def test_fine_water_is_not_shaken_by_the_steps_of_coarse_water():
+    """Pressures balance, but impulses of a coarse particle come all at once."""
+    speed, updates = {}, {}
+    for scheme, dt in (("constant", 4e-4), ("block", 5e-3)):
+        with instance() as lmp:
+            lmp.commands_string(UNDER_PRESSURE.format(scheme=scheme, dt=dt))
+            fine = by_id(lmp, "type") == 2
+            speed[scheme] = np.sqrt((by_id(lmp, "v")[fine] ** 2).sum(axis=1).mean())
+            updates[scheme] = lmp.extract_fix("step", 0, 1, 2)
+    assert speed["block"] < 2.5 * speed["constant"]
+    assert updates["block"] < 0.8 * updates["constant"]

@@ -10,7 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+from matplotlib.ticker import (
+    LogFormatterSciNotation,
+    LogLocator,
+    MaxNLocator,
+    NullLocator,
+    StrMethodFormatter,
+)
 
 from sphcloth.tradeoff.front import COSTS, Point, choices, pareto
 from sphcloth.tradeoff.scene import AS_WRITTEN, Quantity
@@ -28,6 +34,8 @@ STYLES = {
 SETTINGS = {"svg.fonttype": "none", "font.size": 9, "legend.fontsize": 8}
 # errors above are off the scale: how wrong a run is that is all wrong does not matter
 WORST = 1.0
+# an axis over a smaller factor has no room for powers of ten
+NARROW = 4.0
 
 
 def draw(study: Study, out: Path) -> list[Path]:
@@ -79,9 +87,20 @@ def _draw_panel(axes: Axes, study: Study, quantity: str, cost: str) -> list[Arti
     explained, _ = axes.get_legend_handles_labels()
     found = choices(study.points, quantity, cost, error)
     rings = [_ring(axes, choice.point, quantity, cost) for choice in found.values()]
+    _number_narrow_axes(axes)
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "frameon": False}
     axes.legend(handles=rings, title=f"cheapest within {error:g}" if rings else None, **below)
     return explained
+
+
+def _number_narrow_axes(axes: Axes) -> None:
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        if high >= NARROW * low:
+            continue
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(StrMethodFormatter("{x:.3g}"))
+        axis.set_minor_locator(NullLocator())
 
 
 def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str) -> None:

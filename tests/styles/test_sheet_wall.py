@@ -178,15 +178,13 @@ def test_what_is_filled_ends_at_the_border():
 
 
 # Water all around the border of a sheet, between two layers of particles, and the same without.
-HEM = (
-    SLAB.replace("-0.3 0.3 -0.3 0.3 0 0.3 units", "-0.3 0.3 -0.3 0.3 -0.3 0.3 units")
-    .replace("displace_atoms all random 0.01 0.01 0.01 5 units box", "")
-    .replace("boundary f f f", "boundary f f f\n")
+HEM = SLAB.replace("-0.3 0.3 -0.3 0.3 0 0.3 units", "-0.3 0.3 -0.3 0.3 -0.3 0.3 units").replace(
+    "displace_atoms all random 0.01 0.01 0.01 5 units box", ""
 )
 HALF = "create_cloth 2 2.0 center -0.4 0 0 size 0.8 1.4 spacing 0.1 pattern square group cloth"
 
 
-def hem(sheet="", wall="", moved=0.0, mass=0.13, right=0.3):
+def hem(sheet="", wall="", moved=0.0, right=0.3):
     lmp = instance()
     lmp.commands_string(
         HEM.replace("-0.3 0.3 -0.3 0.3 -0.3", f"-0.3 {right} -0.3 0.3 -0.3").format(
@@ -195,7 +193,7 @@ def hem(sheet="", wall="", moved=0.0, mass=0.13, right=0.3):
             density="summation",
             scheme="constant",
             steps=0,
-            mass=mass,
+            mass=0.13,
         )
     )
     if moved:

@@ -70,9 +70,10 @@ class WantedSteps {
   double best_root(double least, double overhead) const
   {
     double best = 0.0, best_cost = 0.0;
+    const int end = end_of_counts();
     for (int shift = 0; shift < PARTS; shift++) {
       const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
-      const Work work = of_ladder(shift, TimeLine::DEEPEST, overhead);
+      const Work work = of_ladder(shift, end, TimeLine::DEEPEST, overhead);
       const double cost = work.per_shortest / shortest;
       if (shift > 0 && cost >= best_cost) continue;
       best_cost = cost;
@@ -92,9 +93,10 @@ class WantedSteps {
     if (best <= least) return step_towards(remaining, best);
     if (roots > FAR) return best;
     const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * roots)));
+    const int end = end_of_counts();
     double root = 0.0, least_cost = std::numeric_limits<double>::infinity();
     for (int n = fewest; n < 2 * fewest; n++) {
-      const double cost = cost_of(remaining / n, least, overhead);
+      const double cost = cost_of(remaining / n, least, end, overhead);
       if (cost >= least_cost) continue;
       least_cost = cost;
       root = remaining / n;
@@ -108,21 +110,29 @@ class WantedSteps {
     int longest = 0;    // octave of a step that somebody takes
   };
 
-  double cost_of(double root, double least, double overhead) const
+  // nobody wants longer steps
+  int end_of_counts() const
+  {
+    int end = N;
+    while (end > 0 && !count[end - 1]) end--;
+    return end;
+  }
+
+  double cost_of(double root, double least, int end, double overhead) const
   {
     const TimeLine line{root};
     const int deepest = line.level_of(least);
     const double above = std::log2(least / line.step(deepest));
     const int shift = std::max(0, static_cast<int>(std::ceil(PARTS * above)));
-    return of_ladder(shift, deepest, overhead).per_shortest / line.step(deepest);
+    return of_ladder(shift, end, deepest, overhead).per_shortest / line.step(deepest);
   }
 
   // of octaves up to `highest`, the first of which begins `shift` parts below the least wanted step
-  Work of_ladder(int shift, int highest, double overhead) const
+  Work of_ladder(int shift, int end, int highest, double overhead) const
   {
     Work work;
     double particles = 0.0;
-    for (int k = 0; k < N; k++) {
+    for (int k = 0; k < end; k++) {
       if (!count[k]) continue;
       work.longest = std::min(highest, (k + shift) / PARTS);
       work.per_shortest += std::ldexp(count[k], -work.longest);

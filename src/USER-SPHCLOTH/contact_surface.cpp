@@ -293,7 +293,7 @@ int ContactSurface::side_at(const Vec3 &p, double reach)
     }
     nearest = std::min(nearest, distance);
     if (std::fabs(over) > std::fabs(height)) height = over;
-    for (int q = 0; q < 3; q++) beyond = beyond || (weight[q] <= 0.0 && is_border(element[t], q));
+    beyond = beyond || is_on_border(t, weight);
   });
   return beyond || height == 0.0 ? 0 : (height > 0.0 ? 1 : -1);
 }

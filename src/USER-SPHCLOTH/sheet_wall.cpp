@@ -113,8 +113,7 @@ bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_f
     if (c.distance > nearest_first[0].distance * (1.0 + TIE)) break;
     Vec3 weight;
     gap_to(p, c.triangle, weight);
-    for (int q = 0; q < 3; q++)
-      if (weight[q] <= 0.0 && set->is_border(set->element[c.triangle], q)) return true;
+    if (set->is_on_border(c.triangle, weight)) return true;
   }
   return false;
 }

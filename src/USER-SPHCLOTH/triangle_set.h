@@ -49,6 +49,14 @@ class TriangleSet : protected Pointers {
   // nothing is beyond the edge of an element that is opposite to a vertex
   bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
 
+  // is a point of a triangle, by its barycentric weights, on the border?
+  bool is_on_border(int t, const Vec3 &weight) const
+  {
+    for (int q = 0; q < 3; q++)
+      if (weight[q] <= 0.0 && is_border(element[t], q)) return true;
+    return false;
+  }
+
   // vertices as they are now, ghosts too
   Vec3 place(int slot) const;
 

@@ -36,7 +36,12 @@ static Eigen::Vector3d gap_to_line(const Eigen::Vector3d &p, const Eigen::Vector
 Eigen::Vector3d SheetWall::gap_to(const Vec3 &p, int t, Vec3 &weight) const
 {
   const std::array<int, 3> &s = set->triangles[t];
-  return distance_vector(p, set->place(s[0]), set->place(s[1]), set->place(s[2]), weight);
+  return distance_vector(p, places[s[0]], places[s[1]], places[s[2]], weight);
+}
+
+void SheetWall::find_places()
+{
+  for (std::size_t s = 0; s < places.size(); s++) places[s] = set->place(static_cast<int>(s));
 }
 
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.  Who is
@@ -47,6 +52,9 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
   wetting = forces;
+  places.resize(forces.size());
+  find_places();
+  places_then = places;
   candidates.clear();
   borders.clear();
   seekers.clear();
@@ -54,11 +62,14 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
   for (int i = 0; i < atom->nlocal; i++) farthest = std::max(farthest, reach(i));
   if (farthest == 0.0 || set->triangles.empty()) return;
 
-  std::vector<Box> boxes(set->triangles.size()), border_boxes;
+  std::vector<Box> boxes(set->triangles.size()), wide = boxes, border_boxes;
   std::vector<std::array<int, 2>> edges;    // of the border
   const auto box_of = [&](const auto &slots) {
     Box box;
-    for (int s : slots) box.extend(set->place(s));
+    for (int s : slots) box.extend(places[s]);
+    return box;
+  };
+  const auto widened = [&](Box box) {
     box.min().array() -= farthest + skin;
     box.max().array() += farthest + skin;
     return box;
@@ -66,14 +77,15 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
   for (std::size_t t = 0; t < boxes.size(); t++) {
     const std::array<int, 3> &s = set->triangles[t];
     boxes[t] = box_of(s);
+    wide[t] = widened(boxes[t]);
     for (int q = 0; q < 3; q++) {
       if (!set->is_border(set->element[t], q)) continue;
       edges.push_back({s[(q + 1) % 3], s[(q + 2) % 3]});
-      border_boxes.push_back(box_of(edges.back()));
+      border_boxes.push_back(widened(box_of(edges.back())));
     }
   }
   BoxGrid grid, border_grid;
-  grid.build(boxes);
+  grid.build(wide);
   border_grid.build(border_boxes);
   std::vector<Candidate> near;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -81,30 +93,46 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
     if (own == 0.0) continue;
     const Vec3 p = place_of(atom->x[i]);
     near.clear();
-    double nearest = own + skin;
     grid.query(Box(p), [&](int t) {
-      if (boxes[t].exteriorDistance(p) > 0.0) return;
-      Vec3 weight;
-      const double distance = gap_to(p, t, weight).norm();
-      if (distance > nearest + 2.0 * skin) return;
-      nearest = std::min(nearest, distance);
-      near.push_back({t, distance});
+      if (const double bound = boxes[t].exteriorDistance(p); bound <= own + skin)
+        near.push_back({t, bound});
     });
-    std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
-      return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
-    });
-    if (near.empty() || near[0].distance > own + skin || is_beyond(p, near)) continue;
-    Seeker seeker{i, own, candidates.size(), 0, borders.size(), 0};
-    for (const Candidate &c : near)
-      if (c.distance <= nearest + 2.0 * skin) candidates.push_back(c);
+    keep_nearest(p, own + skin, near);
+    if (near.empty() || is_beyond(p, near)) continue;
+    Seeker seeker{i, own, p, candidates.size(), 0, borders.size(), 0};
+    candidates.insert(candidates.end(), near.begin(), near.end());
     border_grid.query(Box(p), [&](int b) {
-      if (gap_to_line(p, set->place(edges[b][0]), set->place(edges[b][1])).norm() <= own + skin)
+      if (gap_to_line(p, places[edges[b][0]], places[edges[b][1]]).norm() <= own + skin)
         borders.push_back(edges[b]);
     });
     seeker.last = candidates.size();
     seeker.last_border = borders.size();
     seekers.push_back(seeker);
   }
+}
+
+// Of triangles with the distance of their boxes those that are within reach and may become the nearest,
+// sorted by their own distance.  The one with the nearest box tells most about the others.
+
+void SheetWall::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
+{
+  if (near.empty()) return;
+  const auto nearer = [](const Candidate &a, const Candidate &b) {
+    return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+  };
+  Vec3 weight;
+  const int likely = std::min_element(near.begin(), near.end(), nearer)->triangle;
+  double nearest = gap_to(p, likely, weight).norm();
+  for (Candidate &c : near) {
+    if (c.distance > nearest + 2.0 * skin) continue;
+    c.distance = gap_to(p, c.triangle, weight).norm();
+    nearest = std::min(nearest, c.distance);
+  }
+  const double most = nearest > within ? -1.0 : nearest + 2.0 * skin;
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](const Candidate &c) { return c.distance > most; }),
+             near.end());
+  std::sort(near.begin(), near.end(), nearer);
 }
 
 bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
@@ -120,14 +148,21 @@ bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_f
 
 void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
 {
+  if (seekers.empty()) return;
+  find_places();
+  double moved_sq = 0.0;
+  for (std::size_t s = 0; s < places.size(); s++)
+    moved_sq = std::max(moved_sq, (places[s] - places_then[s]).squaredNorm());
+  const double moved = std::sqrt(moved_sq);
   for (const Seeker &seeker : seekers) {
     const Vec3 p = place_of(atom->x[seeker.particle]);
+    const double nearer = moved + (p - seeker.at).norm();    // at most, than at the list build
     Foot foot;
     foot.distance = seeker.reach;
     Vec3 nearest = Vec3::Zero();
     int triangle = -1;
     for (std::size_t k = seeker.first; k < seeker.last; k++) {
-      if (candidates[k].distance - skin > foot.distance) break;
+      if (candidates[k].distance - nearer > foot.distance) break;
       Vec3 weight;
       const Vec3 gap = gap_to(p, candidates[k].triangle, weight);
       const double distance_sq = gap.squaredNorm();
@@ -153,7 +188,7 @@ void SheetWall::find_border(const Vec3 &at, const Seeker &seeker, Foot &foot) co
 {
   foot.border_distance = seeker.reach;
   for (std::size_t b = seeker.first_border; b < seeker.last_border; b++) {
-    const Vec3 gap = gap_to_line(at, set->place(borders[b][0]), set->place(borders[b][1]));
+    const Vec3 gap = gap_to_line(at, places[borders[b][0]], places[borders[b][1]]);
     const double distance = gap.norm();
     if (distance >= foot.border_distance) continue;
     foot.border_distance = distance;

@@ -66,6 +66,7 @@ class SheetWall : protected Pointers {
   struct Seeker {
     int particle;
     double reach;
+    Vec3 at;    // at the list build
     std::size_t first, last;    // candidates, nearest first
     std::size_t first_border, last_border;
   };
@@ -74,8 +75,11 @@ class SheetWall : protected Pointers {
   std::vector<Candidate> candidates;
   std::vector<std::array<int, 2>> borders;    // slots of the ends
   std::vector<Seeker> seekers;
+  std::vector<Vec3> places, places_then;    // by slot, now and at the list build
   std::vector<Vec3> forces, wetting;    // by slot
 
+  void find_places();
+  void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
   void find_border(const Vec3 &at, const Seeker &, Foot &) const;

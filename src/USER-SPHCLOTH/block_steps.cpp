@@ -57,7 +57,7 @@ void BlockSteps::make_room()
   const std::size_t n = atom->nmax;
   for (std::vector<int> *list : {&level, &pace, &mark}) list->resize(n, 0);
   for (std::vector<double> *list : {&span, &impulse, &wanted}) list->resize(n, 0.0);
-  for (std::vector<double> *list : {&from_particles, &handed}) list->resize(3 * n, 0.0);
+  for (std::vector<double> *list : {&from_particles, &handed, &kicks}) list->resize(3 * n, 0.0);
   if (neighbor->ago == 0) known = false;
 }
 
@@ -97,6 +97,7 @@ void BlockSteps::begin_step()
 {
   at.line.now += TimeLine::ticks(at.deepest);
   at.chosen = false;
+  at.owes = false;
   coarsest = at.line.coarsest();
 }
 
@@ -389,6 +390,84 @@ void BlockSteps::wake_beside_moving_boundaries()
 }
 
 /* ----------------------------------------------------------------------
+   output times
+------------------------------------------------------------------------- */
+
+bool BlockSteps::catch_up()
+{
+  if (at.chosen || !at.reaches_output || !at.line.ended() || at.alike) return false;
+  make_room();
+  measure_arrears();
+  stage = IMPULSES;
+  comm->forward_comm(fix, 3);
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    std::copy_n(atom->f[i], 3, from_particles.begin() + 3 * i);
+    std::fill_n(atom->f[i], 3, 0.0);
+  }
+  slots.clear();
+  for (const int i : pair->active_particles()) {
+    if (span[i] > 0.0) pair->push_walls_more(i, impulse[i], span[i]);
+    slots.push_back(pair->order().slot(i));
+  }
+  for (const int i : boundaries)
+    if (pair->is_boundary(atom->type[i])) slots.push_back(pair->order().slot(i));
+  pair->give_impulses(slots, impulse.data(), span.data());
+  kick();
+  for (int i = 0; i < atom->nlocal; i++) std::copy_n(from_particles.begin() + 3 * i, 3, atom->f[i]);
+
+  stage = KICKS;
+  comm->forward_comm(fix, 3);
+  return true;
+}
+
+// How far is the end of its impulses behind that of who takes the shortest steps?
+
+void BlockSteps::measure_arrears()
+{
+  const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
+  const double until = static_cast<double>(at.line.now) - 0.5 * scene;
+  know_all();
+  for (const int i : impelled) rest(i);
+  for (const int i : boundaries) rest(i);
+  impelled = pair->active_particles();
+  for (const int i : impelled) {
+    const bool integrated = atom->mask[i] & fix->groupbit;
+    const double behind = integrated && rows[CALL][i] != NEW ? until - rows[UNTIL][i] : 0.0;
+    span[i] = std::max(0.0, behind) / scene;
+    impulse[i] = span[i] * pair->pressure_term()[i];
+    if (behind > 0.0) rows[UNTIL][i] = until;
+  }
+}
+
+// The fluid now, vertices later: the velocity of a light one would only be known with what holds it.
+
+void BlockSteps::kick()
+{
+  const double scene = at.line.step(at.deepest);
+  for (const int i : pair->active_particles())
+    for (int d = 0; d < 3; d++) {
+      kicks[3 * i + d] = scene * fix->acceleration(i, atom->f[i][d]);
+      atom->v[i][d] += kicks[3 * i + d];
+    }
+  at.owes = true;
+  for (const int i : boundaries)
+    for (int d = 0; d < 3; d++) rows[OWED + d][i] = scene * atom->f[i][d];
+  pair->hand_over_pushes([&](int i, const Eigen::Vector3d &push) {
+    for (int d = 0; d < 3; d++) rows[OWED + d][i] += scene * push[d];
+  });
+}
+
+void BlockSteps::pay()
+{
+  if (!at.owes) return;
+  know_all();
+  const double step = at.line.step(at.deepest);
+  for (const int i : boundaries)
+    for (int d = 0; d < 3; d++) atom->f[i][d] += rows[OWED + d][i] / step;
+}
+
+/* ----------------------------------------------------------------------
    forces become impulses
 ------------------------------------------------------------------------- */
 
@@ -418,6 +497,7 @@ void BlockSteps::hand_out()
     share_equally();
   else
     share_impulses();
+  pay();
   if (needs_external()) keep_forces(handed);
 }
 
@@ -579,28 +659,32 @@ int BlockSteps::pack_forward(int n, const int *list, double *buf) const
   int m = 0;
   for (int k = 0; k < n; k++) {
     const int i = list[k];
-    if (stage == LEVELS) {
-      buf[m++] = level[i];
-      continue;
+    switch (stage) {
+      case LEVELS: buf[m++] = level[i]; break;
+      case IMPULSES:
+        buf[m++] = pace[i];
+        buf[m++] = span[i];
+        buf[m++] = impulse[i];
+        break;
+      case KICKS:
+        for (int d = 0; d < 3; d++) buf[m++] = kicks[3 * i + d];
     }
-    buf[m++] = pace[i];
-    buf[m++] = span[i];
-    buf[m++] = impulse[i];
   }
   return m;
 }
 
 void BlockSteps::unpack_forward(int n, int first, const double *buf)
 {
-  for (int i = first; i < first + n; i++) {
-    if (stage == LEVELS) {
-      level[i] = static_cast<int>(*buf++);
-      continue;
+  for (int i = first; i < first + n; i++) switch (stage) {
+      case LEVELS: level[i] = static_cast<int>(*buf++); break;
+      case IMPULSES:
+        pace[i] = static_cast<int>(*buf++);
+        span[i] = *buf++;
+        impulse[i] = *buf++;
+        break;
+      case KICKS:
+        for (int d = 0; d < 3; d++) atom->v[i][d] += kicks[3 * i + d] = *buf++;    // may go on
     }
-    pace[i] = static_cast<int>(*buf++);
-    span[i] = *buf++;
-    impulse[i] = *buf++;
-  }
 }
 
 int BlockSteps::pack_reverse(int n, int first, double *buf) const
@@ -639,5 +723,5 @@ int BlockSteps::sleepers() const
 double BlockSteps::bytes() const
 {
   return bytes_of(level, pace, mark, marked, slots, boundaries, impelled) +
-      bytes_of(span, impulse, wanted, from_particles, handed);
+      bytes_of(span, impulse, wanted, from_particles, handed, kicks);
 }

@@ -8,6 +8,9 @@
 // with kicks of m_i e(rho_i) every dt_i, which is the impulse method of Tuckerman, Berne & Martyna,
 // J. Chem. Phys. 97 (1992) 1990, with semi-implicit Euler in place of Verlet.  With equal steps it is
 // the scheme of (2) and lines 30 to 33.  Forces of others act in every step of the scene.
+//
+// A velocity so is that of the middle of a particle's last step, with one step for all that of half a
+// step ago.  Where output is due everybody's is brought to the latter.
 
 #ifndef SPHCLOTH_BLOCK_STEPS_H
 #define SPHCLOTH_BLOCK_STEPS_H
@@ -33,7 +36,8 @@ class BlockSteps : protected Pointers {
   // its impulses reach, in ticks; TERM: its pressure in the last of them; AHEAD: how far the one
   // before reached beyond now, and TAKEN_BACK: pressure times ticks of that; EXTERNAL: force of
   // others than the fluid; BY: the limit of its step; CALL: why its step ends now; SINCE: when it was
-  // fast for the last time, or fell asleep.
+  // fast for the last time, or fell asleep.  Of a vertex: OWED, an impulse that it gets in the
+  // coming step.
   enum Column {
     LEVEL,
     BEFORE,
@@ -42,6 +46,7 @@ class BlockSteps : protected Pointers {
     AHEAD,
     TAKEN_BACK,
     EXTERNAL,
+    OWED = EXTERNAL,
     BY = EXTERNAL + 3,
     CALL,
     SINCE,
@@ -70,6 +75,10 @@ class BlockSteps : protected Pointers {
   std::pair<int, int> mark_due(double **of, int column) const;
   bool sleeps(int i) const { return rows[LEVEL][i] == ASLEEP; }
   void wake_moved();    // by others than the fluid
+
+  // At an output time, when pressures are known: velocities are those of half a step of the scene ago.
+  // Has any changed?  What sheets are pushed by that comes in the next step.
+  bool catch_up();
 
   // The pair style tells when it knows the forces of other particles on the active fluid, and when it
   // knows all that it has.  Steps are chosen then, and impulses take the place of forces: f is what
@@ -108,6 +117,7 @@ class BlockSteps : protected Pointers {
     double span_of_all = 1.0;    // for which impulses then act, over that step
     bool chosen = false;    // steps, at this time, by this evaluation or the same one before
     bool reaches_output = false;    // does the root step end there?
+    bool owes = false;    // vertices, an impulse
     double output_time = 0.0;
   };
   const Place &place() const { return at; }
@@ -116,7 +126,7 @@ class BlockSteps : protected Pointers {
   double bytes() const;
 
  private:
-  enum Stage { LEVELS, IMPULSES };
+  enum Stage { LEVELS, IMPULSES, KICKS };
 
   // Level and what came before: particles of the same pace begin the same step and have impulses for
   // the same time.  Of the others, none has another's pace.
@@ -147,7 +157,7 @@ class BlockSteps : protected Pointers {
   bool known;
   std::vector<int> level, pace, mark;
   std::vector<double> span, impulse;    // in steps of the scene: time, and pressure times time
-  std::vector<double> from_particles, handed;    // forces [n][3]
+  std::vector<double> from_particles, handed, kicks;    // forces, changes of velocities [n][3]
   std::vector<double> wanted;
   std::vector<int> marked;    // owned
   std::vector<int> slots;    // of those who need impulses
@@ -173,6 +183,10 @@ class BlockSteps : protected Pointers {
   void book();
   void begin_own_step(int i);
   double half_step(int i) const;
+
+  void measure_arrears();
+  void kick();
+  void pay();
 
   void keep_forces(std::vector<double> &in) const;
   bool needs_external() const;

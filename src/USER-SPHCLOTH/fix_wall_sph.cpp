@@ -173,7 +173,7 @@ void FixWallSPH::begin()
   if (any_variable) modify->addstep_compute(update->ntimestep + 1);
   find_open_space();
   last_time = now;
-  std::fill(mine.begin(), mine.end(), 0.0);
+  forget_pushes();
   presses.clear();
   found.clear();
   found_at.assign(atom->nlocal, UNKNOWN);
@@ -301,6 +301,8 @@ void FixWallSPH::push_more(int i, double pressure_term, double times)
 {
   push(i, pressure_term, times, false);
 }
+
+void FixWallSPH::forget_pushes() { std::fill(mine.begin(), mine.end(), 0.0); }
 
 void FixWallSPH::prolong(double times)
 {

@@ -39,6 +39,7 @@ class FixWallSPH : public Fix, public FluidWall {
   double density_rate(int i, double back) override;
   void push(int i, double pressure_term) override;
   void push_more(int i, double pressure_term, double times) override;
+  void forget_pushes() override;
   void prolong(double times) override;
 
   // the largest speed at which a wall in reach and a particle come near

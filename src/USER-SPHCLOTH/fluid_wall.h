@@ -19,6 +19,8 @@ class FluidWall {
   // Once more, for a particle with a step of its own: the force of another pressure term and `times`
   // the rest.  What was pushed before holds for energy, virial and rate.
   virtual void push_more(int i, double pressure_term, double times) = 0;
+  // what was pushed so far is none of the forces on it in the coming step
+  virtual void forget_pushes() = 0;
   // all that was pushed acts so many times as long; the forces on particles are seen to
   virtual void prolong(double times) = 0;
 

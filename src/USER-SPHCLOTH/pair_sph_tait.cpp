@@ -276,6 +276,7 @@ void PairSPHTait::compute(int eflag, int vflag)
   comm->forward_comm(this, 2);
   if (extrapolate) boundary_pressures(p);
   fluid->record(p);
+  if (blocks && blocks->catch_up()) fluid->record(p);
 
   fluid->forces(p, blocks ? On::FLUID : On::ALL);
   if (blocks) blocks->note_forces();
@@ -312,6 +313,12 @@ void PairSPHTait::prolong_walls(double times)
 {
   for (FluidWall *wall : walls) wall->prolong(times);
   for (SheetWalls *mesh : meshes) mesh->prolong(times);
+}
+
+void PairSPHTait::hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take)
+{
+  for (FluidWall *wall : walls) wall->forget_pushes();
+  for (SheetWalls *mesh : meshes) mesh->hand_over(take);
 }
 
 bool PairSPHTait::feels_moving_wall(int i) const

@@ -115,6 +115,8 @@ class PairSPHTait : public Pair {
   // Fluid::record_impulses() on these owned particles.
   void push_walls_more(int i, double pressure_term, double times);
   void prolong_walls(double times);
+  // what walls have been pushed so far: take(owned vertex, force) of meshes, of others it is left out
+  void hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take);
   void push_boundaries() { fluid->forces(particles(), sphcloth::On::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);

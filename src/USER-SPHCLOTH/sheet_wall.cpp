@@ -377,13 +377,17 @@ double SheetWalls::approach(int i)
   return fastest;
 }
 
+void SheetWalls::hand_over(const std::function<void(int, const Vec3 &)> &take)
+{
+  for (SheetWall &sheet : sheets) sheet.hand_over(take);
+}
+
 void SheetWalls::end()
 {
-  for (SheetWall &sheet : sheets) {
-    sheet.hand_over([this](int i, const Vec3 &on) {
-      for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
-    });
-    if (wetting_wanted)
-      sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });
-  }
+  hand_over([this](int i, const Vec3 &on) {
+    for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
+  });
+  if (!wetting_wanted) return;
+  for (SheetWall &sheet : sheets)
+    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });
 }

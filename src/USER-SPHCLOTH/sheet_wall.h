@@ -118,6 +118,8 @@ class SheetWalls : protected Pointers {
   void push_more(int i, double pressure_term, double times);
   void prolong(double times) { lasts = times; }
   void end();
+  // what was pushed so far is handed over now, to take(owned vertex, force)
+  void hand_over(const std::function<void(int, const Vec3 &)> &take);
 
   // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
   double approach(int i);

@@ -148,13 +148,16 @@ void BlockSteps::choose()
 double BlockSteps::want_steps()
 {
   double least = std::numeric_limits<double>::infinity();
+  const double *its_level = rows[LEVEL];
+  const double *external[3] = {rows[EXTERNAL], rows[EXTERNAL + 1], rows[EXTERNAL + 2]};
+  double *by = rows[BY];
   for (const int i : pair->active_particles()) {
-    const double before = at.line.step(static_cast<int>(rows[LEVEL][i]));
+    const double before = at.line.step(static_cast<int>(its_level[i]));
     double f[3];
-    for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + rows[EXTERNAL + d][i];
+    for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + external[d][i];
     const StepLimit own = fix->bounded_limit(i, f, before);
     wanted[i] = own.dt;
-    rows[BY][i] = static_cast<double>(own.by);
+    by[i] = static_cast<double>(own.by);
     least = std::min(least, own.dt);
   }
   return least;
@@ -207,12 +210,13 @@ void BlockSteps::find_step_of_scene()
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
+  const double *by = rows[BY], *its_until = rows[UNTIL];
   for (const int i : pair->active_particles()) {
     const int own = choose_level(i);
     slowest = std::min(slowest, own);
-    finest = std::max(finest, rank(own, static_cast<int>(rows[BY][i])));
-    until[0] = std::max(until[0], -rows[UNTIL][i]);
-    until[1] = std::max(until[1], rows[UNTIL][i]);
+    finest = std::max(finest, rank(own, static_cast<int>(by[i])));
+    until[0] = std::max(until[0], -its_until[i]);
+    until[1] = std::max(until[1], its_until[i]);
   }
   const double mine[5] = {static_cast<double>(finest), -static_cast<double>(slowest), until[0],
                           until[1], static_cast<double>(of_vertices)};
@@ -270,17 +274,31 @@ int BlockSteps::vertex_level(int i) const
 
 void BlockSteps::book()
 {
-  const double *term = pair->pressure_term();
   const double now = physical_time(update);
-  const double half_of_all = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
+  if (at.alike) return book_alike(now);
+  const double *term = pair->pressure_term();
+  double *last_term = rows[TERM];
   for (const int i : pair->active_particles()) {
-    if (at.alike) {    // nobody's impulses differ from others'
-      rows[UNTIL][i] = half_of_all;
-      rows[CALL][i] = NONE;
-    } else
-      begin_own_step(i);
-    rows[TERM][i] = term[i];
+    begin_own_step(i);
+    last_term[i] = term[i];
     const double own = at.line.step(static_cast<int>(rows[LEVEL][i]));
+    fix->set_own_step(i, own, now);
+    ideal += own / wanted[i];
+  }
+}
+
+// Nobody's impulses differ from others'.
+
+void BlockSteps::book_alike(double now)
+{
+  const double *term = pair->pressure_term();
+  const double own = at.line.step(at.deepest);
+  const double half = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
+  double *last_term = rows[TERM], *until = rows[UNTIL], *call = rows[CALL];
+  for (const int i : pair->active_particles()) {
+    until[i] = half;
+    call[i] = NONE;
+    last_term[i] = term[i];
     fix->set_own_step(i, own, now);
     ideal += own / wanted[i];
   }
@@ -506,8 +524,9 @@ bool BlockSteps::needs_external() const { return fix->wants_force() || options.s
 void BlockSteps::note_external_forces()
 {
   if (!needs_external()) return;
+  double *external[3] = {rows[EXTERNAL], rows[EXTERNAL + 1], rows[EXTERNAL + 2]};
   for (const int i : pair->active_particles())
-    for (int d = 0; d < 3; d++) rows[EXTERNAL + d][i] = atom->f[i][d] - handed[3 * i + d];
+    for (int d = 0; d < 3; d++) external[d][i] = atom->f[i][d] - handed[3 * i + d];
 }
 
 // Whose neighbours all take its step, and took the same before, has the force itself for all of its

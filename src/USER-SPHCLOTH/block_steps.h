@@ -181,6 +181,7 @@ class BlockSteps : protected Pointers {
   bool is_slow(int i) const;
   bool gains_speed(int i, double force_sq) const;
   void book();
+  void book_alike(double now);
   void begin_own_step(int i);
   double half_step(int i) const;
 

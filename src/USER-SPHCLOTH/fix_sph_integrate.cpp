@@ -455,12 +455,6 @@ double FixSPHIntegrate::acceleration(int i, double by) const
   return by * force->ftm2v / atom_mass(atom, i);
 }
 
-void FixSPHIntegrate::set_own_step(int i, double dt, double now)
-{
-  state[i][OWN_STEP] = dt;
-  state[i][LAST_UPDATE] = now;
-}
-
 // Vertices move in every step of the scene, which is no longer than what any of them allows.
 
 void FixSPHIntegrate::limit_vertices()

@@ -73,7 +73,11 @@ class FixSPHIntegrate : public Fix {
   // of cloth, 0 for what is none.
   bool wants_force() const { return lambda.force > 0.0; }
   sphcloth::StepLimit bounded_limit(int i, const double *f, double before) const;
-  void set_own_step(int i, double dt, double now);
+  void set_own_step(int i, double dt, double now)
+  {
+    state[i][OWN_STEP] = dt;
+    state[i][LAST_UPDATE] = now;
+  }
   // that sound needs across the support; by a force
   double sound_time(int i) const;
   double acceleration(int i, double by) const;

@@ -613,9 +613,12 @@ fix drag all viscous 0.2 scale 1 5
 run 1500
 unfix drag
 timestep {dt}
-fix step all sph/integrate global velocity 0 force 0 viscous 0 density 0 acoustic 0.8 until 0.35
+fix step all sph/integrate global velocity 0 force 0 viscous 0 density 0 acoustic 0.8
 run_style sph/adaptive {scheme}
+variable late equal time>0.33
+fix stop all halt 1 v_late > 0.5 error continue
 run 100000
+unfix stop
 """
 
 
@@ -625,10 +628,13 @@ def test_fine_water_is_not_shaken_by_the_steps_of_coarse_water():
     for scheme, dt in (("constant", 4e-4), ("block", 5e-3)):
         with instance() as lmp:
             lmp.commands_string(UNDER_PRESSURE.format(scheme=scheme, dt=dt))
-            fine = by_id(lmp, "type") == 2
-            speed[scheme] = np.sqrt((by_id(lmp, "v")[fine] ** 2).sum(axis=1).mean())
+            fine, speeds = by_id(lmp, "type") == 2, []
+            for _ in range(40):
+                lmp.command("run 1 post no")
+                speeds.append(np.sqrt((by_id(lmp, "v")[fine] ** 2).sum(axis=1).mean()))
+            speed[scheme] = np.mean(speeds)
             updates[scheme] = lmp.extract_fix("step", 0, 1, 2)
-    assert speed["block"] < 2.5 * speed["constant"]
+    assert speed["block"] < 2.0 * speed["constant"]
     assert updates["block"] < 0.8 * updates["constant"]
 
 

@@ -275,30 +275,17 @@ int BlockSteps::vertex_level(int i) const
 void BlockSteps::book()
 {
   const double now = physical_time(update);
-  if (at.alike) return book_alike(now);
-  const double *term = pair->pressure_term();
-  double *last_term = rows[TERM];
-  for (const int i : pair->active_particles()) {
-    begin_own_step(i);
-    last_term[i] = term[i];
-    const double own = at.line.step(static_cast<int>(rows[LEVEL][i]));
-    fix->set_own_step(i, own, now);
-    ideal += own / wanted[i];
-  }
-}
-
-// Nobody's impulses differ from others'.
-
-void BlockSteps::book_alike(double now)
-{
-  const double *term = pair->pressure_term();
-  const double own = at.line.step(at.deepest);
-  const double half = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
+  const double *term = pair->pressure_term(), *its_level = rows[LEVEL];
+  const double half_of_all = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
   double *last_term = rows[TERM], *until = rows[UNTIL], *call = rows[CALL];
   for (const int i : pair->active_particles()) {
-    until[i] = half;
-    call[i] = NONE;
+    if (at.alike) {    // nobody's impulses differ from others'
+      until[i] = half_of_all;
+      call[i] = NONE;
+    } else
+      begin_own_step(i);
     last_term[i] = term[i];
+    const double own = at.line.step(static_cast<int>(its_level[i]));
     fix->set_own_step(i, own, now);
     ideal += own / wanted[i];
   }
@@ -445,10 +432,7 @@ void BlockSteps::measure_arrears()
 {
   const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
   const double until = static_cast<double>(at.line.now) - 0.5 * scene;
-  know_all();
-  for (const int i : impelled) rest(i);
-  for (const int i : boundaries) rest(i);
-  impelled = pair->active_particles();
+  impel_active();
   for (const int i : impelled) {
     const bool integrated = atom->mask[i] & fix->groupbit;
     const double behind = integrated && rows[CALL][i] != NEW ? until - rows[UNTIL][i] : 0.0;
@@ -463,11 +447,14 @@ void BlockSteps::measure_arrears()
 void BlockSteps::kick()
 {
   const double scene = at.line.step(at.deepest);
-  for (const int i : pair->active_particles())
+  std::fill_n(kicks.begin(), 3 * atom->nlocal, 0.0);
+  for (const int i : pair->active_particles()) {
+    if (!(atom->mask[i] & fix->groupbit)) continue;
     for (int d = 0; d < 3; d++) {
       kicks[3 * i + d] = scene * fix->acceleration(i, atom->f[i][d]);
       atom->v[i][d] += kicks[3 * i + d];
     }
+  }
   at.owes = true;
   for (const int i : boundaries)
     for (int d = 0; d < 3; d++) rows[OWED + d][i] = scene * atom->f[i][d];
@@ -587,10 +574,7 @@ void BlockSteps::measure_impulses()
 {
   const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
   const double *term = pair->pressure_term();
-  know_all();
-  for (const int i : impelled) rest(i);
-  for (const int i : boundaries) rest(i);
-  impelled = pair->active_particles();
+  impel_active();
   for (const int i : impelled) {
     if (sleeps(i)) {
       rest(i);
@@ -601,6 +585,16 @@ void BlockSteps::measure_impulses()
     impulse[i] = ahead > 0.0 ? (half * term[i] - rows[TAKEN_BACK][i]) / scene : span[i] * term[i];
     pace[i] = Pace::of(static_cast<int>(rows[LEVEL][i]), static_cast<int>(rows[BEFORE][i]));
   }
+}
+
+// They are to be given impulses, and nobody else.
+
+void BlockSteps::impel_active()
+{
+  know_all();
+  for (const int i : impelled) rest(i);
+  for (const int i : boundaries) rest(i);
+  impelled = pair->active_particles();
 }
 
 // Who is not updated has no impulse, but the pressure of a boundary, or of who sleeps, acts as long as

@@ -181,7 +181,6 @@ class BlockSteps : protected Pointers {
   bool is_slow(int i) const;
   bool gains_speed(int i, double force_sq) const;
   void book();
-  void book_alike(double now);
   void begin_own_step(int i);
   double half_step(int i) const;
 
@@ -192,6 +191,7 @@ class BlockSteps : protected Pointers {
   void keep_forces(std::vector<double> &in) const;
   bool needs_external() const;
   void measure_impulses();
+  void impel_active();
   void rest(int i);
   void share_impulses();
   void share_equally();

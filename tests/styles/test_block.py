@@ -104,6 +104,16 @@ def test_momentum_stays_to_round_off(folder, monkeypatch, limits):
     assert np.abs(momentum(lmp) - before).max() < 1e-13 * np.abs(before).max()
 
 
+def test_fluid_that_is_not_integrated_keeps_its_velocity_at_output_times(folder, monkeypatch):
+    script = collide(limits="output 2e-3").replace("fix step all", "group own type 1\nfix step own")
+    lmp = started(folder, script, monkeypatch)
+    others = by_id(lmp, "type") == 2
+    before = by_id(lmp, "v")
+    lmp.command("run 200 post no")
+    assert np.array_equal(by_id(lmp, "v")[others], before[others])
+    assert not np.allclose(by_id(lmp, "v")[~others], before[~others])
+
+
 def on_free_sheet(wall, limits):
     """Let water fall on a sheet of boundary particles or on one that is a wall."""
     scene = FREE_SHEET.replace("sph/integrate global", f"sph/integrate global velocity 0 {limits}")
@@ -582,8 +592,23 @@ def test_steps_that_jump_do_not_feed_a_sheet(edge, hinge, end):
     assert 20 < substeps < 60
 
 
+# Coarse water and fine water of a quarter of the spacing, where regions of these names are.
+COARSE_AND_FINE = """
+lattice sc 0.04 origin 0.5 0.5 0.5
+create_atoms 1 region coarse
+lattice sc 0.01 origin 0.5 0.5 0.5
+create_atoms 2 region fine
+set group all sph/rho 1000
+pair_style sph/tait 0.104
+pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
+pair_coeff 2 2 fluid 1000 c0 20 alpha 0.1 support 0.026
+neighbor 0.01 bin
+neigh_modify every 1 delay 0 check yes
+"""
+
 # Fine water in the middle of coarse water, of a quarter of the spacing, under pressure.
-UNDER_PRESSURE = """
+UNDER_PRESSURE = (
+    """
 units si
 atom_style sph
 atom_modify map yes
@@ -593,20 +618,11 @@ region box block -0.2 0.2 -0.2 0.2 -0.2 0.2
 create_box 2 box
 region fine block -0.04 0.04 -0.04 0.04 -0.04 0.04 units box
 region coarse block -0.04 0.04 -0.04 0.04 -0.04 0.04 side out units box
-lattice sc 0.04 origin 0.5 0.5 0.5
-create_atoms 1 region coarse
-lattice sc 0.01 origin 0.5 0.5 0.5
-create_atoms 2 region fine
-group fine type 2
 mass 1 0.0672
 mass 2 0.00105
-set group all sph/rho 1000
-pair_style sph/tait 0.104
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-pair_coeff 2 2 fluid 1000 c0 20 alpha 0.1 support 0.026
-neighbor 0.01 bin
-neigh_modify every 1 delay 0 check yes
-timestep 2e-4
+"""
+    + COARSE_AND_FINE
+    + """timestep 2e-4
 fix step all sph/integrate constant
 run_style sph/adaptive constant
 fix drag all viscous 0.2 scale 1 5
@@ -620,6 +636,7 @@ fix stop all halt 1 v_late > 0.5 error continue
 run 100000
 unfix stop
 """
+)
 
 
 def test_fine_water_is_not_shaken_by_the_steps_of_coarse_water():
@@ -639,7 +656,8 @@ def test_fine_water_is_not_shaken_by_the_steps_of_coarse_water():
 
 
 # Water at rest on a floor, deep and coarse, with some fine water on top.
-AT_REST = """
+AT_REST = (
+    """
 units si
 atom_style sph
 atom_modify map yes
@@ -649,19 +667,11 @@ region box block 0 0.2 0 0.2 -0.1 0.9 units box
 create_box 2 box
 region coarse block 0 0.2 0 0.2 0 0.6 units box
 region fine block 0 0.2 0 0.2 0.6 0.64 units box
-lattice sc 0.04 origin 0.5 0.5 0.5
-create_atoms 1 region coarse
-lattice sc 0.01 origin 0.5 0.5 0.5
-create_atoms 2 region fine
 mass 1 0.064
 mass 2 0.001
-set group all sph/rho 1000
-pair_style sph/tait 0.104
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-pair_coeff 2 2 fluid 1000 c0 20 alpha 0.1 support 0.026
-neighbor 0.01 bin
-neigh_modify every 1 delay 0 check yes
-fix gravity all gravity 9.81 vector 0 0 -1
+"""
+    + COARSE_AND_FINE
+    + """fix gravity all gravity 9.81 vector 0 0 -1
 fix floor all wall/sph zlo 0
 fix drag all viscous 1.28 scale 2 0.015625
 timestep 5e-4
@@ -672,6 +682,7 @@ timestep 1e-2
 fix step all sph/integrate global velocity 0 force 0 density 0 acoustic 0.8 output 0.02 until 0.7
 run_style sph/adaptive block
 """
+)
 
 
 def test_velocities_at_output_times_are_those_of_the_motion():

@@ -712,7 +712,7 @@ void BlockSteps::unpack_reverse(int n, const int *list, const double *buf)
     if (const int its = static_cast<int>(buf[k]); its != UNTOUCHED) touch(list[k], its);
 }
 
-void BlockSteps::find_intervals(std::vector<Drift> &of_type) const
+void BlockSteps::find_intervals(std::vector<double> &of_type) const
 {
   if (!begun()) return;
   std::vector<double> updates(of_type.size(), 0.0), particles = updates;
@@ -723,7 +723,7 @@ void BlockSteps::find_intervals(std::vector<Drift> &of_type) const
     particles[type] += 1.0;
   }
   for (std::size_t t = 0; t < of_type.size(); t++)
-    if (updates[t] > 0.0) of_type[t].interval = std::max(1.0, particles[t] / updates[t]);
+    if (updates[t] > 0.0) of_type[t] = std::max(1.0, particles[t] / updates[t]);
 }
 
 int BlockSteps::sleepers() const

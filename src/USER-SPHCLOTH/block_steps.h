@@ -94,7 +94,7 @@ class BlockSteps : protected Pointers {
   bool arrives() const { return at.reaches_output && ends_root(); }
 
   // in steps of the scene, of those of a type who do not sleep
-  void find_intervals(std::vector<sphcloth::Drift> &of_type) const;
+  void find_intervals(std::vector<double> &of_type) const;
 
   // of this rank: who sleeps, and how many updates it would have been so far, had everybody taken
   // exactly the step that the limits allow

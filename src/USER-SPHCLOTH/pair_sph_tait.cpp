@@ -234,7 +234,7 @@ double PairSPHTait::init_one(int i, int j)
   if (t.nu > 0.0) model.friction = Friction::ANY;
 
   const double far = excluded(i, j) ? 0.0 : materials.reach(i, j);
-  reach[i * n + j] = reach[j * n + i] = far > 0.0 ? far + neighbor->skin : 0.0;
+  reach[i * n + j] = reach[j * n + i] = far;
   return far;
 }
 
@@ -259,11 +259,9 @@ void PairSPHTait::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   is_evaluated = false;
   const bool new_neighbours = neighbor->ago == 0;
-  if (new_neighbours) {
-    new_lists();
-    timer->stamp(Timer::NEIGH);
-  }
+  if (new_neighbours) renew();
   const Particles p = particles();
+  follow(p, new_neighbours);
 
   select(p);
   fluid->place(p, box());
@@ -378,6 +376,7 @@ Particles PairSPHTait::particles()
   p.f = atom->f[0];
   p.approach = approach.data();
   p.force_unit = 1.0 / force->ftm2v;
+  if (sheets) p.sides = sheets->sides();
   p.active = active;
   p.active_column = active_column;
   return p;
@@ -392,9 +391,9 @@ Fluid::Box PairSPHTait::box() const
           comm->get_comm_cutoff() + neighbor->skin + tilt};
 }
 
-// Fixed until the next list build: neighbours, masses.
+// Fixed until LAMMPS has new neighbours again: masses.
 
-void PairSPHTait::new_lists()
+void PairSPHTait::renew()
 {
   amount.resize(atom->nmax);
   pressure.assign(atom->nmax, 0.0);
@@ -412,10 +411,18 @@ void PairSPHTait::new_lists()
                  atom->tag[i], v[0], v[1], v[2]);
   }
   evaluated_order = order_of_atoms(atom);
-  Particles p = particles();
-  if (sheets) p.sides = sheets->sides();
+}
+
+// As wide as LAMMPS's skin lists hold until LAMMPS renews its own: it looks at how far the fastest has
+// gone.  Narrower ones are made anew where particles have come nearer.
+
+void PairSPHTait::follow(const Particles &p, bool new_neighbours)
+{
   try {
-    fluid->list(p, reach.data(), drifts(p));
+    if (new_neighbours)
+      fluid->list(p, reach.data(), neighbor->skin, motion(p));
+    else
+      fluid->follow(p);
   } catch (const std::bad_alloc &) {
     rank_error(
         lmp, FLERR,
@@ -423,28 +430,25 @@ void PairSPHTait::new_lists()
         "particles or vertices much nearer to each other than that?",
         STYLE, atom->nlocal, options.support);
   }
+  timer->stamp(Timer::NEIGH);
 }
 
 // As far as velocities tell, for a step that sound often asks for: the step itself is another after a
 // restart than before.
 
-const std::vector<Drift> &PairSPHTait::drifts(const Particles &p)
+Motion PairSPHTait::motion(const Particles &p) const
 {
-  drift_of.assign(atom->ntypes + 1, Drift());
-  for (int i = 0; i < p.n_all; i++) {
-    const double *v = p.v + 3 * i;
-    double &speed_sq = drift_of[p.type[i]].way;
-    speed_sq = std::max(speed_sq, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  }
+  Motion motion;
+  motion.v = p.v;
   constexpr double USUAL = 0.5;    // of h_s/c
   double step = std::numeric_limits<double>::max();
   for (int t = 1; t <= atom->ntypes; t++)
     if (is_fluid(t))
       step = std::min(step, USUAL * 0.5 * support(t) / equation_of_state(t).sound_speed());
-  for (Drift &drift : drift_of)
-    if (drift.way > 0.0) drift.way = step * std::sqrt(drift.way);
-  if (blocks) blocks->find_intervals(drift_of);
-  return drift_of;
+  motion.step = step;
+  motion.interval.assign(atom->ntypes + 1, 1.0);
+  if (blocks) blocks->find_intervals(motion.interval);
+  return motion;
 }
 
 bool PairSPHTait::is_measured(int t) const

@@ -177,8 +177,7 @@ class PairSPHTait : public Pair {
   // pressure is the fluid's, fluid
   bool measure_volume, extrapolate, any_fluid;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
-  std::vector<double> reach;    // (ntypes+1)^2, with the skin
-  std::vector<sphcloth::Drift> drift_of;    // at the last list build
+  std::vector<double> reach;    // (ntypes+1)^2, 0: never
 
   // scratch, kept from step to step
   double **active;
@@ -203,8 +202,9 @@ class PairSPHTait : public Pair {
   bool diffuses() const { return options.continuity && options.delta > 0.0; }
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;
-  void new_lists();
-  const std::vector<sphcloth::Drift> &drifts(const sphcloth::Particles &);
+  void renew();
+  void follow(const sphcloth::Particles &, bool new_neighbours);
+  sphcloth::Motion motion(const sphcloth::Particles &) const;
   bool is_measured(int type) const;
   void measure_amounts(const sphcloth::Particles &, bool);
   void select(const sphcloth::Particles &);

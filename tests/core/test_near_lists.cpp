@@ -46,23 +46,32 @@ int missing(const NearLists &lists, const Walk &w, int i, int t)
 }
 
 struct Watched {
-  Walk walk{300};
+  Walk walk;
+  int owned;
+  std::vector<double> v;
   NearLists lists;
-  // types 1 and 2; type 2 does not interact with itself, though it is listed
-  const std::vector<double> reach = std::vector<double>(9, SUPPORT + SKIN);
+  // types 1 and 2; type 2 does not interact with itself
   const std::vector<double> support{0, 0, 0, 0, SUPPORT, SUPPORT, 0, SUPPORT, 0};
 
-  Watched() { build(std::vector<Drift>(3)); }
-  void build(const std::vector<Drift> &drifts)
+  explicit Watched(double skin = SKIN, int n = 300) : walk(n), owned(2 * n / 3)
   {
-    lists.build(walk.x.data(), walk.type.data(), 200, 300, 2, reach.data(), support.data(), 3,
-                drifts);
+    build(0.0, {1.0, 1.0, 1.0}, skin);
   }
-  void follow() { lists.follow(walk.x.data(), walk.type.data(), walk.n); }
+  // all velocities up to this
+  void build(double fastest, const std::vector<double> &interval, double skin = SKIN)
+  {
+    std::uniform_real_distribution<> u(-fastest, fastest);
+    v.resize(walk.x.size());
+    for (double &component : v) component = u(walk.generator);
+    lists.build(walk.x.data(), walk.type.data(), owned, walk.n, 2, support.data(), skin, 3,
+                {v.data(), 1.0, interval});
+  }
+  void follow() { lists.follow(walk.x.data(), walk.type.data(), owned, walk.n); }
+  double inner_skin(int own, int t) { return lists.inner_skin(lists.slot(own - 1), t); }
   int in_fronts(int own, int t)
   {
     int n = 0;
-    for (int i = own - 1; i < 200; i += 2) {
+    for (int i = own - 1; i < owned; i += 2) {
       lists.refresh(lists.slot(i));
       n += lists(lists.slot(i), t).n;
     }
@@ -72,7 +81,7 @@ struct Watched {
   int check(int every)
   {
     int longest = 0;
-    for (int i = 0; i < 200; i += every) {
+    for (int i = 0; i < owned; i += every) {
       lists.refresh(lists.slot(i));
       for (int t = 1; t <= 2; t++) {
         if (walk.type[i] == 2 && t == 2) continue;
@@ -94,7 +103,7 @@ CASE("the front of a list holds everyone inside the support while particles move
     w.follow();
     w.check(1);
   }
-  CHECK(w.lists.inner_skin(1, 1) > 0.0 && w.lists.inner_skin(1, 1) < 0.5 * SKIN);
+  CHECK(w.inner_skin(1, 1) > 0.0 && w.inner_skin(1, 1) < 0.5 * SKIN);
 }
 
 CASE("a list that is refreshed late is as good as one refreshed at once")
@@ -116,10 +125,10 @@ CASE("an inner skin lasts longer the slower particles move, and is gone where th
       if (step) w.walk.move(by);
       w.follow();
     }
-    CHECK(w.lists.inner_skin(1, 1) < before);
+    CHECK(w.inner_skin(1, 1) < before);
     w.check(1);
-    before = by > 5e-3 ? 1.0 : w.lists.inner_skin(1, 1);
-    if (by > 5e-3) CHECK(w.lists.inner_skin(1, 1) == 0.0);
+    before = by > 5e-3 ? 1.0 : w.inner_skin(1, 1);
+    if (by > 5e-3) CHECK(w.inner_skin(1, 1) == 0.0);
   }
 }
 
@@ -130,25 +139,80 @@ CASE("types that do not interact have an empty front")
   w.lists.refresh(w.lists.slot(1));
   CHECK(w.walk.type[1] == 2);
   CHECK(w.lists(w.lists.slot(1), 2).n == 0);
-  CHECK(w.lists.all(w.lists.slot(1), 2).n > 0);
+  CHECK(w.lists(w.lists.slot(1), 1).n > 0);
 }
 
 CASE("the front is right as soon as lists are built, and as wide as particles will need it")
 {
   Watched slow, fast;
-  slow.build({{}, {1e-5, 1.0}, {1e-5, 1.0}});
-  fast.build({{}, {1e-3, 1.0}, {1e-3, 1.0}});
+  slow.build(1e-5, {1.0, 1.0, 1.0});
+  fast.build(1e-3, {1.0, 1.0, 1.0});
   slow.check(1);
-  CHECK(slow.lists.inner_skin(1, 1) > 0.0);
-  CHECK(fast.lists.inner_skin(1, 1) > slow.lists.inner_skin(1, 1));
+  CHECK(slow.inner_skin(1, 1) > 0.0);
+  CHECK(fast.inner_skin(1, 1) > slow.inner_skin(1, 1));
   CHECK(fast.in_fronts(1, 1) > slow.in_fronts(1, 1));
 }
 
 CASE("those who are evaluated seldom have a wider inner skin")
 {
   Watched w;
-  w.build({{}, {1e-4, 4.0}, {1e-4, 1.0}});
-  CHECK(w.lists.inner_skin(1, 1) > w.lists.inner_skin(2, 1));
+  w.build(1e-4, {1.0, 4.0, 1.0});
+  CHECK(w.inner_skin(1, 1) > w.inner_skin(2, 1));
+}
+
+CASE("what moves together stays as it is")
+{
+  Watched w(0.5 * SUPPORT);
+  const double resting = w.inner_skin(1, 1);
+  const int fronts = w.in_fronts(1, 1);
+  for (int step = 0; step < 40; step++) {
+    for (double &x : w.walk.x) x += 0.01;
+    w.follow();
+    w.check(5);
+    CHECK(w.in_fronts(1, 1) == fronts);
+  }
+  CHECK(w.inner_skin(1, 1) == resting);
+}
+
+// As far as somebody else, who builds lists anew, lets them go: all of them by half the skin at most.
+
+CASE(
+    "lists that are narrower than they have to last are made anew where particles have come nearer")
+{
+  for (double by : {5e-3, 2e-2}) {
+    Watched w(1.5 * SUPPORT);
+    const double before = w.lists.bytes();
+    for (double gone = 0.0; gone + by < 0.75 * SUPPORT / std::sqrt(3.0); gone += by) {
+      w.walk.move(by);
+      w.follow();
+      w.check(1);
+    }
+    CHECK(w.lists.bytes() > before);
+  }
+}
+
+// In a long thin box stripes go towards each other, so that nobody near most particles moves another way.
+
+CASE("who comes from a block beside is seen, and from farther away when lists have been renewed")
+{
+  constexpr double LENGTH = 12.0;
+  for (double stripe : {0.55, 1.1, 1.3, 1.5, 1.7}) {
+    const double skin = stripe < 1.0 ? SKIN : 0.75 * SUPPORT;
+    Watched w(skin, 1500);
+    for (int i = 0; i < w.walk.n; i++) {
+      w.walk.x[3 * i] *= LENGTH;
+      for (int d = 1; d < 3; d++) w.walk.x[3 * i + d] *= SUPPORT;
+    }
+    w.build(0.0, {1.0, 1.0, 1.0}, skin);
+    const std::vector<double> start = w.walk.x;
+    for (int step = 0; step < 30; step++) {
+      for (int i = 0; i < w.walk.n; i++)
+        w.walk.x[3 * i] +=
+            (std::fmod(start[3 * i], 2.0 * stripe) < stripe ? 0.5 : -0.5) * skin / 30;
+      w.follow();
+      w.check(3);
+    }
+  }
 }
 
 // Type 2 moves on and on, type 1 rests.
@@ -156,7 +220,7 @@ CASE("those who are evaluated seldom have a wider inner skin")
 CASE("fronts of those who rest among each other stay while others move")
 {
   Watched w;
-  const double resting = w.lists.inner_skin(1, 1);
+  const double resting = w.inner_skin(1, 1);
   const int among_each_other = w.in_fronts(1, 1);
   for (int step = 0; step < 60; step++) {
     if (step)
@@ -165,5 +229,5 @@ CASE("fronts of those who rest among each other stay while others move")
     w.check(1 + step % 3);
     CHECK(w.in_fronts(1, 1) == among_each_other);
   }
-  CHECK(w.lists.inner_skin(1, 1) == resting);
+  CHECK(w.inner_skin(1, 1) == resting);
 }

@@ -56,11 +56,14 @@ def _sounds(*speeds: float) -> list[Setting]:
     return [{"sound": speed} for speed in speeds]
 
 
+# skin over support: with such steps water falls far
+OURS_IN = {"code": "double", "skin": 1.0}
+
 PLAN = {
-    f"{OURS} double": Code("sph", {"code": "double"}, _sounds(20, 30, 45, 70)),
-    f"{OURS} mixed": Code("sph", {"code": "mixed"}, _sounds(20, 30, 45, 70)),
-    f"{OURS} global": Code("sph", {"code": "double", "scheme": "global"}, _sounds(20, 30, 45)),
-    f"{OURS} block": Code("sph", {"code": "double", "scheme": "block"}, _sounds(20, 30, 45)),
+    f"{OURS} double": Code("sph", OURS_IN, _sounds(20, 30, 45, 70)),
+    f"{OURS} mixed": Code("sph", {**OURS_IN, "code": "mixed"}, _sounds(20, 30, 45, 70)),
+    f"{OURS} global": Code("sph", {**OURS_IN, "scheme": "global"}, _sounds(20, 30, 45)),
+    f"{OURS} block": Code("sph", {**OURS_IN, "scheme": "block"}, _sounds(20, 30, 45)),
     "stock sph": Code("sph", {"code": "stock", "courant": 0.12, "skin": 0.4}, _sounds(20, 30, 45)),
     "stock rheo": Code("rheo", {}, _sounds(30)),
     "SPlisHSPlasH WCSPH": Code("wcsph", {"courant": 0.5}, _sounds(20, 30)),

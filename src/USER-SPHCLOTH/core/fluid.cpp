@@ -13,17 +13,11 @@ std::unique_ptr<Fluid> Fluid::create(KernelName kernel, Precision precision)
   return with_kernel(kernel, [&](auto k) { return fluid_of_kernel<decltype(k)>(precision); });
 }
 
-void Fluid::list(const Particles &p, const double *reach, const std::vector<Drift> &drifts)
+void Fluid::list(const Particles &p, const double *support, double skin, const Motion &motion)
 {
-  const int n = model.n_types + 1;
-  std::vector<double> support(n * n, 0.0);
-  for (int i = 1; i < n; i++)
-    for (int j = 1; j < n; j++)
-      if (model.role[i] == Role::FLUID || model.role[j] == Role::FLUID || i == j)
-        support[i * n + j] = std::sqrt(model.pair(i, j).kernel.support_sq);
   everyone = false;
-  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, reach, support.data(),
-              model.dimension, drifts, p.sides);
+  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, support, skin, model.dimension,
+              motion, p.sides);
 }
 
 bool Fluid::select(const Particles &p)

@@ -104,8 +104,10 @@ class Fluid {
 
   FluidModel model;
 
-  // new neighbour lists; reach as in NeighbourLists, drifts as in NearLists
-  void list(const Particles &, const double *reach, const std::vector<Drift> &drifts);
+  // new neighbour lists, see NearLists
+  void list(const Particles &, const double *support, double skin, const Motion &);
+  // in every other evaluation, first
+  void follow(const Particles &p) { lists.follow(p.x, p.type, p.n_owned, p.n_all, p.sides); }
 
   // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
   // False if nothing has changed.

@@ -191,7 +191,6 @@ template <class K, class P> void FluidLoops<K, P>::place(const Particles &p, con
     }
   }
   place_all(p, origin, per_quantum);
-  lists.follow(p.x, p.type, p.n_all);
 }
 
 template <class K, class P>

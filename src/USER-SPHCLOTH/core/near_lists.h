@@ -2,14 +2,15 @@
 //
 // A list that serves for many steps holds about twice as many particles as are inside the support.
 // Those within the support and a small inner skin are moved to its front, and the loops run over
-// the front alone until particles of the two types may have come nearer by the inner skin.  The
+// the front alone until particles may have come nearer by the inner skin.  The
 // inner skin follows from the motion: each particle that it adds costs a little at every evaluation,
 // and each evaluation that it lasts saves one pass over the list.  (A dual list: Pall et al., J. Chem.
 // Phys. 153 (2020) 134110.)
 //
-// Each type has an odometer: how far the fastest of its particles may have gone.  A front is valid up
-// to a sum of the readings of its two types, so particles that are evaluated seldom, or among
-// others that are slow, keep theirs while fronts elsewhere are found anew.
+// Each block of space has an odometer for each pair of types: how much nearer they may have come there
+// (core/closing.h).  A front is valid up to a reading of it, so particles that are evaluated seldom, rest, or move
+// with those around them keep theirs while fronts elsewhere are found anew.  The lists themselves hold
+// until a reading exceeds their skin.
 //
 // Nothing is kept from one list to the next, so a run that is continued from a restart file goes on
 // with the same fronts.  Every rank decides for itself.  A front is found when it is asked for, from
@@ -18,74 +19,75 @@
 #ifndef SPHCLOTH_CORE_NEAR_LISTS_H
 #define SPHCLOTH_CORE_NEAR_LISTS_H
 
+#include "closing.h"
 #include "neighbours.h"
 
 namespace sphcloth {
 
-// Of the particles of a type: how far the fastest goes from one evaluation to the next, as far as is
-// known, and after how many of them one is evaluated itself, on average.
+// What is known of the motion: velocities of all particles, [n_all][3], or null, for about how long from
+// one evaluation to the next; and of a type, [n_types+1], after how many of them one is evaluated itself, on
+// average.
 
-struct Drift {
-  double way = 0.0, interval = 1.0;
+struct Motion {
+  const double *v = nullptr;
+  double step = 0.0;
+  std::vector<double> interval;
 };
 
 class NearLists {
  public:
-  // As NeighbourLists; support: [(n_types+1)^2], up to where two types interact, 0: never; drifts:
-  // [n_types+1].
+  // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin than
+  // `most`: somebody else sees that lists are built anew before two that are farther apart than that can meet.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const double *support, int dimension,
-             const std::vector<Drift> &drifts, const Sides *sides = nullptr)
+             const double *support, double most, int dimension, const Motion &motion,
+             const Sides *sides = nullptr)
   {
     give_back(held);    // its memory for what the lists are made of
     types = n_types;
     dim = dimension;
-    drift = drifts;
-    set_limits(reach, support);
-    for (int t = 1; t <= types; t++)
-      for (int other = 1; other <= types; other++) set_first_skin(t, other);
-    std::vector<double> near(limit);
-    for (std::size_t k = 0; k < near.size(); k++)
-      if (near[k] > 0.0) near[k] += skin[k];
-    outer.build(x, type, n_owned, n_all, n_types, reach, near.data(), front, sides);
-    distance.assign(types + 1, 0.0);
-    reading = distance;
-    until.resize(front.size());
-    current.assign(outer.slots(), 0);
+    interval = motion.interval;
+    set_limits(support, most);
+    set_blocks(x, type, n_all, most, motion);
+    const std::vector<double> near = near_fronts();
+    outer.build(x, type, n_owned, n_all, n_types, far.data(), {near.data(), closing.block_of()},
+                in_front, sides);
+    until.resize(in_front.size());
     slot_of.resize(n_owned);
-    longest_list = 0;
-    for (int slot = 0, t = 1; slot < outer.slots(); slot++) {
-      while (slot >= outer.begin(t + 1)) t++;
+    block.resize(outer.slots());
+    for (int slot = 0; slot < outer.slots(); slot++) {
       slot_of[outer.at(slot)] = slot;
-      for (int other = 1; other <= n_types; other++) {
-        longest_list = std::max(longest_list, outer(slot, other).n);
-        until[of(slot, other)] = skin[pair(t, other)];
-      }
+      block[slot] = closing.block_of()[outer.at(slot)];
     }
-    key.resize(whole_groups(longest_list) + 2 * LANES);
-    spare.resize(key.size());
-    evaluation = 0;
-    if (outer.slots() == 0) return;
+    current.assign(outer.slots(), 1);
+    evaluation = 1;
     hold(x, n_all);
-    steps = -1;    // the evaluation for which lists are new comes first
+    longest_list = 0;
+    note_lists([](int, int, int) { return true; });
   }
 
-  // Once per evaluation, before lists are read: x, [n_all][3], are the positions now.
-  void follow(const double *x, const int *type, int n_all)
+  // Once per evaluation but for the one for which lists are new, before they are read.  The particles are
+  // those for which lists were built, where they are now.
+  void follow(const double *x, const int *type, int n_owned, int n_all,
+              const Sides *sides = nullptr)
   {
     if (outer.slots() == 0) return;
     begin_evaluation();
     steps++;
-    read_odometers(x, type, n_all);
-    if (!any_skin_is_gone()) return;
-    for (int t = 1; t <= types; t++) {
-      drift[t].way = (reading[t] - distance[t]) / std::max(1, steps);
-      distance[t] = reading[t];
-    }
-    for (int t = 1; t <= types; t++)
-      for (int other = 1; other <= types; other++) skin[pair(t, other)] = lasting_skin(t, other);
+    closing.measure(x, centre, held.data());
+    bool fronts_hold = true, lists_hold = true;
+    for_each_front([&](Front &front, int b, int t, int other) {
+      const double nearer = closing.between(b, t, other);
+      front.reading = front.held + (nearer > 0.0 ? nearer + 2.0 * rounding : 0.0);
+      fronts_hold = fronts_hold && front.reading <= front.held + front.skin;
+      lists_hold = lists_hold && front.reading <= front.lists_until;
+    });
+    if (fronts_hold && lists_hold) return;
+    for_each_front([&](Front &front, int, int t, int other) {
+      front.skin = lasting_skin(t, other, (front.reading - front.held) / steps);
+      front.held = front.reading;
+    });
     hold(x, n_all);
-    steps = 0;
+    if (!lists_hold) renew(x, type, n_owned, n_all, sides);
   }
 
   // makes the front of all lists of one particle valid
@@ -94,8 +96,9 @@ class NearLists {
     if (current[slot] == evaluation) return;
     current[slot] = static_cast<std::uint8_t>(evaluation);
     const int t = type_of(slot);
+    const Front *fronts = &at(block[slot], t, 1);
     for (int other = 1; other <= types; other++)
-      if (reading[t] + reading[other] > until[of(slot, other)]) move_to_front(slot, t, other);
+      if (fronts[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
   }
 
   // Of a value of each particle: the greatest among all neighbours of one, and whether all of them
@@ -119,38 +122,52 @@ class NearLists {
   int begin(int t) const { return outer.begin(t); }
   int slots() const { return outer.slots(); }
   int at(int slot) const { return outer.at(slot); }
-  // everyone up to the reach
-  Stretch all(int slot, int t) const { return outer(slot, t); }
   // Everyone inside the support and some a little outside, as of the last refresh.
-  Stretch operator()(int slot, int t) const { return {outer(slot, t).of, front[of(slot, t)]}; }
+  Stretch operator()(int slot, int t) const { return {outer(slot, t).of, in_front[of(slot, t)]}; }
   int slot(int owned) const { return slot_of[owned]; }
-  double inner_skin(int t, int other) const { return skin[pair(t, other)]; }
+  // of the front of one particle, if it were found now
+  double inner_skin(int slot, int t) const { return at(block[slot], type_of(slot), t).skin; }
   // list, of one particle and type
   int longest() const { return longest_list; }
 
-  double bytes() const { return outer.bytes() + bytes_of(held, until, front, slot_of, current); }
+  double bytes() const
+  {
+    return outer.bytes() + closing.bytes() +
+        bytes_of(held, until, in_front, slot_of, block, current, blocks, due, due_block);
+  }
 
  private:
-  struct Place {
-    float x, y, z;
+  // of particles of a type in a block, in the lists of another type
+  struct Front {
+    double reading = 0.0;    // of the odometer, now
+    double held = 0.0;    // and when positions were held
+    double skin = 0.0;    // inner skin of what is found from these
+    double lists_until = 0.0;    // the lists hold up to this reading
   };
 
   // what an entry of a list costs while its front is found, over one of the front in an evaluation,
   // about (measured)
   static constexpr double ENTRY_COST = 0.23;
+  // Skin of the lists over support: narrow lists are quick to read, wide ones last.  Between 0.2 and
+  // 0.4 all cost the same (measured).
+  static constexpr double LIST_SKIN = 0.3;
   // least inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
 
   NeighbourLists outer;
   int types = 0;
-  std::vector<int> front, slot_of;    // [slot][type], [owned particle]
-  std::vector<double> until;    // [slot][type], sum of two readings
+  std::vector<int> in_front, slot_of;    // [slot][type], [owned particle]
+  std::vector<double> until;    // [slot][type], reading of the odometer
   std::vector<std::uint8_t> current;    // [slot], the evaluation in which it was asked for
-  std::vector<double> limit, skin;    // of a pair of types: support, 0: never; inner skin
-  std::vector<double> widest, cost;    // what the skin of the lists allows; of finding a front
-  std::vector<Drift> drift;    // of a type
-  std::vector<double> distance, reading;    // of the odometers, when positions were held and now
-  AlignedVector<Place> held;    // positions then
+  std::vector<int> block;    // [slot]
+  std::vector<Front> blocks;    // [block][type][type]
+  std::vector<char> due, due_block;    // of these, and of blocks: lists that are made anew
+  // of a pair of types: support, 0: never; reach of the lists; their skin, and how much of it may be used up; cost
+  // of finding a front
+  std::vector<double> limit, far, widest, lasting, cost;
+  std::vector<double> interval;    // of a type
+  Closing closing;
+  AlignedVector<Closing::Place> held;    // positions from which fronts are found
   std::array<double, 3> centre{};
   AlignedVector<float> key;
   std::vector<int> spare;
@@ -163,35 +180,105 @@ class NearLists {
 
   std::size_t of(int slot, int t) const { return static_cast<std::size_t>(slot) * types + t - 1; }
   int pair(int t, int other) const { return t * (types + 1) + other; }
+  Front &at(int b, int t, int other) { return blocks[(b * types + t - 1) * types + other - 1]; }
+  const Front &at(int b, int t, int other) const
+  {
+    return blocks[(b * types + t - 1) * types + other - 1];
+  }
+  template <class Do> void for_each_front(Do something)
+  {
+    for (int b = 0; b < closing.blocks(); b++)
+      for (int t = 1; t <= types; t++) {
+        if (!closing.any(b, t)) continue;
+        for (int other = 1; other <= types; other++)
+          if (limit[pair(t, other)] > 0.0) something(at(b, t, other), b, t, other);
+      }
+  }
 
-  void set_limits(const double *reach, const double *support)
+  void set_limits(const double *support, double most)
   {
     const int n = (types + 1) * (types + 1);
-    limit.assign(n, 0.0);
-    skin.assign(n, 0.0);
-    widest.assign(n, 0.0);
-    cost.assign(n, 0.0);
+    limit.assign(support, support + n);
+    for (std::vector<double> *of_pair : {&far, &widest, &lasting, &cost}) of_pair->assign(n, 0.0);
     for (int k = 0; k < n; k++) {
-      if (reach[k] == 0.0 || support[k] == 0.0) continue;
-      limit[k] = support[k];
-      widest[k] = reach[k] - support[k];
-      cost[k] = ENTRY_COST * std::pow(reach[k] / support[k], dim);
+      if (limit[k] == 0.0) continue;
+      widest[k] = std::min(most, LIST_SKIN * limit[k]);
+      lasting[k] = widest[k] < most ? widest[k] : std::numeric_limits<double>::max();
+      far[k] = limit[k] + widest[k];
+      cost[k] = ENTRY_COST * std::pow(far[k] / limit[k], dim);
     }
   }
 
-  void set_first_skin(int t, int other)
+  // Blocks stay as they are while lists are renewed: who meets until lists are built again must be in blocks
+  // beside each other now.
+  void set_blocks(const double *x, const int *type, int n_all, double most, const Motion &motion)
   {
-    const int k = pair(t, other);
-    skin[k] = std::min(widest[k], std::max(FIRST_SKIN * limit[k], lasting_skin(t, other)));
+    constexpr double ROUNDING = 1e-6;
+    const double longest = *std::max_element(limit.begin(), limit.end()) + most;
+    closing.divide(x, type, n_all, types, longest * (1.0 + ROUNDING));
+    blocks.assign(static_cast<std::size_t>(closing.blocks()) * types * types, Front());
+    if (motion.v) closing.measure(motion.v, {0.0, 0.0, 0.0}, nullptr);
+    for_each_front([&](Front &front, int b, int t, int other) {
+      const double way = motion.v ? closing.between(b, t, other) * motion.step : 0.0;
+      const int k = pair(t, other);
+      front.skin =
+          std::min(widest[k], std::max(FIRST_SKIN * limit[k], lasting_skin(t, other, way)));
+      front.lists_until = lasting[k];
+    });
   }
 
-  // For n evaluations of one particle a skin that two use up in the meantime, with a margin: the
+  // the lists of those blocks where somebody may be missing
+  void renew(const double *x, const int *type, int n_owned, int n_all, const Sides *sides)
+  {
+    const std::vector<double> near = near_fronts();
+    due.assign(blocks.size(), false);
+    due_block.assign(closing.blocks(), false);
+    for_each_front([&](Front &front, int b, int t, int other) {
+      if (front.held <= front.lists_until) return;
+      front.lists_until = front.held + lasting[pair(t, other)];
+      due[&front - blocks.data()] = due_block[b] = true;
+    });
+    const auto is_due = [this](int slot, int t, int other) {
+      return due_block[block[slot]] && due[&at(block[slot], t, other) - blocks.data()];
+    };
+    outer.renew(x, type, n_owned, n_all, types, far.data(), {near.data(), closing.block_of()},
+                in_front, sides, is_due);
+    note_lists(is_due);
+  }
+
+  // up to where particles are in front: [block][(n_types+1)^2]
+  std::vector<double> near_fronts()
+  {
+    std::vector<double> near(closing.blocks() * limit.size());
+    for_each_front([&](const Front &front, int b, int t, int other) {
+      near[b * limit.size() + pair(t, other)] = limit[pair(t, other)] + front.skin;
+    });
+    return near;
+  }
+
+  // after those that are new(slot, type, other) were made
+  template <class New> void note_lists(New is_new)
+  {
+    for (int slot = 0, t = 1; slot < outer.slots(); slot++) {
+      while (slot >= outer.begin(t + 1)) t++;
+      for (int other = 1; other <= types; other++) {
+        if (!is_new(slot, t, other)) continue;
+        longest_list = std::max(longest_list, outer(slot, other).n);
+        const Front &front = at(block[slot], t, other);
+        until[of(slot, other)] = front.held + front.skin;
+      }
+    }
+    key.resize(whole_groups(longest_list) + 2 * LANES);
+    spare.resize(key.size());
+  }
+
+  // For n evaluations of one particle a skin that is used up in the meantime, with a margin: the
   // front then holds 1 + dim skin/H as many, and finding it costs cost/(n + 1) per evaluation.  The
   // n of least cost.
-  double lasting_skin(int t, int other) const
+  double lasting_skin(int t, int other, double way) const
   {
     const int k = pair(t, other);
-    const double nearer = (drift[t].way + drift[other].way) * drift[t].interval;
+    const double nearer = way * interval[t];
     if (!(nearer > 0.0)) return std::min(widest[k], FIRST_SKIN * limit[k]);
     const double n = std::sqrt(cost[k] * limit[k] / (dim * nearer)) - 0.5;
     return std::min(widest[k], 1.1 * nearer * std::floor(std::clamp(n, 0.0, 1000.0)));
@@ -204,17 +291,6 @@ class NearLists {
     evaluation = 1;
   }
 
-  // of a front that would be found now
-  bool any_skin_is_gone() const
-  {
-    for (int t = 1; t <= types; t++)
-      for (int other = 1; other <= types; other++)
-        if (const int k = pair(t, other);
-            limit[k] > 0.0 && reading[t] - distance[t] + reading[other] - distance[other] > skin[k])
-          return true;
-    return false;
-  }
-
   void hold(const double *x, int n_all)
   {
     const Bounds bounds(x, n_all);
@@ -225,53 +301,17 @@ class NearLists {
       held[i] = {static_cast<float>(x[3 * i] - centre[0]),
                  static_cast<float>(x[3 * i + 1] - centre[1]),
                  static_cast<float>(x[3 * i + 2] - centre[2])};
-  }
-
-  // Who has not moved reads nothing of what rounding does.
-  void read_odometers(const double *x, const int *type, int n_all)
-  {
-    for (int t = 1; t <= types; t++) reading[t] = 0.0;
-    add_farthest(x, type, n_all);
-    for (int t = 1; t <= types; t++) {
-      const double way = std::sqrt(reading[t]);
-      reading[t] = distance[t] + (way > 0.0 ? way + rounding : 0.0);
-    }
-  }
-
-  // the largest squared distance from where particles of each type were held
-  SPHCLOTH_MULTIVERSION void add_farthest(const double *x, const int *type, int n_all)
-  {
-    constexpr int PIECE = 32 * LANES;
-    alignas(64) float sq[PIECE];
-    const double cx = centre[0], cy = centre[1], cz = centre[2];
-    for (int first = 0; first < n_all; first += PIECE) {
-      const int n = std::min(PIECE, n_all - first);
-      const double *y = x + 3 * static_cast<std::ptrdiff_t>(first);
-      const Place *before = held.data() + first;
-#pragma omp simd
-      for (int k = 0; k < n; k++) {
-        const float dx = static_cast<float>(y[3 * k] - cx) - before[k].x,
-                    dy = static_cast<float>(y[3 * k + 1] - cy) - before[k].y,
-                    dz = static_cast<float>(y[3 * k + 2] - cz) - before[k].z;
-        sq[k] = dx * dx + dy * dy + dz * dz;
-      }
-      const int *its = type + first;
-      for (int t = 1; t <= types; t++) {
-        float most = 0.0F;
-#pragma omp simd reduction(max : most)
-        for (int k = 0; k < n; k++) most = std::max(most, its[k] == t ? sq[k] : 0.0F);
-        reading[t] = std::max(reading[t], static_cast<double>(most));
-      }
-    }
+    steps = 0;
   }
 
   SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t, int other)
   {
     const int types_of_it = pair(t, other);
-    until[of(slot, other)] = distance[t] + distance[other] + skin[types_of_it];
+    const Front &now = at(block[slot], t, other);
+    until[of(slot, other)] = now.held + now.skin;
     const Stretch list = outer(slot, other);
     if (list.n == 0 || limit[types_of_it] == 0.0) return;
-    const Place self = held[outer.at(slot)];
+    const Closing::Place self = held[outer.at(slot)];
     static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
@@ -283,9 +323,9 @@ class NearLists {
         sq[k] = dx * dx + dy * dy + dz * dz;
       }
     }
-    const double far = limit[types_of_it] + skin[types_of_it] + rounding;
-    front[of(slot, other)] = partition(key.data(), outer.open(slot, other), list.n,
-                                       static_cast<float>(far * far), spare.data());
+    const double near = limit[types_of_it] + now.skin + rounding;
+    in_front[of(slot, other)] = partition(key.data(), outer.open(slot, other), list.n,
+                                          static_cast<float>(near * near), spare.data());
   }
 
   SPHCLOTH_MULTIVERSION int greatest(const Stretch &near, const int *value) const

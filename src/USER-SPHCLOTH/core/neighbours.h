@@ -64,57 +64,108 @@ struct Stretch {
   int n = 0;
 };
 
-// for each slot and type a stretch of one long array that is filled in that order
+// For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones lie in others
+// behind it: nothing else moves.
 
 class Stretches {
  public:
   void start(std::size_t slots, int n_types)
   {
     types = n_types;
-    first.clear();
-    first.reserve(slots * n_types + 1);
-    first.push_back(0);
+    end = unused = 0;
+    free = nullptr;
+    later.clear();
+    pieces.clear();
+    pieces.reserve(slots * n_types);
   }
   Stretch operator()(int slot, int type) const
   {
-    const std::size_t s = static_cast<std::size_t>(slot) * types + type - 1;
-    return {entries.data() + first[s], static_cast<int>(first[s + 1] - first[s])};
+    const Piece &piece = pieces[number(slot, type)];
+    return {piece.of, piece.n};
   }
-  int *open(int slot, int type)
-  {
-    return entries.data() + first[static_cast<std::size_t>(slot) * types + type - 1];
-  }
+  int *open(int slot, int type) { return pieces[number(slot, type)].of; }
   // room for at most n more entries and the slack behind them
   int *room(int n)
   {
-    const std::size_t need = first.back() + n + SLACK;
+    if (free) return later_room(n);
+    const std::size_t need = end + n + SLACK;
     // lists are most of the memory: grow by little
     if (entries.size() < need) {
       entries.reserve(need + need / 16);
       entries.resize(need + need / 16);
     }
-    return entries.data() + first.back();
+    return entries.data() + end;
   }
-  void close(int n) { first.push_back(first.back() + n); }
-  // what loops over whole groups read behind the last stretch
+  void close(int n)
+  {
+    pieces.push_back({nullptr, n, n});
+    end += n;
+  }
+  // all are closed: what loops over whole groups read behind the last stretch
   void finish()
   {
-    int *end = room(0);
-    std::fill(end, end + SLACK, 0);
-    const std::size_t need = first.back() + SLACK;
-    if (entries.capacity() <= need + need / 32) return;
-    std::vector<int> trimmed;
-    trimmed.reserve(need + need / 128);
-    trimmed.assign(entries.begin(), entries.begin() + need);
-    entries.swap(trimmed);
+    int *last = room(0);
+    std::fill(last, last + SLACK, 0);
+    const std::size_t need = end + SLACK;
+    if (entries.capacity() > need + need / 32) {
+      std::vector<int> trimmed;
+      trimmed.reserve(need + need / 128);
+      trimmed.assign(entries.begin(), entries.begin() + need);
+      entries.swap(trimmed);
+    }
+    int *of = entries.data();
+    for (Piece &piece : pieces) {
+      piece.of = of;
+      of += piece.n;
+    }
+    free = of_later = of;    // nothing is left
   }
-  double bytes() const { return bytes_of(entries, first); }
+  // by n in the room that was given last
+  int *replace(int slot, int type, int n)
+  {
+    Piece &piece = pieces[number(slot, type)];
+    piece.n = n;
+    if (n <= piece.room) return std::copy_n(free, n, piece.of) - n;
+    unused += piece.room;
+    piece.of = free;
+    piece.room = std::min(n + n / 8, static_cast<int>(of_later - free) - SLACK);
+    free += piece.room;
+    return piece.of;
+  }
+  double bytes() const
+  {
+    double sum = bytes_of(entries, pieces);
+    for (const std::vector<int> &more : later) sum += bytes_of(more);
+    return sum;
+  }
 
  private:
   static constexpr int SLACK = 2 * LANES;
+  struct Piece {
+    int *of;
+    int n, room;
+  };
   int types = 0;
-  std::vector<std::int64_t> first;
+  std::int64_t end = 0, unused = 0;
+  std::vector<Piece> pieces;
   std::vector<int> entries;
+  std::vector<std::vector<int>> later;
+  int *free = nullptr, *of_later = nullptr;    // in the last of these: what is free, and its end
+
+  std::size_t number(int slot, int type) const
+  {
+    return static_cast<std::size_t>(slot) * types + type - 1;
+  }
+  int *later_room(int n)
+  {
+    constexpr int ENTRIES = 1 << 16;
+    if (of_later - free < n + SLACK) {
+      later.emplace_back(std::max(ENTRIES, n + SLACK));
+      free = later.back().data();
+      of_later = free + later.back().size();
+    }
+    return free;
+  }
 };
 
 class NeighbourLists {
@@ -126,30 +177,58 @@ class NeighbourLists {
              const double *reach, const Sides *of_all = nullptr)
   {
     std::vector<int> none;
-    build(x, type, n_owned, n_all, n_types, reach, nullptr, none, of_all);
+    build(x, type, n_owned, n_all, n_types, reach, {}, none, of_all);
   }
 
-  // The same, and those nearer than `near`, [(n_types+1)^2], or null, come first in each list;
-  // front: [slot][type], how many they are.
+  // [region][(n_types+1)^2], and the region of each particle
+  struct Near {
+    const double *distance = nullptr;
+    const int *region = nullptr;
+  };
+
+  // The same, and those that are near come first in each list; front: [slot][type], how many they are.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const double *near, std::vector<int> &front, const Sides *of_all)
+             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all)
   {
     sides = of_all;
-    sort_into_cells(x, type, n_owned, n_all, n_types, reach);
+    sort_into_cells(x, type, n_all, n_types, reach);
+    find_slots(type, n_owned, n_types);
     lists.start(order.size(), n_types);
-    front.assign(near ? order.size() * n_types : 0, 0);
+    front.assign(near.distance ? order.size() * n_types : 0, 0);
     int *in_front = front.data();
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
           const int pair = t * (n_types + 1) + other;
           const int n = list(slot, other, reach[pair], t == other);
-          if (near) *in_front++ = bring_to_front(slot, other, n, near[pair]);
+          if (near.distance)
+            *in_front++ = bring_to_front(lists.room(0), n, near_in(near, slot, n_types)[pair]);
+          lists.close(n);
         }
     lists.finish();
-    // lists live long, what they are made of need not
-    for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
-    for (auto *list : {&cell, &cell_start, &place, &id}) give_back(*list);
+    finish();
+  }
+
+  // Some of them anew, of the same particles where they are now, in the same slots: those that are
+  // due(slot, type, other).
+  template <class Due>
+  void renew(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all,
+             Due due)
+  {
+    sides = of_all;
+    sort_into_cells(x, type, n_all, n_types, reach);
+    find_places(n_owned);
+    for (int t = 1; t <= n_types; t++)
+      for (int slot = begin(t); slot < begin(t + 1); slot++)
+        for (int other = 1; other <= n_types; other++) {
+          if (!due(slot, t, other)) continue;
+          const int pair = t * (n_types + 1) + other;
+          const int n = list(slot, other, reach[pair], t == other);
+          front[static_cast<std::size_t>(slot) * n_types + other - 1] =
+              bring_to_front(lists.replace(slot, other, n), n, near_in(near, slot, n_types)[pair]);
+        }
+    finish();
   }
 
   // owned particles by type and then in space: those of a type are the slots begin(t) to
@@ -195,7 +274,8 @@ class NeighbourLists {
   double slack = 0.0;    // what rounding to single precision may do to a distance
   std::vector<int> slots_of, order;
   std::vector<int> place;    // of a slot among the sorted particles
-  std::vector<int> cell;    // of each particle
+  std::vector<int> cell;    // of each particle, or its place
+  int sorted = 0;    // particles
   std::vector<int> cell_start;    // of all types, and one more
   std::vector<int> id;    // sorted particles: index, position
   AlignedVector<float> px, py, pz;
@@ -253,13 +333,11 @@ class NeighbourLists {
 
   // counting sort by type and cell
 
-  void sort_into_cells(const double *x, const int *type, int n_owned, int n_all, int n_types,
+  void sort_into_cells(const double *x, const int *type, int n_all, int n_types,
                        const double *reach)
   {
     const double longest = *std::max_element(reach, reach + (n_types + 1) * (n_types + 1));
-    order.clear();
-    place.clear();
-    slots_of.assign(n_types + 2, 0);
+    sorted = 0;
     if (n_all == 0 || longest == 0.0) return;
     const Bounds bounds(x, n_all);
     centre = bounds.centre;
@@ -291,6 +369,17 @@ class NeighbourLists {
       px[p] = static_cast<float>(x[3 * i] - centre[0]);
       py[p] = static_cast<float>(x[3 * i + 1] - centre[1]);
       pz[p] = static_cast<float>(x[3 * i + 2] - centre[2]);
+    }
+    sorted = n_all;
+  }
+
+  void find_slots(const int *type, int n_owned, int n_types)
+  {
+    order.clear();
+    place.clear();
+    slots_of.assign(n_types + 2, 0);
+    for (int p = 0; p < sorted; p++) {
+      const int i = id[p];
       if (i >= n_owned) continue;
       order.push_back(i);
       place.push_back(p);
@@ -299,31 +388,48 @@ class NeighbourLists {
     for (int t = 1; t <= n_types + 1; t++) slots_of[t] += slots_of[t - 1];
   }
 
-  // returns how many are listed; their squared distances are in `key`
+  // of the slots that there are
+  void find_places(int n_owned)
+  {
+    cell.resize(n_owned);
+    place.resize(order.size());
+    for (int p = 0; p < sorted; p++)
+      if (id[p] < n_owned) cell[id[p]] = p;
+    for (std::size_t slot = 0; slot < order.size(); slot++) place[slot] = cell[order[slot]];
+  }
+
+  // lists live long, what they are made of need not
+  void finish()
+  {
+    for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
+    for (auto *list : {&cell, &cell_start, &place, &id}) give_back(*list);
+  }
+
+  // Behind all lists; returns how many are listed.  Their squared distances are in `key`.
 
   int list(int slot, int other, double reach, bool same_type)
   {
-    if (reach == 0.0) {
-      lists.close(0);
-      return 0;
-    }
+    if (reach == 0.0) return 0;
     const double far = reach + slack;
     const int n = candidates(slot, other, far, same_type);
     if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
-    const int listed = compact(key.data(), candidate.data(), n, static_cast<float>(far * far),
-                               key.data(), lists.room(n));
-    lists.close(listed);
-    return listed;
+    return compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
+                   lists.room(n));
+  }
+
+  const double *near_in(const Near &near, int slot, int n_types) const
+  {
+    const int pairs = (n_types + 1) * (n_types + 1);
+    return near.distance + static_cast<std::size_t>(near.region[at(slot)]) * pairs;
   }
 
   // those of the list just made, of n, that are nearer; returns how many
 
-  int bring_to_front(int slot, int other, int n, double near)
+  int bring_to_front(int *list, int n, double near)
   {
     if (n == 0 || near == 0.0) return 0;
     const double far = near + slack;
-    return partition(key.data(), lists.open(slot, other), n, static_cast<float>(far * far),
-                     candidate.data());
+    return partition(key.data(), list, n, static_cast<float>(far * far), candidate.data());
   }
 
   void leave_out_parted(Sides mine, int n)

@@ -13,7 +13,7 @@ double uniform() { return std::uniform_real_distribution<>(0.0, 1.0)(generator);
 
 // every length, so that every tail of a vector is met; two guard entries behind the result
 
-void check_compact()
+template <class Compact> void check_compact(const Compact &compaction)
 {
   for (int n = 0; n < 70; n++) {
     std::vector<float> key(n + 32), expected(n + 32), found(n + 32);
@@ -34,11 +34,10 @@ void check_compact()
       for (int k = 0; k < m; k++)
         CHECK(found[k] == expected[k] && found_index[k] == expected_index[k]);
     };
-    agrees(compact_plain(key.data(), index.data(), n, limit, found.data(), found_index.data()));
-    agrees(compact(key.data(), index.data(), n, limit, found.data(), found_index.data()));
+    agrees(compaction(key.data(), index.data(), n, limit, found.data(), found_index.data()));
     // in place
     found = key;
-    agrees(compact(found.data(), index.data(), n, limit, found.data(), found_index.data()));
+    agrees(compaction(found.data(), index.data(), n, limit, found.data(), found_index.data()));
   }
 }
 
@@ -97,12 +96,22 @@ template <class Lane, class Last> void check_columns()
 
 }    // namespace
 
-CASE("compaction keeps what is below the limit, in order") { check_compact(); }
+CASE("compaction keeps what is below the limit, in order")
+{
+  check_compact([](auto... a) { return compact(a...); });
+  check_compact([](auto... a) { return compact_plain(a...); });
+#ifdef SPHCLOTH_X86_TARGETS
+  if (HAVE_AVX2) check_compact([](auto... a) { return compact_avx2(a...); });
+#endif
+}
 
 CASE("partition of a list in place")
 {
   check_partition([](auto... a) { return partition(a...); });
   check_partition([](auto... a) { return partition_plain(a...); });
+#ifdef SPHCLOTH_X86_TARGETS
+  if (HAVE_AVX2) check_partition([](auto... a) { return partition_avx2(a...); });
+#endif
 }
 
 CASE("rows to columns and back")

@@ -249,7 +249,9 @@ bool FixWallSPH::measure(int i, double back)
   const double support = pair->support(atom->type[i]);
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); k++) {
-    const double delta = (walls[k].distance(x) - back * departure(i, k)) / support;
+    double distance = walls[k].distance(x);
+    if (back != 0.0) distance -= back * departure(i, k);
+    const double delta = distance / support;
     if (delta < -1.0)
       rank_error(lmp, FLERR,
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
@@ -271,17 +273,17 @@ double FixWallSPH::density_rate(int i, double back)
 {
   if (!measure(i, back)) return 0.0;
   double rate = 0.0;
-  for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
+  for (std::size_t k = 0; k < walls.size(); k++)
+    rate += slope(i, k, joint_share(near, k)) * departure(i, k);
   return rate;
 }
 
-// d rho_i / d distance from wall k, beside the other walls
+// d rho_i / d distance from wall k, which keeps this share beside the other walls
 
-double FixWallSPH::slope(int i, std::size_t k) const
+double FixWallSPH::slope(int i, std::size_t k, double share) const
 {
   const int type = atom->type[i];
-  return joint_share(near, k) * pair->equation_of_state(type).rho0 * near[k].slope /
-      pair->support(type);
+  return share * pair->equation_of_state(type).rho0 * near[k].slope / pair->support(type);
 }
 
 // velocity of particle i away from wall k
@@ -323,14 +325,15 @@ void FixWallSPH::push(int i, double pressure_term, double times, bool first)
     const int axis = wall.axis();
     const double delta = wall.distance(x) / support;
     if (delta >= 1.0) continue;
-    const double share = joint_share(near, k);
+    const double share = joint_share(near, k), denser = slope(i, k, share);
     const double strain = stop_strain(delta);
     const double stop = eos.k * strain / (STOPPING_DEPTH * support);
-    const double friction =
-        nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support);
+    const double friction = nu > 0.0
+        ? nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support)
+        : 0.0;
 
     const double pressure =
-        times * stop - reflection * pressure_term * slope(i, k);    // per mass, away from the wall
+        times * stop - reflection * pressure_term * denser;    // per mass, away from the wall
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
                                      : -times * friction * (v[d] - wall.velocity[d]);
@@ -338,7 +341,7 @@ void FixWallSPH::push(int i, double pressure_term, double times, bool first)
       mine[3 * k + d] -= to_force * accel;
     }
     if (!first) continue;
-    atom->drho[i] += slope(i, k) * departure(i, k);
+    atom->drho[i] += denser * departure(i, k);
     if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
     mine.back() += 0.5 * mass * eos.k * strain * strain * force->mvv2e;
   }

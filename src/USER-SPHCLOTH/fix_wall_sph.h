@@ -97,7 +97,7 @@ class FixWallSPH : public Fix, public FluidWall {
   void find_open_space();
   bool look(int i);
   bool measure(int i, double back = 0.0);
-  double slope(int, std::size_t) const;
+  double slope(int, std::size_t, double share) const;
   double departure(int, std::size_t) const;
   void push(int i, double pressure_term, double times, bool first);
   double output(int);

@@ -127,6 +127,25 @@ def test_restart_continues_to_the_last_bit(scene, ranks):
     np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "whole.txt"))
 
 
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_a_wide_skin_changes_nothing(scene, ranks):
+    """Lists of the pair style are narrower and renewed on their own, also beside other ranks."""
+    wide = write(scene, DROP.replace("neighbor 0.03", "neighbor 0.3") + END, "in.wide")
+    said = run(wide, ranks=ranks, dump=f"wide{ranks}.txt")
+    assert largest_difference(scene, "serial.txt", f"wide{ranks}.txt") < 1e-10
+    assert "Neighbor list builds = 0" in said
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_with_a_wide_skin_continues_to_the_last_bit(scene, ranks):
+    first = "run 60\nwrite_restart mid.restart\n"
+    script = (DROP + first + END.replace("${steps}", "60")).replace("0.03 bin", "0.3 bin")
+    run(write(scene, script, "in.whole"), ranks=ranks, dump="whole.txt")
+    script = (RESTARTED + END).replace("0.03 bin", "0.3 bin")
+    run(write(scene, script, "in.again"), ranks=ranks, dump="again.txt")
+    np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "whole.txt"))
+
+
 def test_split_runs_are_one_run(scene):
     split = DROP + "run 30\nrun 30\n" + END.replace("${steps}", "40")
     run(write(scene, split, "in.split"), dump="split.txt")

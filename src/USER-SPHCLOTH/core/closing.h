@@ -2,9 +2,9 @@
 //
 // Space is cut into blocks at least as wide as lists reach, so that the neighbours of a particle are in its
 // block or in those around.  The displacements of the particles of a block lie in a box.  The farthest corners of the
-// boxes of two blocks say how much nearer a particle of one may have come to one of the other: what moves
-// together stays as it is, however fast it goes, and what is fast elsewhere does not matter.  Types have
-// boxes of their own.
+// boxes of two blocks say how much nearer a particle of one may have come to one of the other, or the longest
+// displacements of both if their sum is less: what moves together stays as it is, however fast it goes, and
+// what is fast elsewhere does not matter.  Types have boxes of their own.
 
 #ifndef SPHCLOTH_CORE_CLOSING_H
 #define SPHCLOTH_CORE_CLOSING_H
@@ -66,8 +66,8 @@ class Closing {
     const Box &one = own[row(b, t)], &two = around[row(b, other)];
     const Lanes gap = larger(larger(one.hi - two.lo, two.hi - one.lo), Lanes{});
     const float corners = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2];
-    const float far = std::max(one.hi[3], 0.0F), far2 = std::max(two.hi[3], 0.0F);
-    return std::min(std::sqrt(corners), std::sqrt(far) + std::sqrt(far2));
+    const float longest_sq = std::max(one.hi[3], 0.0F), other_sq = std::max(two.hi[3], 0.0F);
+    return std::min(std::sqrt(corners), std::sqrt(longest_sq) + std::sqrt(other_sq));
   }
 
   double bytes() const { return bytes_of(block, first, member, own, around, spare); }
@@ -76,7 +76,8 @@ class Closing {
   typedef float Lanes __attribute__((vector_size(16)));
   static constexpr float FAR = std::numeric_limits<float>::max();
 
-  struct Box {    // empty at first
+  // x, y, z, and the squared length; empty at first
+  struct Box {
     Lanes lo{FAR, FAR, FAR, 0.0F}, hi{-FAR, -FAR, -FAR, 0.0F};
   };
 

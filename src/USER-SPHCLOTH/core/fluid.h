@@ -114,7 +114,7 @@ class Fluid {
   bool select(const Particles &);
   const Selection &active() const { return selection; }
 
-  // Records the positions of all particles, and whose neighbours they are now.  Mixed precision counts them from the corner lo - margin
+  // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
   // in parts of the box lengths, so that periodic images are exact.
   struct Box {
     double lo[3], length[3], margin;

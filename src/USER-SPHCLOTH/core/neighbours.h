@@ -72,7 +72,7 @@ class Stretches {
   void start(std::size_t slots, int n_types)
   {
     types = n_types;
-    end = unused = 0;
+    end = 0;
     free = nullptr;
     later.clear();
     pieces.clear();
@@ -126,7 +126,6 @@ class Stretches {
     Piece &piece = pieces[number(slot, type)];
     piece.n = n;
     if (n <= piece.room) return std::copy_n(free, n, piece.of) - n;
-    unused += piece.room;
     piece.of = free;
     piece.room = std::min(n + n / 8, static_cast<int>(of_later - free) - SLACK);
     free += piece.room;
@@ -146,7 +145,7 @@ class Stretches {
     int n, room;
   };
   int types = 0;
-  std::int64_t end = 0, unused = 0;
+  std::int64_t end = 0;
   std::vector<Piece> pieces;
   std::vector<int> entries;
   std::vector<std::vector<int>> later;

@@ -35,17 +35,17 @@ void BlockSteps::init(PairSPHTait *style)
   pair->set_blocks(this);
   known = false;
   apart = options.ratio == 4 ? 2 : 1;
-  least_apart.assign(atom->ntypes + 1, apart);
-  for (int t = 1; t <= atom->ntypes; t++)
-    for (int u = 1; u <= atom->ntypes; u++)
-      least_apart[t] = std::min(least_apart[t], levels_apart(t, u));
+  const int n = atom->ntypes + 1;
+  apart_of.assign(n * n, apart);
+  for (int t = 1; t < n; t++)
+    for (int u = 1; u < n; u++) apart_of[t * n + u] = find_apart(t, u);
 }
 
 // How many levels may a particle be above a neighbour of another type?  What a coarse one gives for its
 // whole step comes at once, and a fine one bears that no longer than about twice its own acoustic
 // step: while pressures balance, it moves to and fro by p/(2 rho H) times the square of that time.
 
-int BlockSteps::levels_apart(int type, int neighbour) const
+int BlockSteps::find_apart(int type, int neighbour) const
 {
   if (!pair->is_fluid(type) || !pair->is_fluid(neighbour)) return apart;
   const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbour)));
@@ -147,20 +147,11 @@ void BlockSteps::choose()
 
 double BlockSteps::want_steps()
 {
-  double least = std::numeric_limits<double>::infinity();
+  const std::vector<int> &active = pair->active_particles();
   const double *its_level = rows[LEVEL];
   const double *external[3] = {rows[EXTERNAL], rows[EXTERNAL + 1], rows[EXTERNAL + 2]};
-  double *by = rows[BY];
-  for (const int i : pair->active_particles()) {
-    const double before = at.line.step(static_cast<int>(its_level[i]));
-    double f[3];
-    for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + external[d][i];
-    const StepLimit own = fix->bounded_limit(i, f, before);
-    wanted[i] = own.dt;
-    by[i] = static_cast<double>(own.by);
-    least = std::min(least, own.dt);
-  }
-  return least;
+  for (const int i : active) wanted[i] = at.line.step(static_cast<int>(its_level[i]));
+  return fix->find_steps(active, external, wanted.data(), rows[BY]);
 }
 
 // Everybody begins a step: it may be of any length, but roots end at output times.
@@ -179,20 +170,12 @@ void BlockSteps::begin_root(double least)
   const double next = fix->next_output_time(least_of_all), remaining = next - physical_time(update);
   const double root = all.root_towards(remaining, least_of_all, OVERHEAD);
   const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root;
-  for (const int i : pair->active_particles()) rows[UNTIL][i] = (rows[UNTIL][i] - end) * ratio;
+  double *until = rows[UNTIL];
+  for (const int i : pair->active_particles()) until[i] = (until[i] - end) * ratio;
   at.line = {root, 0};
   coarsest = 0;
   at.reaches_output = root == remaining;
   at.output_time = next;
-}
-
-inline int BlockSteps::choose_level(int i)
-{
-  const double call = rows[CALL][i];
-  rows[BEFORE][i] = call == NEW ? Pace::FIRST : call == WOKEN ? Pace::BROKEN : rows[LEVEL][i];
-  const int own = std::max(coarsest, at.line.level_of(wanted[i]));
-  rows[LEVEL][i] = own;
-  return own;
 }
 
 // The step of each, the shortest, and whether it is everybody's.  Who is new, and lengthens its step, asks
@@ -210,9 +193,12 @@ void BlockSteps::find_step_of_scene()
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeLine::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
-  const double *by = rows[BY], *its_until = rows[UNTIL];
+  const double *by = rows[BY], *call = rows[CALL], *its_until = rows[UNTIL];
+  double *its_level = rows[LEVEL], *before = rows[BEFORE];
   for (const int i : pair->active_particles()) {
-    const int own = choose_level(i);
+    before[i] = call[i] == NEW ? Pace::FIRST : call[i] == WOKEN ? Pace::BROKEN : its_level[i];
+    const int own = std::max(coarsest, at.line.level_of(wanted[i]));
+    its_level[i] = own;
     slowest = std::min(slowest, own);
     finest = std::max(finest, rank(own, static_cast<int>(by[i])));
     until[0] = std::max(until[0], -its_until[i]);
@@ -244,11 +230,22 @@ void BlockSteps::respect_neighbours()
   }
   stage = LEVELS;
   comm->forward_comm(fix, 1);
-  NearLists &lists = pair->order();
+  if (everyone_begins()) pair->order().take_survey(level.data());
   for (const int i : pair->active_particles())
-    if (lists.greatest(lists.slot(i), level.data()) > level[i] + least_apart[atom->type[i]])
-      rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
+    if (is_too_coarse(i)) rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
+}
+
+// for a neighbour, or for somebody a little outside the support
+
+bool BlockSteps::is_too_coarse(int i)
+{
+  NearLists &lists = pair->order();
+  const int slot = lists.slot(i), own = atom->type[i];
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (lists.any_above(level[i] + levels_apart(own, t), slot, t, level.data(), everyone_begins()))
+      return true;
+  return false;
 }
 
 int BlockSteps::level_beside(int i)
@@ -524,6 +521,7 @@ void BlockSteps::share_impulses()
   measure_impulses();
   stage = IMPULSES;
   comm->forward_comm(fix, 3);
+  if (everyone_begins()) pair->order().take_survey(pace.data());
   std::fill_n(mark.begin() + atom->nlocal, atom->nghost, UNTOUCHED);
   marked.clear();
   slots.clear();
@@ -625,17 +623,37 @@ bool BlockSteps::look_around(int i)
 {
   NearLists &lists = pair->order();
   const int slot = lists.slot(i), own = pace[i];
-  if (Pace::before(own) != Pace::BROKEN && lists.all_have(own, slot, pace.data())) return true;
   bool in_step = Pace::before(own) != Pace::BROKEN;
-  for_neighbours(i, [&](int j) {
-    if (pace[j] == own) return;
-    if (pace[j] == Pace::BOUNDARY) return touch(j, TOUCHED);
-    if (Pace::before(pace[j]) == Pace::SLEEPER) return disturb(i, j);
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (!lists.all_have(own, slot, t, pace.data(), everyone_begins()))
+      in_step = look_at(i, t) && in_step;
+  return in_step;
+}
+
+// at those of one type, some of whom have another pace
+
+bool BlockSteps::look_at(int i, int type)
+{
+  if (everyone_begins() && options.sleep == 0.0 && pair->is_fluid(type)) return false;
+  const int own = pace[i];
+  bool in_step = true;
+  const Stretch near = pair->neighbours(i, type);
+  for (int k = 0; k < near.n; k++) {
+    const int j = near.of[k];
+    if (pace[j] == own) continue;
+    if (pace[j] == Pace::BOUNDARY) {
+      touch(j, TOUCHED);
+      continue;
+    }
+    if (Pace::before(pace[j]) == Pace::SLEEPER) {
+      disturb(i, j);
+      continue;
+    }
     in_step = false;
-    if (Pace::before(pace[j]) != Pace::INACTIVE) return;
+    if (Pace::before(pace[j]) != Pace::INACTIVE) continue;
     const bool slow = Pace::level(own) - Pace::level(pace[j]) > apart;
     touch(j, options.waking && slow && pair->inside_support(i, j) ? TOUCHED | WAKE : TOUCHED);
-  });
+  }
   return in_step;
 }
 

@@ -17,6 +17,7 @@
 
 #include "pointers.h"
 
+#include "atom.h"
 #include "core/criteria.h"
 #include "core/near_lists.h"
 #include "core/time_line.h"
@@ -146,7 +147,7 @@ class BlockSteps : protected Pointers {
   ParticleColumns &rows;
   Place at;
   int apart;    // levels that neighbours may be apart
-  std::vector<int> least_apart;    // by type, from those of other types too
+  std::vector<int> apart_of;    // the same of a pair of types, [(ntypes+1)^2]
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
   double ideal;
@@ -163,18 +164,23 @@ class BlockSteps : protected Pointers {
   std::vector<int> slots;    // of those who need impulses
   std::vector<int> boundaries, impelled;    // owned, the latter in the last evaluation
 
-  int levels_apart(int type, int neighbour) const;
+  int find_apart(int type, int neighbour) const;
+  int levels_apart(int type, int neighbour) const
+  {
+    return apart_of[type * (atom->ntypes + 1) + neighbour];
+  }
   void make_room();
   void know_all();
   bool ends_root() const;
+  bool everyone_begins() const { return at.line.now == 0; }    // a step, but for who sleeps
 
   void choose();
   double want_steps();
   void begin_root(double least);
-  int choose_level(int i);
   void find_step_of_scene();
   void respect_neighbours();
   int vertex_level(int i) const;
+  bool is_too_coarse(int i);
   int level_beside(int i);
   void fall_asleep();
   bool rests_among_others(int i);
@@ -197,6 +203,7 @@ class BlockSteps : protected Pointers {
   void share_equally();
   void prolong(int i, double times);
   bool look_around(int i);
+  bool look_at(int i, int type);
   void disturb(int i, int j);
   void touch(int j, int mark_of_it);
   void wake_marked();

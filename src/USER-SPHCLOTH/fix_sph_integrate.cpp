@@ -146,11 +146,7 @@ void FixSPHIntegrate::init()
   scheme = adaptive ? adaptive->scheme() : said;
   check_scheme();
   pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
-  control.sound_time = std::numeric_limits<double>::infinity();
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (pair->is_fluid(t))
-      control.sound_time = std::min(
-          control.sound_time, 0.5 * pair->support(t) / pair->equation_of_state(t).sound_speed());
+  settle_types();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back(dynamic_cast<FixPBDCloth *>(fix));
@@ -170,6 +166,21 @@ void FixSPHIntegrate::init()
         "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
         "walls out",
         label, group->names[igroup], any_wrong);
+}
+
+void FixSPHIntegrate::settle_types()
+{
+  control.sound_time = std::numeric_limits<double>::infinity();
+  fluids.assign(atom->ntypes + 1, FluidType());
+  for (int t = 1; t <= atom->ntypes; t++) {
+    FluidType &its = fluids[t];
+    its.support = pair->support(t);
+    if (!pair->is_fluid(t)) continue;
+    its.eos = pair->equation_of_state(t);
+    its.sound = its.eos.sound_speed();
+    its.viscosity = pair->viscosity(t);
+    control.sound_time = std::min(control.sound_time, 0.5 * its.support / its.sound);
+  }
 }
 
 void FixSPHIntegrate::check_scheme()
@@ -395,25 +406,50 @@ StepLimit FixSPHIntegrate::tightest_particle()
   const double now = physical_time(update);
   StepLimit tightest;
   particles_limited.fill(0.0);
+  const auto take = [&](const StepLimit &own) {
+    count(own);
+    tightest.tighten(own.dt, own.by);
+  };
+  asked.clear();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    StepLimit own{state[i][OWN_STEP],
-                  !rows.empty() ? static_cast<Limit>(static_cast<int>(rows[BY][i])) : Limit::NONE};
-    if (state[i][ACTIVE] != 0.0 || rows.empty()) {
-      own = particle_limit(lambda, particle_state(i, atom->f[i]));
-      state[i][OWN_STEP] = std::min(own.dt, ceiling);
-      state[i][LAST_UPDATE] = now;
-      if (!rows.empty()) hold(i, own);
-    }
-    count(own);
-    tightest.tighten(own.dt, own.by);
+    if (state[i][ACTIVE] != 0.0 || rows.empty())
+      asked.push_back(i);
+    else
+      take({state[i][OWN_STEP], static_cast<Limit>(static_cast<int>(rows[BY][i]))});
   }
+  const auto force_on = [this](int i, double *f) { std::copy_n(atom->f[i], 3, f); };
+  for_limits(asked, force_on, [&](int i, const StepLimit &own) {
+    state[i][OWN_STEP] = std::min(own.dt, ceiling);
+    state[i][LAST_UPDATE] = now;
+    if (!rows.empty()) hold(i, own);
+    take(own);
+  });
   for_vertices([&](int i, const FixPBDCloth &cloth) {
     const StepLimit own = limit_of_vertex(i, cloth);
-    count(own);
-    tightest.tighten(own.dt, own.by);
+    take(own);
   });
   return tightest;
+}
+
+// of the fluid: force_on(i, f), take(i, limit)
+
+template <class Force, class Take>
+void FixSPHIntegrate::for_limits(const std::vector<int> &of, Force force_on, Take take) const
+{
+  StepStates states;
+  StepLimits limits;
+  const int n = static_cast<int>(of.size());
+  for (int from = 0; from < n; from += StepStates::MOST) {
+    const int *some = of.data() + from, m = std::min(n - from, StepStates::MOST);
+    for (int k = 0; k < m; k++) {
+      double f[3];
+      force_on(some[k], f);
+      states.set(k, particle_state(some[k], f));
+    }
+    particle_limits(lambda, states, m, limits);
+    for (int k = 0; k < m; k++) take(some[k], limits[k]);
+  }
 }
 
 // those that move
@@ -435,19 +471,28 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
    steps in powers of two
 ------------------------------------------------------------------------- */
 
-StepLimit FixSPHIntegrate::bounded_limit(int i, const double *f, double before) const
+double FixSPHIntegrate::find_steps(const std::vector<int> &of, const double *const *external,
+                                   double *dt, double *by) const
 {
-  const StepLimit wanted = particle_limit(lambda, particle_state(i, f));
-  const StepLimit step = bounded_step(wanted, before, growth, floor, ceiling);
-  if (is_too_short(step))
-    rank_error(lmp, FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
-  return step;
+  double least = std::numeric_limits<double>::infinity();
+  const auto force_on = [&](int i, double *f) {
+    for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + external[d][i];
+  };
+  for_limits(of, force_on, [&](int i, const StepLimit &wanted) {
+    const StepLimit step = bounded_step(wanted, dt[i], growth, floor, ceiling);
+    if (is_too_short(step))
+      rank_error(lmp, FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
+    dt[i] = step.dt;
+    by[i] = static_cast<double>(step.by);
+    least = std::min(least, step.dt);
+  });
+  return least;
 }
 
 double FixSPHIntegrate::sound_time(int i) const
 {
-  const int type = atom->type[i];
-  return pair->support(type) / pair->equation_of_state(type).sound_speed();
+  const FluidType &fluid = fluids[atom->type[i]];
+  return fluid.support / fluid.sound;
 }
 
 double FixSPHIntegrate::acceleration(int i, double by) const
@@ -527,7 +572,7 @@ inline double FixSPHIntegrate::speed_and_force(int i, const double *f, StepState
   const double mass = atom_mass(atom, i);
   const double *v = atom->v[i];
   const double to_accel = force->ftm2v / mass;
-  s.support = pair->support(atom->type[i]);
+  s.support = fluids[atom->type[i]].support;
   s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   s.accel_sq = to_accel * to_accel * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
   return mass;
@@ -537,13 +582,13 @@ inline StepState FixSPHIntegrate::particle_state(int i, const double *f) const
 {
   StepState s{};
   speed_and_force(i, f, s);
-  const Tait &eos = pair->equation_of_state(atom->type[i]);
+  const FluidType &fluid = fluids[atom->type[i]];
   s.rho = atom->rho[i];
-  s.nu = pair->viscosity(atom->type[i]);
-  s.sound = eos.sound_speed(s.rho);
+  s.nu = fluid.viscosity;
+  s.sound = fluid.sound * fluid.eos.stiffening(s.rho);
   if (lambda.relative > 0.0) s.approach = pair->approach_speed(i);
   const bool flies = pair->pressure_term()[i] == 0.0;
-  if (flies) s.until_pressed = until_pressed(i, eos.rho0 - s.rho, s.sound);
+  if (flies) s.until_pressed = until_pressed(i, fluid.eos.rho0 - s.rho, s.sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!flies || scheme == SteppingScheme::INDIVIDUAL) s.drho = atom->drho[i];
   return s;
@@ -556,7 +601,7 @@ inline StepState FixSPHIntegrate::particle_state(int i, const double *f) const
 double FixSPHIntegrate::until_pressed(int i, double gap, double sound) const
 {
   const double alone = time_to_cross(gap, atom->drho[i], 0.0);
-  const double smoothing = 0.5 * pair->support(atom->type[i]);
+  const double smoothing = 0.5 * fluids[atom->type[i]].support;
   const double by_sound = lambda.acoustic * smoothing / sound;
   if (scheme == SteppingScheme::GLOBAL || 0.5 * alone <= by_sound || ceiling <= by_sound)
     return alone;
@@ -816,5 +861,5 @@ int FixSPHIntegrate::maxsize_restart() { return rows.empty() ? 1 : 1 + N_COLUMNS
 double FixSPHIntegrate::memory_usage()
 {
   return static_cast<double>(sizeof(double)) * N_COLUMNS * atom->nmax + rows.bytes() +
-      blocks->bytes();
+      blocks->bytes() + bytes_of(asked);
 }

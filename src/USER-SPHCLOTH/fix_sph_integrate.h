@@ -68,11 +68,13 @@ class FixSPHIntegrate : public Fix {
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();
 
-  // What BlockSteps asks.  The step that particle i allows, between floor and ceiling, under a force, after
-  // a step `before` (0: none); what it is given; the ceiling; when output is due next; the same for vertices
-  // of cloth, 0 for what is none.
+  // What BlockSteps asks.  The steps that particles allow, between floor and ceiling, under forces that have these
+  // beside f (three columns), and by which limits: dt has the steps before (0: none), and then theirs; the least
+  // of them.  What one is given; the ceiling; when output is due next; the same for vertices of cloth, 0 for
+  // what is none.
   bool wants_force() const { return lambda.force > 0.0; }
-  sphcloth::StepLimit bounded_limit(int i, const double *f, double before) const;
+  double find_steps(const std::vector<int> &of, const double *const *external, double *dt,
+                    double *by) const;
   void set_own_step(int i, double dt, double now)
   {
     state[i][OWN_STEP] = dt;
@@ -105,6 +107,13 @@ class FixSPHIntegrate : public Fix {
 
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
+  std::vector<int> asked;    // for their limits
+  struct FluidType {    // the support of all types, the rest of fluids
+    double support = 0.0, viscosity = 0.0, sound = 0.0;
+    sphcloth::Tait eos;
+  };
+  std::vector<FluidType> fluids;    // by type
+  void settle_types();
 
   // per particle with steps of its own, empty otherwise: BlockSteps::Column, or, of the last update of
   // individual steps, dv/dt, d rho/dt, its own limit
@@ -138,6 +147,8 @@ class FixSPHIntegrate : public Fix {
   void take_block_step();
   sphcloth::StepLimit tightest_anywhere();
   sphcloth::StepLimit tightest_particle();
+  template <class Force, class Take>
+  void for_limits(const std::vector<int> &of, Force force_on, Take take) const;
   void count(const sphcloth::StepLimit &own);
   void count_blocks();
   template <class Do> void for_vertices(Do something) const;

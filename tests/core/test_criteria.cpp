@@ -139,3 +139,31 @@ CASE("(15): whole steps, rounded down, at least one")
   CHECK(whole_steps(0.0, 0.003) == 1);
   CHECK(whole_steps(1e300, 1e-300) > 1000000);
 }
+
+CASE("limits of many particles at once are those of each")
+{
+  StepCoefficients lambda, off{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {}};
+  lambda.relative = 0.3;
+  constexpr int N = StepStates::MOST - 3;    // does not fill the last vector
+  StepStates states;
+  for (int k = 0; k < N; k++) {
+    const double on = k % 5 ? 1.0 : 0.0;
+    states.set(k,
+               {0.1, 0.1 * k, on * k * k, k % 8 ? 0.1 : 20.0, 0.01 * (k % 7), 1000.0,
+                on * (100.0 * k - 3000.0), on * 0.2 * k, k % 3 ? 0.0 : 0.004});
+  }
+  std::set<Limit> by;
+  for (const StepCoefficients &of : {lambda, off}) {
+    StepLimits limits;
+    limits.dt[N] = -1.0;
+    particle_limits(of, states, N, limits);
+    for (int k = 0; k < N; k++) {
+      const StepLimit one = particle_limit(of, states[k]);
+      CHECK(limits[k].dt == one.dt);
+      CHECK(limits[k].by == one.by);
+      by.insert(one.by);
+    }
+    CHECK(limits.dt[N] == -1.0);
+  }
+  CHECK(by.size() >= 5);
+}

@@ -14,6 +14,8 @@
 #include <limits>
 #include <optional>
 
+#include "simd.h"
+
 namespace sphcloth {
 
 // those of a particle or a vertex, then those of the step
@@ -99,28 +101,75 @@ struct StepLimit {
   }
 };
 
-// (13) of the paper, extended; infinite for a particle at rest without pressure
+// (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches, as
+// vectors want it.
 
-inline StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
+SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
 {
-  StepLimit limit;
+  constexpr double NEVER = std::numeric_limits<double>::infinity();
+  const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : NEVER; };
+  const auto with = [](double coefficient, double dt) { return coefficient > 0.0 ? dt : NEVER; };
   const double smoothing = 0.5 * s.support;
-  if (lambda.velocity > 0.0 && s.speed_sq > 0.0)
-    limit.tighten(lambda.velocity * s.support / std::sqrt(s.speed_sq), Limit::VELOCITY);
-  if (lambda.force > 0.0 && s.accel_sq > 0.0)
-    limit.tighten(lambda.force * std::sqrt(s.support / std::sqrt(s.accel_sq)), Limit::FORCE);
+  StepLimit limit;
+  limit.tighten(with(lambda.velocity, ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq))),
+                Limit::VELOCITY);
+  limit.tighten(
+      with(lambda.force, lambda.force * std::sqrt(ratio(s.support, std::sqrt(s.accel_sq)))),
+      Limit::FORCE);
   // in free flight there is no sound, until the particle is compressed; half of the way to there
   // leaves time for what the flight does not know
-  if (lambda.acoustic > 0.0 && s.sound > 0.0)
-    limit.tighten(std::max(lambda.acoustic * smoothing / s.sound, 0.5 * s.until_pressed),
-                  Limit::ACOUSTIC);
-  if (lambda.viscous > 0.0 && s.nu > 0.0)
-    limit.tighten(lambda.viscous * smoothing * smoothing / s.nu, Limit::VISCOUS);
-  if (lambda.density > 0.0 && s.drho != 0.0)
-    limit.tighten(lambda.density * s.rho / std::fabs(s.drho), Limit::DENSITY);
-  if (lambda.relative > 0.0 && s.approach > 0.0)
-    limit.tighten(lambda.relative * s.support / s.approach, Limit::RELATIVE);
+  limit.tighten(with(lambda.acoustic,
+                     std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
+                Limit::ACOUSTIC);
+  limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
+                Limit::VISCOUS);
+  limit.tighten(with(lambda.density, ratio(lambda.density * s.rho, std::fabs(s.drho))),
+                Limit::DENSITY);
+  limit.tighten(with(lambda.relative, ratio(lambda.relative * s.support, s.approach)),
+                Limit::RELATIVE);
   return limit;
+}
+
+// The same of many particles at once
+
+struct StepStates {
+  static constexpr int MOST = 64;
+  alignas(64) double support[MOST], speed_sq[MOST], accel_sq[MOST], sound[MOST], nu[MOST],
+      rho[MOST], drho[MOST], approach[MOST], until_pressed[MOST];
+
+  SPHCLOTH_INLINE void set(int k, const StepState &s)
+  {
+    support[k] = s.support;
+    speed_sq[k] = s.speed_sq;
+    accel_sq[k] = s.accel_sq;
+    sound[k] = s.sound;
+    nu[k] = s.nu;
+    rho[k] = s.rho;
+    drho[k] = s.drho;
+    approach[k] = s.approach;
+    until_pressed[k] = s.until_pressed;
+  }
+  SPHCLOTH_INLINE StepState operator[](int k) const
+  {
+    return {support[k], speed_sq[k], accel_sq[k], sound[k],        nu[k],
+            rho[k],     drho[k],     approach[k], until_pressed[k]};
+  }
+};
+
+struct StepLimits {
+  alignas(64) double dt[StepStates::MOST], by[StepStates::MOST];
+  StepLimit operator[](int k) const { return {dt[k], static_cast<Limit>(static_cast<int>(by[k]))}; }
+};
+
+SPHCLOTH_MULTIVERSION inline void
+particle_limits(const StepCoefficients &lambda, const StepStates &states, int n, StepLimits &limits)
+{
+#pragma omp simd
+  for (int k = 0; k < n; k++) {
+    const StepLimit limit = particle_limit(lambda, states[k]);
+    limits.dt[k] = limit.dt;
+    limits.by[k] = static_cast<double>(limit.by);
+  }
 }
 
 // of a vertex of a cloth, whose sound is that of the fluid that wets it

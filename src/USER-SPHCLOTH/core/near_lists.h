@@ -21,6 +21,7 @@
 
 #include "closing.h"
 #include "neighbours.h"
+#include "survey.h"
 
 namespace sphcloth {
 
@@ -49,14 +50,14 @@ class NearLists {
     set_limits(support, most);
     set_blocks(x, type, n_all, most, motion);
     const std::vector<double> near = near_fronts();
-    outer.build(x, type, n_owned, n_all, n_types, far.data(), {near.data(), closing.block_of()},
+    outer.build(x, type, n_owned, n_all, n_types, far.data(), {near.data(), blocks.of_particle()},
                 in_front, sides);
     until.resize(in_front.size());
     slot_of.resize(n_owned);
     block.resize(outer.slots());
     for (int slot = 0; slot < outer.slots(); slot++) {
       slot_of[outer.at(slot)] = slot;
-      block[slot] = closing.block_of()[outer.at(slot)];
+      block[slot] = blocks.of_particle()[outer.at(slot)];
     }
     current.assign(outer.slots(), 1);
     evaluation = 1;
@@ -96,26 +97,26 @@ class NearLists {
     if (current[slot] == evaluation) return;
     current[slot] = static_cast<std::uint8_t>(evaluation);
     const int t = type_of(slot);
-    const Front *fronts = &at(block[slot], t, 1);
+    const Front *of_block = &at(block[slot], t, 1);
     for (int other = 1; other <= types; other++)
-      if (fronts[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
+      if (of_block[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
   }
 
-  // Of a value of each particle: the greatest among all neighbours of one, and whether all of them
-  // have the same.
-  int greatest(int slot, const int *value)
+  // Of a value of each particle: is that of a neighbour of one type above a limit?  Do all of these have
+  // the same?  What many are about to ask may be found for whole blocks of space before; `surveyed` says
+  // that this was the last survey.
+  void take_survey(const int *value) { survey.take(value); }
+  bool any_above(int most, int slot, int other, const int *value, bool surveyed)
   {
+    if (surveyed && survey.greatest(block[slot], other) <= most) return false;
     refresh(slot);
-    int most = std::numeric_limits<int>::min();
-    for (int t = 1; t <= types; t++) most = std::max(most, greatest((*this)(slot, t), value));
-    return most;
+    return greatest((*this)(slot, other), value) > most;
   }
-  bool all_have(int same, int slot, const int *value)
+  bool all_have(int same, int slot, int other, const int *value, bool surveyed)
   {
+    if (surveyed && survey.all_have(same, block[slot], other)) return true;
     refresh(slot);
-    for (int t = 1; t <= types; t++)
-      if (differing((*this)(slot, t), value, same)) return false;
-    return true;
+    return !differing((*this)(slot, other), value, same);
   }
 
   // owned particles by type and in space, see NeighbourLists
@@ -132,8 +133,8 @@ class NearLists {
 
   double bytes() const
   {
-    return outer.bytes() + closing.bytes() +
-        bytes_of(held, until, in_front, slot_of, block, current, blocks, due, due_block);
+    return outer.bytes() + blocks.bytes() + closing.bytes() + survey.bytes() +
+        bytes_of(held, until, in_front, slot_of, block, current, fronts, due, due_block);
   }
 
  private:
@@ -160,13 +161,15 @@ class NearLists {
   std::vector<double> until;    // [slot][type], reading of the odometer
   std::vector<std::uint8_t> current;    // [slot], the evaluation in which it was asked for
   std::vector<int> block;    // [slot]
-  std::vector<Front> blocks;    // [block][type][type]
+  std::vector<Front> fronts;    // [block][type][type]
   std::vector<char> due, due_block;    // of these, and of blocks: lists that are made anew
   // of a pair of types: support, 0: never; reach of the lists; their skin, and how much of it may be used up; cost
   // of finding a front
   std::vector<double> limit, far, widest, lasting, cost;
   std::vector<double> interval;    // of a type
-  Closing closing;
+  Blocks blocks;
+  Closing closing{blocks};
+  Survey survey{blocks};
   AlignedVector<Closing::Place> held;    // positions from which fronts are found
   std::array<double, 3> centre{};
   AlignedVector<float> key;
@@ -180,16 +183,16 @@ class NearLists {
 
   std::size_t of(int slot, int t) const { return static_cast<std::size_t>(slot) * types + t - 1; }
   int pair(int t, int other) const { return t * (types + 1) + other; }
-  Front &at(int b, int t, int other) { return blocks[(b * types + t - 1) * types + other - 1]; }
+  Front &at(int b, int t, int other) { return fronts[(b * types + t - 1) * types + other - 1]; }
   const Front &at(int b, int t, int other) const
   {
-    return blocks[(b * types + t - 1) * types + other - 1];
+    return fronts[(b * types + t - 1) * types + other - 1];
   }
   template <class Do> void for_each_front(Do something)
   {
-    for (int b = 0; b < closing.blocks(); b++)
+    for (int b = 0; b < blocks.count(); b++)
       for (int t = 1; t <= types; t++) {
-        if (!closing.any(b, t)) continue;
+        if (blocks.in(blocks.row(b, t)).empty()) continue;
         for (int other = 1; other <= types; other++)
           if (limit[pair(t, other)] > 0.0) something(at(b, t, other), b, t, other);
       }
@@ -215,8 +218,8 @@ class NearLists {
   {
     constexpr double ROUNDING = 1e-6;
     const double longest = *std::max_element(limit.begin(), limit.end()) + most;
-    closing.divide(x, type, n_all, types, longest * (1.0 + ROUNDING));
-    blocks.assign(static_cast<std::size_t>(closing.blocks()) * types * types, Front());
+    blocks.divide(x, type, n_all, types, longest * (1.0 + ROUNDING));
+    fronts.assign(static_cast<std::size_t>(blocks.count()) * types * types, Front());
     if (motion.v) closing.measure(motion.v, {0.0, 0.0, 0.0}, nullptr);
     for_each_front([&](Front &front, int b, int t, int other) {
       const double way = motion.v ? closing.between(b, t, other) * motion.step : 0.0;
@@ -231,17 +234,17 @@ class NearLists {
   void renew(const double *x, const int *type, int n_owned, int n_all, const Sides *sides)
   {
     const std::vector<double> near = near_fronts();
-    due.assign(blocks.size(), false);
-    due_block.assign(closing.blocks(), false);
+    due.assign(fronts.size(), false);
+    due_block.assign(blocks.count(), false);
     for_each_front([&](Front &front, int b, int t, int other) {
       if (front.held <= front.lists_until) return;
       front.lists_until = front.held + lasting[pair(t, other)];
-      due[&front - blocks.data()] = due_block[b] = true;
+      due[&front - fronts.data()] = due_block[b] = true;
     });
     const auto is_due = [this](int slot, int t, int other) {
-      return due_block[block[slot]] && due[&at(block[slot], t, other) - blocks.data()];
+      return due_block[block[slot]] && due[&at(block[slot], t, other) - fronts.data()];
     };
-    outer.renew(x, type, n_owned, n_all, types, far.data(), {near.data(), closing.block_of()},
+    outer.renew(x, type, n_owned, n_all, types, far.data(), {near.data(), blocks.of_particle()},
                 in_front, sides, is_due);
     note_lists(is_due);
   }
@@ -249,7 +252,7 @@ class NearLists {
   // up to where particles are in front: [block][(n_types+1)^2]
   std::vector<double> near_fronts()
   {
-    std::vector<double> near(closing.blocks() * limit.size());
+    std::vector<double> near(blocks.count() * limit.size());
     for_each_front([&](const Front &front, int b, int t, int other) {
       near[b * limit.size() + pair(t, other)] = limit[pair(t, other)] + front.skin;
     });

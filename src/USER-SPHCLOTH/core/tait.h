@@ -36,13 +36,14 @@ struct Tait {
         (std::pow(ratio, gamma - 1.0) / (gamma - 1.0) + 1.0 / ratio - gamma / (gamma - 1.0));
   }
 
-  double sound_speed(double rho) const
+  double sound_speed(double rho) const { return sound_speed() * stiffening(rho); }
+
+  // sound speed over that at rest
+  double stiffening(double rho) const
   {
     const double ratio = rho / rho0;
     // water's exponent needs no pow()
-    const double stretch = gamma == 7.0 ? ratio * ratio * ratio
-                                        : std::pow(ratio, 0.5 * (gamma - 1.0));
-    return sound_speed() * stretch;
+    return gamma == 7.0 ? ratio * ratio * ratio : std::pow(ratio, 0.5 * (gamma - 1.0));
   }
 
   // A relative fluctuation eta needs c0 = v_ref / sqrt(eta), v_ref the larger of the expected

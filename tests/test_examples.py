@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from sphcloth import ClothMesh
 from sphcloth.log import ThermoTable
@@ -73,6 +74,11 @@ def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):
     assert log["v_contacts"][-1] > 0
     every_step = (log["v_fluid"][1:] * np.diff(log["Step"])).sum()
     assert log["v_updates"][-1] < 0.7 * every_step
+    frames = Trajectory(tmp_path / "two_resolutions.lammpstrj", tmp_path / "log.lammps")
+    densities = [frame.columns["rho"][np.isin(frame.types, (1, 2))] for frame in frames]
+    dense = np.mean(np.concatenate(densities) > 1010)
+    assert 0 < dense < 1
+    assert summary["compressed"] == pytest.approx(dense)
 
 
 def test_the_shirt_is_what_the_commands_of_its_page_make(tmp_path):

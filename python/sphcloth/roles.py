@@ -19,12 +19,14 @@ class Roles:
         walls: types of boundary particles.
         mesh: triangles of cloth and obstacles; None if there are none.
         volume: type of water -> volume of a particle at rest, an area in two dimensions.
+        rest_density: type of water -> density at rest.
     """
 
     fluid: frozenset[int] | None = None
     walls: frozenset[int] = frozenset()
     mesh: ClothMesh | None = None
     volume: dict[int, float] = field(default_factory=dict)
+    rest_density: dict[int, float] = field(default_factory=dict)
 
     @classmethod
     def read(cls, data: Path) -> Roles:
@@ -48,7 +50,7 @@ class Roles:
             for kind, rho in fluid.items()
             if str(kind) in masses
         }
-        return cls(frozenset(fluid) if fluid else None, walls, mesh, volume)
+        return cls(frozenset(fluid) if fluid else None, walls, mesh, volume, fluid)
 
     @classmethod
     def beside(cls, dump: Path) -> Roles:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -40,6 +40,7 @@ class Summary:
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
         mass_defect: largest abs(poured - drained - present) at any time.
         deviation: largest abs(rho - rho0) / rho0 under pressure.
+        compressed: share of the water, of all frames, that is denser than at rest by more than 1 %.
         momentum_defect: largest sum of the internal forces over the total weight.
         contact_share: part of the wall time that contact with the cloth took.
         particle_updates: number of times a fluid particle was stepped.
@@ -58,6 +59,7 @@ class Summary:
     crossing_steps: list[int]
     mass_defect: int | None
     deviation: float | None
+    compressed: float | None
     momentum_defect: float | None
     contact_share: float | None
     particle_updates: float | None
@@ -95,6 +97,7 @@ class Summary:
             ("crossed the sheet", _must_be_zero(self.crossed)),
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
             ("largest density deviation", _text(self.deviation, "{:.2%}")),
+            ("water denser by more than 1 %", _text(self.compressed, "{:.1%}")),
             ("momentum defect / weight", _text(self.momentum_defect, "{:.1e}")),
             ("share of contact in the run", _text(self.contact_share, "{:.1%}")),
             ("steps", _text(self.steps)),
@@ -128,7 +131,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
     roles = Roles.read(folder / f"{name}.data")
     cast = Cast.of(samples(trajectory), roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
-    water = Water.of(trajectory, cast, table if can_balance else None)
+    water = Water.of(trajectory, cast, table if can_balance else None, roles.rest_density)
     poured = _last_count(table, "v_poured")
     can_count = "v_updates" in table or "v_fluid" in table
     updates = metrics.particle_updates(table) if can_count else None
@@ -142,6 +145,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
         crossing_steps=water.crossing_steps,
         mass_defect=metrics.mass_balance(table) if can_balance else None,
         deviation=_largest(table, "v_deviation"),
+        compressed=water.compressed,
         momentum_defect=_largest(table, "v_momentum"),
         contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
         particle_updates=updates,
@@ -160,27 +164,65 @@ class Water:
         on_sheet: particles with the sheet below them in the last frame.
         crossed: particles that went through the sheet.
         crossing_steps: the steps of the frames after that, without repeats.
+        compressed: share of the water, of all frames, that is denser than at rest by more than
+            1 %; None if the dump does not tell.
     """
 
     on_sheet: int | None = None
     crossed: int | None = None
     crossing_steps: list[int] = field(default_factory=list)
+    compressed: float | None = None
 
     @classmethod
-    def of(cls, trajectory: Trajectory, cast: Cast, table: ThermoTable | None) -> Water:
+    def of(
+        cls,
+        trajectory: Trajectory,
+        cast: Cast,
+        table: ThermoTable | None,
+        rest_density: Mapping[int, float],
+    ) -> Water:
         """Follow all water through a dump; with a table, check that all of it is there."""
         if cast.mesh is None or not cast.fluid:
             return cls()
         last, mesh = trajectory[-1], cast.mesh
         above = [metrics.above_sheet(mesh, last, kind) for kind in cast.fluid]
-        passes = [
-            metrics.crossings(mesh, _counted(trajectory, table, cast.fluid), kind)
-            for kind in cast.fluid
-        ]
+        densities = Densities(rest_density)
+        passes = []
+        for kind in cast.fluid:
+            frames = _counted(trajectory, table, cast.fluid)
+            seen = frames if passes else densities.watch(frames)
+            passes.append(metrics.crossings(mesh, seen, kind))
         steps = np.unique(np.concatenate([one.steps for one in passes]))
         return cls(
-            int(sum(map(np.count_nonzero, above))), sum(one.count for one in passes), steps.tolist()
+            int(sum(map(np.count_nonzero, above))),
+            sum(one.count for one in passes),
+            steps.tolist(),
+            densities.compressed,
         )
+
+
+@dataclass
+class Densities:
+    """How much water of the frames that pass is compressed."""
+
+    rest: Mapping[int, float]
+    dense: float = 0.0
+    particles: int = 0
+
+    def watch(self, frames: Iterable[Frame]) -> Iterator[Frame]:
+        """Pass the frames on."""
+        for frame in frames:
+            for kind, rest in self.rest.items():
+                n = int(np.count_nonzero(frame.types == kind))
+                if n and "rho" in frame.columns:
+                    self.dense += n * metrics.compressed_share(frame, rest, kind)
+                    self.particles += n
+            yield frame
+
+    @property
+    def compressed(self) -> float | None:
+        """Share of the water that is denser than at rest by more than 1 %."""
+        return self.dense / self.particles if self.particles else None
 
 
 def _counted(

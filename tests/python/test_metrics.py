@@ -134,6 +134,15 @@ def test_density_deviation_counts_both_signs() -> None:
     assert metrics.density_deviation(frame, 1000.0) == pytest.approx(0.02)
 
 
+def test_compressed_share_counts_what_is_denser_by_more_than_asked() -> None:
+    frame = make_frame(0, [[0, 0, k] for k in range(4)], SHEET)
+    sheet = np.full(len(SHEET), 2000.0)
+    frame.columns["rho"] = np.concatenate([sheet, [1011.0, 1009.0, 980.0, 1030.0]])
+    assert metrics.compressed_share(frame, 1000.0) == 0.5
+    assert metrics.compressed_share(frame, 1000.0, above=0.02) == 0.25
+    assert np.isnan(metrics.compressed_share(frame, 1000.0, fluid_type=9))
+
+
 def test_balances_come_from_the_thermo_columns() -> None:
     counts = {"Step": [0, 10, 20], "v_poured": [0, 8, 8], "v_drained": [0, 1, 2]}
     columns = {name: np.array(values, float) for name, values in counts.items()}

@@ -18,13 +18,14 @@ from sphcloth.metrics.motion import (
     potential_energy,
 )
 from sphcloth.metrics.passages import Crossings, above_sheet, crossings
-from sphcloth.metrics.water import density_deviation, front, held_volume
+from sphcloth.metrics.water import compressed_share, density_deviation, front, held_volume
 
 __all__ = [
     "Crossings",
     "above_sheet",
     "angular_momentum",
     "check_fluid_count",
+    "compressed_share",
     "crossings",
     "density_deviation",
     "edge_strain",

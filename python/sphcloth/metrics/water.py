@@ -25,6 +25,23 @@ def density_deviation(frame: Frame, rest_density: float, fluid_type: int = 1) ->
     return float(np.max(np.abs(density / rest_density - 1), initial=0.0))
 
 
+def compressed_share(
+    frame: Frame, rest_density: float, fluid_type: int = 1, *, above: float = 0.01
+) -> float:
+    """Return the share of the water in a frame that is denser than at rest by more than ``above``.
+
+    What :func:`density_deviation` finds may be that of a single particle in a splash. NaN where
+    there is no water.
+
+    Raises:
+        UserError: the dump has no column ``rho``.
+    """
+    density = frame.select(fluid_type).vectors("rho")[:, 0]
+    if not len(density):
+        return float("nan")
+    return float(np.mean(density > (1 + above) * rest_density))
+
+
 def front(
     frame: Frame,
     axis: Literal["x", "y", "z"] = "x",

@@ -509,6 +509,15 @@ def tradeoff(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="Set a variable in all runs."),
     ] = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=A,B,...",
+            help="Run all, the reference too, with each of these values of a variable, and take "
+            "means: for scenes where single runs differ by chance. A setting that fails once has "
+            "failed.",
+        ),
+    ] = None,
     reference: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="Settings of the run that is taken for exact."),
@@ -571,6 +580,7 @@ def tradeoff(
         parse_settings(reference or [], "--reference"),
         error,
         quick,
+        command.parse_variations(over or [], "--over"),
     )
     folder = out or Path(f"sphcloth-tradeoff-{found.name}")
     many = command.number_of_jobs(jobs, ranks)

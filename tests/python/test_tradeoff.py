@@ -18,7 +18,7 @@ from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 from sphcloth.tradeoff import runs
 from sphcloth.tradeoff.command import all_scenes, find_scene, parse_quantity, parse_variations
-from sphcloth.tradeoff.front import Point, cheapest, choices, pareto
+from sphcloth.tradeoff.front import Point, cheapest, choices, mean, pareto
 from sphcloth.tradeoff.report import show, write_all
 from sphcloth.tradeoff.runs import count_updates
 from sphcloth.tradeoff.scene import AS_WRITTEN, SCHEMES, Clock, History, Quantity, Scene, column
@@ -104,6 +104,17 @@ def test_a_failed_run_is_on_no_front_and_never_the_cheapest() -> None:
     assert pareto([failed, well], "q", "updates") == [well]
     assert cheapest([failed, well], "q", "updates", 0.01) == well
     assert cheapest([failed], "q", "updates", 0.01) is None
+
+
+def test_means_are_over_all_runs_and_one_failure_is_one_too_many() -> None:
+    points = [point("a", 4, 0.1, 2.0), point("a", 6, 0.3, 3.0)]
+    both = mean(points)
+    assert (both.updates, both.wall_s, both.steps) == (5, 2.5, 1)
+    assert both.errors == {"q": pytest.approx(0.2)}
+    assert both.worst == {"q": 0.3}
+    failed = mean([*points, Point("a", "4", {}, {}, "blew up")])
+    assert failed.failure == "1 of 3 runs: blew up"
+    assert pareto([failed], "q", "updates") == []
 
 
 def test_savings_are_against_the_cheapest_baseline_within_the_error() -> None:
@@ -236,6 +247,28 @@ def test_a_spring_converges_to_second_order(spring: Path, tmp_path: Path, quiet:
     assert [each.updates for each in found.points] == [10, 30]
     assert found.best("updates") == AS_WRITTEN
     assert found.choices("updates")[AS_WRITTEN].point == coarse
+
+
+def test_errors_are_means_over_several_begins(spring: Path, tmp_path: Path, quiet: Console) -> None:
+    scene = find_scene(str(spring), ["v_x"], False)
+    asked = {"vary": {"dt": ("0.2", "0.05")}, "reference": {"dt": "0.005"}}
+    single = [
+        study(scene, plan(**asked, settings={"last": last}), tmp_path / last, quiet)
+        for last in ("2.0", "3.0")
+    ]
+    both = study(scene, plan(**asked, over={"last": ("2.0", "3.0")}), tmp_path / "both", quiet)
+    for place, merged in enumerate(both.points):
+        errors = [each.points[place].errors["v_x"] for each in single]
+        assert errors[0] != errors[1]
+        assert merged.errors["v_x"] == pytest.approx(np.mean(errors), rel=1e-12)
+        assert merged.worst["v_x"] == max(errors)
+        assert merged.updates == np.mean([each.points[place].updates for each in single])
+    assert both.as_json()["over"] == {"last": ["2.0", "3.0"]}
+    write_all(both, tmp_path)
+    rows = list(csv.DictReader((tmp_path / "spring.csv").open()))
+    assert float(rows[1]["worst_v_x"]) == both.points[0].worst["v_x"]
+    with pytest.raises(UserError, match="--over dt: it is varied as well"):
+        study(scene, plan(**asked, over={"dt": ("1",)}), tmp_path / "none", quiet)
 
 
 def test_a_run_that_blows_up_is_a_result(spring: Path, tmp_path: Path, quiet: Console) -> None:

@@ -81,14 +81,14 @@ def parse_quantity(text: str) -> Quantity:
     return Quantity(name, name, column(name), norm or "rms")
 
 
-def parse_variations(texts: Sequence[str]) -> dict[str, tuple[str, ...]]:
+def parse_variations(texts: Sequence[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:
     """Turn ``name=a,b,c`` texts into a dictionary; UserError for any other form."""
     found = {}
     for text in texts:
         name, equals, values = text.partition("=")
         words = tuple(word.strip() for word in values.split(","))
         if not (name.isidentifier() and equals and all(words)):
-            raise UserError(f"--vary {text}: expected NAME=A,B,...")
+            raise UserError(f"{option} {text}: expected NAME=A,B,...")
         found[name] = words
     return found
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from statistics import fmean
 
 # the honest baselines: what a user would take who does not want individual steps
 BASELINES = ("constant", "global")
@@ -23,6 +24,7 @@ class Point:
         updates: how often a particle was updated.
         steps: number of time steps.
         wall_s: wall time of the time loop, s, the shortest if it was measured several times.
+        worst: quantity -> the largest of several errors, where ``errors`` are their means.
     """
 
     scheme: str
@@ -33,6 +35,7 @@ class Point:
     updates: float | None = None
     steps: int | None = None
     wall_s: float | None = None
+    worst: dict[str, float] = field(default_factory=dict)
 
     def cost(self, name: str) -> float:
         """Return one of ``COSTS``; the run must not have failed."""
@@ -51,6 +54,30 @@ class Choice:
 
     point: Point
     saving: dict[str, float | None]
+
+
+def mean(points: Sequence[Point]) -> Point:
+    """Return what one setting costs, and how wrong it is, on average over several runs.
+
+    A setting that fails once has failed.
+    """
+    first, failed = points[0], [point.failure for point in points if point.failure is not None]
+    if len(points) == 1:
+        return first
+    if failed:
+        reason = f"{len(failed)} of {len(points)} runs: {failed[0]}"
+        return Point(first.scheme, first.label, first.values, {}, reason)
+    return Point(
+        first.scheme,
+        first.label,
+        first.values,
+        {name: fmean(point.errors[name] for point in points) for name in first.errors},
+        None,
+        fmean(point.updates for point in points),
+        round(fmean(point.steps for point in points)),
+        fmean(point.wall_s for point in points),
+        {name: max(point.errors[name] for point in points) for name in first.errors},
+    )
 
 
 def pareto(points: Sequence[Point], quantity: str, cost: str) -> list[Point]:

@@ -33,7 +33,10 @@ def write_csv(study: Study, path: Path) -> None:
     fronts = {cost: study.front(cost) for cost in COSTS}
     with path.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
-        heads = [f"error_{name}" for name in quantities] + [f"front_{cost}" for cost in COSTS]
+        heads = [f"error_{name}" for name in quantities]
+        if study.plan.over:
+            heads += [f"worst_{name}" for name in quantities]
+        heads += [f"front_{cost}" for cost in COSTS]
         rows.writerow(["role", "scheme", *names, "steps", *COSTS, *heads, "failure"])
         for role, point in [("reference", study.reference), *(("", p) for p in study.points)]:
             rows.writerow(
@@ -44,6 +47,7 @@ def write_csv(study: Study, path: Path) -> None:
                     point.steps,
                     *(point.cost(cost) for cost in COSTS),
                     *(point.errors.get(name) for name in quantities),
+                    *(point.worst.get(name) for name in quantities if study.plan.over),
                     *(int(point in fronts[cost]) for cost in COSTS),
                     point.failure,
                 ]

@@ -6,7 +6,7 @@ import itertools
 import json
 import shutil
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from rich.console import Console
 from sphcloth.errors import UserError
 from sphcloth.programs import installed_version
 from sphcloth.run import check_no_link
-from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, pareto
+from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, mean, pareto
 from sphcloth.tradeoff.runs import GRACE_SECONDS, PATIENCE, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import History, Quantity, Scene, Values
 
@@ -37,6 +37,7 @@ class Plan:
         reference: settings of the reference that differ from the scene's.
         error: within which the cheapest setting is looked for.
         quick: take the smaller variant.
+        over: name -> values with each of which all is run, such as other begins of a motion.
     """
 
     schemes: tuple[str, ...]
@@ -45,6 +46,14 @@ class Plan:
     reference: Values
     error: float
     quick: bool
+    over: Variations = field(default_factory=dict)
+
+    def starts(self) -> list[Plan]:
+        """Return a plan for each combination of what all is run over."""
+        return [
+            replace(self, settings=dict(self.settings) | values)
+            for values in combinations(self.over)
+        ]
 
 
 @dataclass(frozen=True)
@@ -93,6 +102,7 @@ class Study:
             "quick": self.plan.quick,
             "ranks": self.ranks,
             "settings": dict(self.plan.settings),
+            "over": {name: list(values) for name, values in self.plan.over.items()},
             "quantities": [
                 {"name": each.name, "description": each.description, "norm": each.norm}
                 for each in self.scene.quantities
@@ -152,30 +162,43 @@ def study(
         UserError: an unknown name, nothing to vary, a reference that failed, or a quantity that
             the log does not have.
     """
-    reference, settings = all_settings(scene, plan)
+    starts = [all_settings(scene, each) for each in plan.starts()]
     check_no_link(out / RUNS)
     if fresh:
         shutil.rmtree(out / RUNS, ignore_errors=True)
     workshop = Workshop(scene, out / RUNS, ranks, jobs, console)
-    (first,) = workshop.run([reference])
-    if first.failure is not None:
-        raise UserError(
-            f"the reference run failed: {first.failure} (log: {workshop.folder(reference)})"
-        )
+    references = [reference for reference, _ in starts]
+    firsts = workshop.run(references)
     # a column that is missing is missed here, before all the other runs
+    exact = [
+        _exact(scene, reference, first, workshop)
+        for reference, first in zip(references, firsts, strict=True)
+    ]
+    patience = PATIENCE * jobs * max(first.elapsed_s for first in firsts) + GRACE_SECONDS
+    records = iter(
+        workshop.run([each for _, settings in starts for each in settings], repeat, patience)
+    )
+    at_zero, points, shared = [], [], False
+    for (reference, settings), first, histories in zip(starts, firsts, exact, strict=True):
+        at_zero.append(_point(scene, reference, first, histories, workshop))
+        of_start = [(setting, next(records)) for setting in settings]
+        points.append([_point(scene, *each, histories, workshop) for each in of_start])
+        shared = shared or any(record.side_by_side for _, record in of_start)
+    merged = [mean(each) for each in zip(*points, strict=True)]
+    return Study(scene, plan, ranks, mean(at_zero), merged, shared)
+
+
+def _exact(scene: Scene, reference: Setting, record: Record, workshop: Workshop) -> Histories:
+    """Return what a reference run has found; UserError if it is no good."""
+    if record.failure is not None:
+        raise UserError(
+            f"the reference run failed: {record.failure} (log: {workshop.folder(reference)})"
+        )
     table = workshop.thermo(reference)
     exact = {each.name: each.history(table) for each in scene.quantities}
     if (wrong := _not_a_number(exact)) is not None:
         raise UserError(f"the reference run is no good: {wrong}")
-    patience = PATIENCE * jobs * first.elapsed_s + GRACE_SECONDS
-    records = workshop.run(settings, repeat, patience)
-    points = [
-        _point(scene, setting, record, exact, workshop)
-        for setting, record in zip(settings, records, strict=True)
-    ]
-    at_zero = _point(scene, reference, first, exact, workshop)
-    shared = any(record.side_by_side for record in records)
-    return Study(scene, plan, ranks, at_zero, points, shared)
+    return exact
 
 
 def all_settings(scene: Scene, plan: Plan) -> tuple[Setting, list[Setting]]:
@@ -184,8 +207,15 @@ def all_settings(scene: Scene, plan: Plan) -> tuple[Setting, list[Setting]]:
         ("--vary", plan.vary),
         ("--set", plan.settings),
         ("--reference", plan.reference),
+        ("--over", plan.over),
     ):
         scene.check_names(option, names)
+    for name in plan.over:
+        if name in plan.vary or name in plan.reference:
+            raise UserError(
+                f"--over {name}: it is varied as well: all runs, the reference too, have each of "
+                "its values; leave one out"
+            )
     if not (scene.reference or plan.reference):
         raise UserError("which run is the reference? give --reference NAME=VALUE, such as dt=1e-5")
     values = dict(scene.reference) | dict(plan.reference)

@@ -9,7 +9,7 @@ from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
 from sphcloth.tradeoff.variations import CEILINGS, FORCE
 
 # of the log, s; the settling time is a multiple
-INTERVAL = 0.01
+INTERVAL = 0.03
 COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
 # for schemes in which particles have steps of their own
 UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": CEILINGS}

@@ -425,7 +425,7 @@ def bench(
         str,
         typer.Argument(
             metavar="NAME",
-            help="What to measure: pair, cloth, coupling, watch, messages, peers, size.",
+            help="What to measure: pair, cloth, coupling, watch, messages, peers, size, activity.",
         ),
     ],
     rounds: Annotated[
@@ -449,7 +449,7 @@ def bench(
         typer.Option(
             min=5,
             help="Length of a timed run; for peers in frames of 0.04 s.",
-            show_default="by what is measured, 18 to 60",
+            show_default="by what is measured, 18 to 400",
         ),
     ] = None,
     json_file: JsonFile = None,
@@ -457,6 +457,7 @@ def bench(
     """Measure speed as ratios, side by side in one run, with the spread."""
     import json
 
+    from sphcloth.bench.activity import bench_activity
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
     from sphcloth.bench.messages import bench_messages
@@ -473,6 +474,7 @@ def bench(
         "messages": (bench_messages, 3, 24, 20),
         "peers": (bench_peers, 1, 20, 18),
         "size": (bench_size, 5, 100, 30),
+        "activity": (bench_activity, 5, 32, 400),
     }
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")

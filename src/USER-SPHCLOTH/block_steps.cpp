@@ -236,7 +236,7 @@ void BlockSteps::respect_neighbours()
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
 }
 
-// for a neighbour, or for somebody a little outside the support
+// for a neighbour, or for somebody a little outside the support?
 
 bool BlockSteps::is_too_coarse(int i)
 {
@@ -630,7 +630,8 @@ bool BlockSteps::look_around(int i)
   return in_step;
 }
 
-// at those of one type, some of whom have another pace
+// at those of one type, some of whom have another pace.  Where everybody begins a step nobody waits for
+// an impulse.
 
 bool BlockSteps::look_at(int i, int type)
 {

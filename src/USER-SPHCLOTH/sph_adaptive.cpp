@@ -16,7 +16,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
-#include "pair.h"
+#include "pair_sph_tait.h"
 #include "timer.h"
 #include "update.h"
 
@@ -149,12 +149,21 @@ void SPHAdaptive::evaluate()
     modify->pre_reverse(eflag, vflag);
     timer->stamp(Timer::MODIFY);
   }
-  if (force->newton) {
+  if (ghosts_have_forces()) {
     comm->reverse_comm();
     timer->stamp(Timer::COMM);
   }
   if (modify->n_post_force_any) modify->post_force(vflag);
   timer->stamp(Timer::MODIFY);
+}
+
+// The pair style gives none to them.
+
+bool SPHAdaptive::ghosts_have_forces() const
+{
+  if (!force->newton) return false;
+  return atom->molecular != Atom::ATOMIC || kspace_compute_flag || modify->n_pre_force ||
+      modify->n_pre_reverse || !dynamic_cast<PairSPHTait *>(force->pair);
 }
 
 // lines 17, 18 and 34: the step is booked and the next one chosen

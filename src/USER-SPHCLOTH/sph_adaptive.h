@@ -29,6 +29,7 @@ class SPHAdaptive : public Verlet {
   void move();
   void communicate();
   void evaluate();
+  bool ghosts_have_forces() const;
   void finish();
 };
 

@@ -8,9 +8,11 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
+from sphcloth.bench.activity import Steps, bench_activity, usual_steps
 from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.messages import Cluster, Counter, Sent, expect
 from sphcloth.bench.size import bench_size, edges, figures_of
@@ -165,3 +167,25 @@ def test_a_small_series_from_end_to_end() -> None:
         steps = result["codes"][code]["step_ns"]
         assert len(steps) == 5 and all(step["value"] > 0 for step in steps)
     assert "dearest / cheapest" in said.getvalue()
+
+
+def test_what_is_left_out_is_what_its_steps_cost_beside_those_who_are_updated() -> None:
+    active = np.array([1.0, 0.2, 0.2, 0.6] * 6)
+    ns = np.where(active == 0.6, 1e3, 100.0 * active + 10.0 * (1 - active))
+    ns[1] = 1e6  # new lists
+    steps = usual_steps(ns, active)
+    assert steps == Steps(0.2, pytest.approx(28.0), 100.0)
+    assert steps.left_out == pytest.approx(10.0)
+    for wrong in (np.ones(24), np.full(24, 0.2)):
+        with pytest.raises(UserError, match="raise --steps"):
+            usual_steps(ns, wrong)
+
+
+def test_activity_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_activity(1, 16, 96, Console(file=said, width=200))
+    assert [corner["share"] for corner in result["corners"]] == [0.01, 0.05, 0.2]
+    for corner in result["corners"]:
+        assert 0 < corner["active"] < 0.5
+        assert corner["over_everybody"]["value"] > 0
+    assert "per particle left out" in said.getvalue()

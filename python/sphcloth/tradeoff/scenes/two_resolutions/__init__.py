@@ -25,6 +25,7 @@ SCENE = Scene(
     summary="water swings past a sheet, fine at the sheet and coarse beyond",
     script=Path(__file__).parent / "in.two-resolutions",
     quantities=(
+        Quantity("flow", "mean horizontal velocity of the water", column("v_flow")),
         Quantity("kinetic", "kinetic energy of water and sheet", column("v_kinetic")),
         Quantity("billow", "mean deflection of the sheet", column("v_billow")),
     ),

@@ -624,24 +624,22 @@ bool BlockSteps::look_around(int i)
   NearLists &lists = pair->order();
   const int slot = lists.slot(i), own = pace[i];
   bool in_step = Pace::before(own) != Pace::BROKEN;
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (!lists.all_have(own, slot, t, pace.data(), everyone_begins()))
-      in_step = look_at(i, t) && in_step;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const Stretch others = lists.others(own, slot, t, pace.data(), everyone_begins());
+    if (others.n > 0) in_step = look_at(i, t, others) && in_step;
+  }
   return in_step;
 }
 
-// at those of one type, some of whom have another pace.  Where everybody begins a step nobody waits for
-// an impulse.
+// at those of one type who have another pace.  Where everybody begins a step nobody waits for an impulse.
 
-bool BlockSteps::look_at(int i, int type)
+bool BlockSteps::look_at(int i, int type, const Stretch &others)
 {
   if (everyone_begins() && options.sleep == 0.0 && pair->is_fluid(type)) return false;
   const int own = pace[i];
   bool in_step = true;
-  const Stretch near = pair->neighbours(i, type);
-  for (int k = 0; k < near.n; k++) {
-    const int j = near.of[k];
-    if (pace[j] == own) continue;
+  for (int k = 0; k < others.n; k++) {
+    const int j = others.of[k];
     if (pace[j] == Pace::BOUNDARY) {
       touch(j, TOUCHED);
       continue;

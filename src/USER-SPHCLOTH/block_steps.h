@@ -203,7 +203,7 @@ class BlockSteps : protected Pointers {
   void share_equally();
   void prolong(int i, double times);
   bool look_around(int i);
-  bool look_at(int i, int type);
+  bool look_at(int i, int type, const sphcloth::Stretch &others);
   void disturb(int i, int j);
   void touch(int j, int mark_of_it);
   void wake_marked();

@@ -128,6 +128,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
   std::vector<Real> spans;    // of impulses, empty without them
+  std::vector<int> acts;    // 1: has one, or a pressure
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
 
@@ -513,11 +514,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
 {
   const int i = lists.at(slot);
   const bool fluid = is_fluid(t);
+  // who has no impulse of its own feels those of others alone
+  const bool gives = !IMPULSE || (fluid && acts[i]);
   lists.refresh(slot);
   Sums<ALSO, VIRIAL> sums;
   int met = 0;
   for (int other = 1; other <= model.n_types; other++) {
-    const Stretch found = lists(slot, other);
+    const Stretch found = gives ? lists(slot, other) : lists.others(0, slot, other, acts.data());
     if (found.n == 0 || !(fluid || is_fluid(other))) continue;
     met += found.n;
     const Terms &of_pair = pair(t, other);
@@ -564,10 +567,11 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_impulses(const Particles &p,
 template <class K, class P>
 void FluidLoops<K, P>::impulses(const Particles &p, const std::vector<int> &slots)
 {
-  if (model.friction == Friction::NONE)
-    all_impulses<Friction::NONE>(p, slots);
-  else
-    all_impulses<Friction::ANY>(p, slots);
+  switch (model.friction) {
+    case Friction::NONE: return all_impulses<Friction::NONE>(p, slots);
+    case Friction::ARTIFICIAL: return all_impulses<Friction::ARTIFICIAL>(p, slots);
+    case Friction::ANY: return all_impulses<Friction::ANY>(p, slots);
+  }
 }
 
 template <class K, class P>
@@ -575,9 +579,11 @@ void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressur
                                        const double *span)
 {
   spans.resize(p.n_all);
+  acts.resize(p.n_all);
   for (int i = 0; i < p.n_all; i++) {
     motions[i].pressure = static_cast<Real>(pressure_time[i]);
     spans[i] = static_cast<Real>(span[i]);
+    acts[i] = span[i] != 0.0 || pressure_time[i] != 0.0;
   }
 }
 
@@ -844,7 +850,7 @@ double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
 
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {
-  return lists.bytes() + bytes_of(selection.slots, sites, motions, gradients, spans);
+  return lists.bytes() + bytes_of(selection.slots, sites, motions, gradients, spans, acts);
 }
 
 template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)

@@ -102,9 +102,9 @@ class NearLists {
       if (of_block[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
   }
 
-  // Of a value of each particle: is that of a neighbour of one type above a limit?  Do all of these have
-  // the same?  What many are about to ask may be found for whole blocks of space before; `surveyed` says
-  // that this was the last survey.
+  // Of a value of each particle: is that of a neighbour of one type above a limit?  Whose is another?  What many
+  // are about to ask may be found for whole blocks of space before; `surveyed` says that this was the last
+  // survey.
   void take_survey(const int *value) { survey.take(value); }
   bool any_above(int most, int slot, int other, const int *value, bool surveyed)
   {
@@ -112,11 +112,15 @@ class NearLists {
     refresh(slot);
     return greatest((*this)(slot, other), value) > most;
   }
-  bool all_have(int same, int slot, int other, const int *value, bool surveyed)
+  // until somebody asks again
+  Stretch others(int same, int slot, int other, const int *value, bool surveyed = false)
   {
-    if (surveyed && survey.all_have(same, block[slot], other)) return true;
+    if (surveyed && survey.all_have(same, block[slot], other)) return {nullptr, 0};
     refresh(slot);
-    return !differing((*this)(slot, other), value, same);
+    const Stretch near = (*this)(slot, other);
+    const int n = pick_others(value, same, near.of, near.n, spare.data());
+    if (n > 0) std::fill_n(spare.data() + n, LANES, spare[0]);    // what fills up a group is read
+    return {spare.data(), n};
   }
 
   // owned particles by type and in space, see NeighbourLists
@@ -338,15 +342,6 @@ class NearLists {
 #pragma omp simd reduction(max : most)
     for (int k = 0; k < near.n; k++) most = std::max(most, value[of[k]]);
     return most;
-  }
-
-  SPHCLOTH_MULTIVERSION int differing(const Stretch &near, const int *value, int same) const
-  {
-    const int *of = near.of;
-    int bits = 0;
-#pragma omp simd reduction(| : bits)
-    for (int k = 0; k < near.n; k++) bits |= value[of[k]] ^ same;
-    return bits;
   }
 
   int type_of(int slot) const

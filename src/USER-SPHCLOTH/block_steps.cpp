@@ -22,6 +22,9 @@ using namespace sphcloth;
 static constexpr double OVERHEAD = 0.1;
 // and what projection and contact of a vertex cost in it
 static constexpr int UPDATES_PER_VERTEX = 2;
+// To go from one step for all to unequal ones and back costs some steps: who takes them keeps them until they gain
+// less than this share of what is asked for.
+static constexpr double KEEPS = 0.8;
 
 BlockSteps::BlockSteps(LAMMPS *lmp_, FixSPHIntegrate *fix_, ParticleColumns &rows_) :
     Pointers(lmp_), fix(fix_), pair(nullptr), rows(rows_), apart(1), coarsest(0), finest_vertex(0),
@@ -133,9 +136,11 @@ double BlockSteps::next_step() const
 
 void BlockSteps::choose()
 {
-  const double least = want_steps();
   if (!begun()) fix->limit_vertices();
-  if (!begun() || at.line.ended()) begin_root(least);
+  if (!begun() || at.line.ended())
+    begin_root();
+  else
+    want_steps(pair->active_particles(), true);
   find_step_of_scene();
   if (!at.alike) respect_neighbours();
   book();
@@ -143,20 +148,41 @@ void BlockSteps::choose()
   at.chosen = true;
 }
 
-// the least of them
+// The least of them.  Who flies freely looks for neighbours under pressure, unless their steps will be its
+// own.
 
-double BlockSteps::want_steps()
+double BlockSteps::want_steps(const std::vector<int> &of, bool looks_around)
 {
-  const std::vector<int> &active = pair->active_particles();
   const double *its_level = rows[LEVEL];
   const double *external[3] = {rows[EXTERNAL], rows[EXTERNAL + 1], rows[EXTERNAL + 2]};
-  for (const int i : active) wanted[i] = at.line.step(static_cast<int>(its_level[i]));
-  return fix->find_steps(active, external, wanted.data(), rows[BY]);
+  for (const int i : of) wanted[i] = at.line.step(static_cast<int>(its_level[i]));
+  return fix->find_steps(of, external, looks_around, wanted.data(), rows[BY]);
 }
 
 // Everybody begins a step: it may be of any length, but roots end at output times.
 
-void BlockSteps::begin_root(double least)
+void BlockSteps::begin_root()
+{
+  const std::vector<int> &active = pair->active_particles();
+  double least = want_steps(active, false);
+  Root root = find_root(least);
+  if (!root.one_for_all) {
+    marked.clear();
+    for (const int i : active)
+      if (pair->pressure_term()[i] == 0.0) marked.push_back(i);
+    least = std::min(least, want_steps(marked, true));
+    root = find_root(least);
+  }
+  const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root.step;
+  double *until = rows[UNTIL];
+  for (const int i : active) until[i] = (until[i] - end) * ratio;
+  at.line = {root.step, 0};
+  coarsest = 0;
+  at.reaches_output = root.step == root.remaining;
+  at.output_time = root.output_time;
+}
+
+BlockSteps::Root BlockSteps::find_root(double least) const
 {
   double least_of_all;
   least = std::min(least, fix->tightest_vertex().dt);
@@ -167,15 +193,13 @@ void BlockSteps::begin_root(double least)
   mine.count[0] += UPDATES_PER_VERTEX * fix->count_vertices();    // whatever they want
   MPI_Allreduce(mine.count.data(), all.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
 
-  const double next = fix->next_output_time(least_of_all), remaining = next - physical_time(update);
-  const double root = all.root_towards(remaining, least_of_all, OVERHEAD);
-  const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root;
-  double *until = rows[UNTIL];
-  for (const int i : pair->active_particles()) until[i] = (until[i] - end) * ratio;
-  at.line = {root, 0};
-  coarsest = 0;
-  at.reaches_output = root == remaining;
-  at.output_time = next;
+  const double gain = at.alike ? options.gain : std::max(1.0, KEEPS * options.gain);
+  Root root;
+  root.output_time = fix->next_output_time(least_of_all);
+  root.remaining = root.output_time - physical_time(update);
+  root.step = all.root_towards(root.remaining, least_of_all, OVERHEAD, gain);
+  root.one_for_all = root.step <= least_of_all;
+  return root;
 }
 
 // The step of each, the shortest, and whether it is everybody's.  Who is new, and lengthens its step, asks

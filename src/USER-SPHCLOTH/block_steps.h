@@ -54,10 +54,11 @@ class BlockSteps : protected Pointers {
     N_COLUMNS
   };
 
-  // of the user: how many times a neighbour's step somebody's may be, 2 or 4; may it end early; the
-  // speed below which water sleeps, 0: never
+  // of the user: how many times a neighbour's step somebody's may be, 2 or 4; how many times fewer updates
+  // unequal steps have to need; may one end early; the speed below which water sleeps, 0: never
   struct Options {
     int ratio = 4;
+    double gain = 2.0;
     bool waking = true;
     double sleep = 0.0;
   } options;
@@ -175,8 +176,13 @@ class BlockSteps : protected Pointers {
   bool everyone_begins() const { return at.line.now == 0; }    // a step, but for who sleeps
 
   void choose();
-  double want_steps();
-  void begin_root(double least);
+  double want_steps(const std::vector<int> &of, bool looks_around);
+  void begin_root();
+  struct Root {
+    double step, remaining, output_time;
+    bool one_for_all;
+  };
+  Root find_root(double least) const;
   void find_step_of_scene();
   void respect_neighbours();
   int vertex_level(int i) const;

@@ -355,7 +355,8 @@ void FixPBDCloth::cut_step()
   if (solver != Solver::SUBSTEPS || !steps_jump) return;
   shortest_of_late = std::min(LENGTHENS * shortest_of_late, step_dt);
   shortest_of_late = std::max(shortest_of_late, step_dt / MOST_TIMES);
-  substeps *= static_cast<int>(std::ceil(step_dt / shortest_of_late - ROUNDING));
+  const double usual = substeps / shortest_of_late;    // per time
+  substeps = static_cast<int>(std::ceil(usual * step_dt - ROUNDING));
 }
 
 void FixPBDCloth::move_pins()

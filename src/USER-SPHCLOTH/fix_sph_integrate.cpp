@@ -38,8 +38,9 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
     said(SteppingScheme::CONSTANT), scheme(said), run_style_drives(false), floor(0.0),
     ceiling(update->dt), growth(2.0), times(lmp), ceiling_given(false), clamp_at_floor(false),
-    state(nullptr), blocks(std::make_unique<BlockSteps>(lmp, this, rows)), previous(0.0),
-    largest_before(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{}, particles_limited{}
+    state(nullptr), flies_alone(false), blocks(std::make_unique<BlockSteps>(lmp, this, rows)),
+    previous(0.0), largest_before(0.0), limited_by(Limit::NONE), updates(0.0), steps_limited{},
+    particles_limited{}
 {
   time_integrate = 1;
   nevery = 1;
@@ -97,7 +98,9 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     else if (keyword == "ratio") {
       blocks->options.ratio = args.integer(keyword, 2, 4);
       if (blocks->options.ratio == 3) args.fail(keyword, "3", "steps differ by 2 or 4");
-    } else if (keyword == "waking")
+    } else if (keyword == "gain")
+      blocks->options.gain = args.at_least(keyword, 1.0);
+    else if (keyword == "waking")
       blocks->options.waking = args.choice(keyword, {"no", "yes"});
     else if (keyword == "sleep")
       blocks->options.sleep = args.at_least(keyword, 0.0);
@@ -113,9 +116,10 @@ void FixSPHIntegrate::read_options(ArgReader &args)
     } else if (keyword == "below")
       clamp_at_floor = args.choice(keyword, {"stop", "clamp"}) == 1;
     else
-      args.unknown(keyword,
-                   "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
-                   "fluctuation, output, until, ratio, waking, sleep, min, max, growth, below");
+      args.unknown(
+          keyword,
+          "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
+          "fluctuation, output, until, ratio, gain, waking, sleep, min, max, growth, below");
   }
   if (floor > ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
@@ -146,6 +150,8 @@ void FixSPHIntegrate::init()
   scheme = adaptive ? adaptive->scheme() : said;
   check_scheme();
   pair->set_active(state, ACTIVE, scheme == SteppingScheme::INDIVIDUAL);
+  flies_alone = scheme == SteppingScheme::GLOBAL;
+  moving.n = -1;
   settle_types();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
@@ -472,8 +478,9 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
 ------------------------------------------------------------------------- */
 
 double FixSPHIntegrate::find_steps(const std::vector<int> &of, const double *const *external,
-                                   double *dt, double *by) const
+                                   bool looks_around, double *dt, double *by)
 {
+  flies_alone = !looks_around;
   double least = std::numeric_limits<double>::infinity();
   const auto force_on = [&](int i, double *f) {
     for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + external[d][i];
@@ -509,6 +516,7 @@ void FixSPHIntegrate::limit_vertices()
     state[i][OWN_STEP] = own.dt;
     rows[BlockSteps::BY][i] = static_cast<double>(own.by);
   });
+  moving.n = -1;
 }
 
 double FixSPHIntegrate::vertex_step(int i) const
@@ -516,24 +524,18 @@ double FixSPHIntegrate::vertex_step(int i) const
   return pair->is_fluid(atom->type[i]) ? 0.0 : state[i][OWN_STEP];
 }
 
-int FixSPHIntegrate::count_vertices() const
-{
-  int n = 0;
-  for_vertices([&](int, const FixPBDCloth &) { n++; });
-  return n;
-}
-
 // A mesh that fills the kernel knows how wet it is when the first step has been taken.
 
-StepLimit FixSPHIntegrate::tightest_vertex() const
+const FixSPHIntegrate::Vertices &FixSPHIntegrate::vertices()
 {
-  StepLimit tightest{ceiling, Limit::CEILING};
+  if (moving.n >= 0) return moving;
+  moving = {0, {ceiling, Limit::CEILING}};
   for_vertices([&](int i, const FixPBDCloth &) {
-    if (state[i][OWN_STEP] > 0.0)
-      tightest.tighten(state[i][OWN_STEP],
-                       static_cast<Limit>(static_cast<int>(rows[BlockSteps::BY][i])));
+    moving.n++;
+    const double dt = state[i][OWN_STEP], by = rows[BlockSteps::BY][i];
+    if (dt > 0.0) moving.tightest.tighten(dt, static_cast<Limit>(static_cast<int>(by)));
   });
-  return tightest;
+  return moving;
 }
 
 /* ----------------------------------------------------------------------
@@ -595,16 +597,15 @@ inline StepState FixSPHIntegrate::particle_state(int i, const double *f) const
 }
 
 // Neighbours under a pressure p push each other and it together: the density grows ever faster, by
-// p/h_s^2.  With one step for all theirs is short enough; nor are they asked where its own sound, or the
-// ceiling, allows less.
+// p/h_s^2.  With one step for all theirs is short enough, and it flies alone; nor are they asked where its own
+// sound, or the ceiling, allows less.
 
 double FixSPHIntegrate::until_pressed(int i, double gap, double sound) const
 {
   const double alone = time_to_cross(gap, atom->drho[i], 0.0);
   const double smoothing = 0.5 * fluids[atom->type[i]].support;
   const double by_sound = lambda.acoustic * smoothing / sound;
-  if (scheme == SteppingScheme::GLOBAL || 0.5 * alone <= by_sound || ceiling <= by_sound)
-    return alone;
+  if (flies_alone || 0.5 * alone <= by_sound || ceiling <= by_sound) return alone;
   const double ratio = atom->rho[i] / smoothing;
   return time_to_cross(gap, atom->drho[i], pair->pressure_term_beside(i) * ratio * ratio);
 }

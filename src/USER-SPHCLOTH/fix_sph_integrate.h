@@ -69,12 +69,12 @@ class FixSPHIntegrate : public Fix {
   void finish_step();
 
   // What BlockSteps asks.  The steps that particles allow, between floor and ceiling, under forces that have these
-  // beside f (three columns), and by which limits: dt has the steps before (0: none), and then theirs; the least
-  // of them.  What one is given; the ceiling; when output is due next; the same for vertices of cloth, 0 for
-  // what is none.
+  // beside f (three columns), with or without a look at whose neighbours are under pressure, and by which limits:
+  // dt has the steps before (0: none), and then theirs; the least of them.  What one is given; the ceiling; when
+  // output is due next; the same for vertices of cloth, 0 for what is none.
   bool wants_force() const { return lambda.force > 0.0; }
-  double find_steps(const std::vector<int> &of, const double *const *external, double *dt,
-                    double *by) const;
+  double find_steps(const std::vector<int> &of, const double *const *external, bool looks_around,
+                    double *dt, double *by);
   void set_own_step(int i, double dt, double now)
   {
     state[i][OWN_STEP] = dt;
@@ -86,9 +86,9 @@ class FixSPHIntegrate : public Fix {
   double longest_step() const { return ceiling; }
   double next_output_time(double dt) const { return times.next(dt); }
   void limit_vertices();    // finds what tightest_vertex() and vertex_step() tell
-  sphcloth::StepLimit tightest_vertex() const;
+  const sphcloth::StepLimit &tightest_vertex() { return vertices().tightest; }
+  int count_vertices() { return vertices().n; }
   double vertex_step(int i) const;
-  int count_vertices() const;
 
  private:
   struct Record;    // in restart files
@@ -108,12 +108,18 @@ class FixSPHIntegrate : public Fix {
   // per particle: its own allowed step, time of its last update, 1 if it takes part in this step
   double **state;
   std::vector<int> asked;    // for their limits
+  bool flies_alone;    // who has no pressure, whatever neighbours have
   struct FluidType {    // the support of all types, the rest of fluids
     double support = 0.0, viscosity = 0.0, sound = 0.0;
     sphcloth::Tait eos;
   };
   std::vector<FluidType> fluids;    // by type
   void settle_types();
+  struct Vertices {    // of this rank when their limits were found
+    int n = -1;    // not known
+    sphcloth::StepLimit tightest{0.0, sphcloth::Limit::NONE};
+  } moving;
+  const Vertices &vertices();
 
   // per particle with steps of its own, empty otherwise: BlockSteps::Column, or, of the last update of
   // individual steps, dv/dt, d rho/dt, its own limit

@@ -669,21 +669,27 @@ int PairSPHTait::count_neighbours(int i)
   return n;
 }
 
+static double apart_sq(const double *x, const double *y)
+{
+  const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+  return dx * dx + dy * dy + dz * dz;
+}
+
 bool PairSPHTait::inside_support(int i, int j) const
 {
-  const double *x = atom->x[i], *y = atom->x[j];
-  const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
   const double far = support(atom->type[i], atom->type[j]);
-  return dx * dx + dy * dy + dz * dz < far * far;
+  return apart_sq(atom->x[i], atom->x[j]) < far * far;
 }
 
 double PairSPHTait::pressure_term_beside(int i)
 {
+  double **x = atom->x;
   double greatest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++) {
+    const double far = support(atom->type[i], t), far_sq = far * far;
     const Stretch near = neighbours(i, t);
     for (int k = 0; k < near.n; k++)
-      if (const int j = near.of[k]; pressure[j] > greatest && inside_support(i, j))
+      if (const int j = near.of[k]; pressure[j] > greatest && apart_sq(x[i], x[j]) < far_sq)
         greatest = pressure[j];
   }
   return greatest;

@@ -63,7 +63,7 @@ neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep 0.002
 fix gravity all gravity 9.81 vector 0 0 -1
-fix step fluid sph/integrate global
+fix step fluid sph/integrate global gain 1
 fix sheet cloth pbd/cloth iterations 5 pin pins damping 2.0
 fix contact fluid cloth/contact 0.015
 thermo 10
@@ -107,7 +107,7 @@ dihedral_coeff 1 0.1
 neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep 0.001
-fix step fluid sph/integrate global
+fix step fluid sph/integrate global gain 1
 fix sheet cloth pbd/cloth iterations 5 damping 1.0
 fix contact fluid cloth/contact 0.03
 """

@@ -30,7 +30,7 @@ pair_coeff 2 2 fluid 1000 c0 20 support 0.05 {friction}
 neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep 2e-3
-fix step all sph/integrate global velocity 0 force 0 acoustic 0.5 relative 0.2 {limits}
+fix step all sph/integrate global gain 1 velocity 0 force 0 acoustic 0.5 relative 0.2 {limits}
 run_style sph/adaptive {scheme}
 """
 MAKE_DROPS = """
@@ -91,6 +91,23 @@ def test_all_in_one_bin_is_the_global_scheme(folder):
     for scheme in ("global", "block"):
         run(write(folder, fall(scheme, ceiling=2e-4) + END, f"in.{scheme}"), dump=f"{scheme}.txt")
     assert np.array_equal(last_frame(folder / "global.txt"), last_frame(folder / "block.txt"))
+
+
+def test_unequal_steps_are_taken_where_they_gain_enough(folder, monkeypatch):
+    """With one for all everybody is updated in every step, and as many steps are as with global."""
+    updates, active = {}, {}
+    for scheme, gain in (("global", 1), ("block", 1), ("block", 1.5), ("block", 50)):
+        lmp = started(folder, collide(scheme, f"gain {gain}"), monkeypatch)
+        active[scheme, gain] = 1.0
+        for _ in range(40):
+            lmp.command("run 1 pre no post no")
+            share = lmp.extract_fix("step", 0, 1, 1)
+            active[scheme, gain] = min(active[scheme, gain], share)
+        updates[scheme, gain] = lmp.extract_fix("step", 0, 1, 2) / lmp.get_thermo("time")
+    assert active["block", 1] < 0.5 and active["block", 1.5] < 0.5
+    assert active["block", 50] == 1.0
+    assert updates["block", 50] == pytest.approx(updates["global", 1], rel=0.1)
+    assert updates["block", 1.5] < 0.6 * updates["block", 50]
 
 
 @pytest.mark.parametrize("limits", ["", "ratio 2", "waking no", "output 2e-3"])
@@ -338,7 +355,7 @@ pair_coeff 1 1 fluid 1000 c0 30 alpha 0.1
 neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep {ceiling}
-fix step all sph/integrate global velocity 0 until {end} {limits}
+fix step all sph/integrate global gain 1 velocity 0 until {end} {limits}
 run_style sph/adaptive {scheme}
 thermo_modify norm no
 """
@@ -411,7 +428,7 @@ neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep {ceiling}
 {moves}
-fix step water sph/integrate global velocity 0 until 0.16 sleep 0.01
+fix step water sph/integrate global gain 1 velocity 0 until 0.16 sleep 0.01
 run_style sph/adaptive {scheme}
 compute kinetic water ke
 """
@@ -474,7 +491,7 @@ timestep 5e-3
 group pulled id 2
 set atom 5 vy 3.0
 fix pull pulled addforce 0 0 $(0.125*40)
-fix step all sph/integrate global {viscous}
+fix step all sph/integrate global gain 1 {viscous}
 run_style sph/adaptive {scheme}
 """
 
@@ -565,7 +582,7 @@ timestep 1e-3
 fix gravity all gravity 9.81 vector 0 0 -1
 fix pour water sph/emit 2000000000 1 0.05 disc 0 0 0.3 0.06 velocity 0 0 -1.2
 fix drain water sph/drain
-fix step water sph/integrate global until {end}
+fix step water sph/integrate global gain 1 until {end}
 run_style sph/adaptive {scheme}
 fix sheet cloth pbd/cloth iterations 20 pin pins
 fix contact water cloth/contact 0.01
@@ -629,7 +646,7 @@ fix drag all viscous 0.2 scale 1 5
 run 1500
 unfix drag
 timestep {dt}
-fix step all sph/integrate global velocity 0 force 0 viscous 0 density 0 acoustic 0.8
+fix step all sph/integrate global gain 1 velocity 0 force 0 viscous 0 density 0 acoustic 0.8
 run_style sph/adaptive {scheme}
 variable late equal time>0.33
 fix stop all halt 1 v_late > 0.5 error continue
@@ -679,7 +696,8 @@ fix step all sph/integrate constant
 run_style sph/adaptive constant
 run 1000
 timestep 1e-2
-fix step all sph/integrate global velocity 0 force 0 density 0 acoustic 0.8 output 0.02 until 0.7
+fix step all sph/integrate global gain 1 velocity 0 force 0 density 0 acoustic 0.8 &
+  output 0.02 until 0.7
 run_style sph/adaptive block
 """
 )

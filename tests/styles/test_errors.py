@@ -322,6 +322,7 @@ CASES = [
         STEP + "global output 0.1\nrun_style sph/adaptive constant\nrun 0",
         r"fix step sph/integrate: output 0.1 would shorten.*use the scheme global",
     ),
+    case("step: gain", STEP + "global gain 0.9", r"gain is '0.9'.*>= 1"),
     case("step: min > max", STEP + "global min 1 max 0.1", r"min 1 is above max 0.1"),
     case(
         "step: no pair",

@@ -71,7 +71,8 @@ STYLES = {
         "obstacle": [GROUP]}),
     "step": ("fix f water sph/integrate", "", [["constant", "global"]], {
         **{name: [NUMBER] for name in LIMITS},
-        "ratio": [["2", "4"]], "waking": [YES], "growth": [["1.5"]], "below": [["stop", "clamp"]]}),
+        "ratio": [["2", "4"]], "gain": [["2.5"]], "waking": [YES], "growth": [["1.5"]],
+        "below": [["stop", "clamp"]]}),
     "emit": ("fix f water sph/emit", "", [["3", "200"], ["1"], ["0.05"], *DISC], {
         "disc": [["0"], ["0"], ["0"], ["0.1"]],
         "rectangle": [["0"], ["0"], ["0"], ["0.1"], ["0.2"]],

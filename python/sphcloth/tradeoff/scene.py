@@ -35,6 +35,7 @@ LIMITS = (
     "growth",
     "below",
     "ratio",
+    "gain",
     "sleep",
 )
 # ceiling of chosen steps over h_s / c_0, in packaged scenes: --vary ceiling=2,8

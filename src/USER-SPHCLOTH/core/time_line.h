@@ -66,16 +66,17 @@ class WantedSteps {
   }
 
   // What one evaluation of everybody's neighbours costs is 1, so a step costs what it updates and
-  // `overhead` for the rest of the scene.  The shortest step is below `least` by less than a half.
-  double best_root(double least, double overhead) const
+  // `overhead` for the rest of the scene.  The shortest step is below `least` by less than a half.  Unless
+  // unequal steps cost less by a factor of `gain` it is one for all.
+  double best_root(double least, double overhead, double gain) const
   {
-    double best = 0.0, best_cost = 0.0;
     const int end = end_of_counts();
+    double best = least, best_cost = of_ladder(0, end, 0, overhead).per_shortest / (gain * least);
     for (int shift = 0; shift < PARTS; shift++) {
       const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
       const Work work = of_ladder(shift, end, TimeLine::DEEPEST, overhead);
       const double cost = work.per_shortest / shortest;
-      if (shift > 0 && cost >= best_cost) continue;
+      if (cost >= best_cost) continue;
       best_cost = cost;
       best = std::ldexp(shortest, work.longest);
     }
@@ -85,11 +86,11 @@ class WantedSteps {
   // The same where a root has to end `remaining` from now: that and up to twice as many equal roots,
   // whichever cost least.  Far away any root will do, and one step for all arrives as it does
   // elsewhere.
-  double root_towards(double remaining, double least, double overhead) const
+  double root_towards(double remaining, double least, double overhead, double gain) const
   {
     constexpr int FAR = 16;    // roots
     constexpr double ROUNDING = 1e-9;
-    const double best = best_root(least, overhead), roots = remaining / best;
+    const double best = best_root(least, overhead, gain), roots = remaining / best;
     if (best <= least) return step_towards(remaining, best);
     if (roots > FAR) return best;
     const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * roots)));

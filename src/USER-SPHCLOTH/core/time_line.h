@@ -24,7 +24,7 @@ class TimeLine {
   long long now = 0;    // since the root step began, in ticks of root / 2^DEEPEST
 
   static long long ticks(int level) { return 1LL << (DEEPEST - level); }
-  double step(int level) const { return root / static_cast<double>(1LL << level); }
+  double step(int level) const { return root * PARTS_OF_ROOT[level]; }
   bool begins(int level) const { return now % ticks(level) == 0; }
   bool ended() const { return now == ticks(0); }
 
@@ -45,6 +45,13 @@ class TimeLine {
     for (double step = root; level < DEEPEST && step > most; step *= 0.5) level++;
     return level;
   }
+
+ private:
+  static constexpr std::array<double, DEEPEST + 1> PARTS_OF_ROOT = [] {
+    std::array<double, DEEPEST + 1> parts{1.0};
+    for (int level = 1; level <= DEEPEST; level++) parts[level] = 0.5 * parts[level - 1];
+    return parts;
+  }();
 };
 
 // The root step with which a population of wanted steps costs least, when every one of them is

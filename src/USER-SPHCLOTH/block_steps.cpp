@@ -28,7 +28,7 @@ static constexpr double KEEPS = 0.8;
 
 BlockSteps::BlockSteps(LAMMPS *lmp_, FixSPHIntegrate *fix_, ParticleColumns &rows_) :
     Pointers(lmp_), fix(fix_), pair(nullptr), rows(rows_), apart(1), coarsest(0), finest_vertex(0),
-    ideal(0.0), stage(LEVELS), known(false)
+    ideal(0.0), newcomers(true), stage(LEVELS), known(false)
 {
 }
 
@@ -89,6 +89,7 @@ void BlockSteps::set_new(int i)
   rows[LEVEL][i] = at.deepest;
   rows[BEFORE][i] = Pace::FIRST;
   rows[CALL][i] = NEW;
+  newcomers = true;
   if (at.chosen) begin_own_step(i);
 }
 
@@ -139,19 +140,20 @@ void BlockSteps::choose()
   if (!begun()) fix->limit_vertices();
   if (!begun() || at.line.ended())
     begin_root();
-  else
+  else {
     want_steps(pair->active_particles(), true);
-  find_step_of_scene();
+    find_step_of_scene();
+  }
   if (!at.alike) respect_neighbours();
   book();
   if (options.sleep > 0.0) fall_asleep();
   at.chosen = true;
 }
 
-// The least of them.  Who flies freely looks for neighbours under pressure, unless their steps will be its
+// The tightest of them.  Who flies freely looks for neighbours under pressure, unless their steps will be its
 // own.
 
-double BlockSteps::want_steps(const std::vector<int> &of, bool looks_around)
+StepLimit BlockSteps::want_steps(const std::vector<int> &of, bool looks_around)
 {
   const double *its_level = rows[LEVEL];
   const double *external[3] = {rows[EXTERNAL], rows[EXTERNAL + 1], rows[EXTERNAL + 2]};
@@ -159,47 +161,83 @@ double BlockSteps::want_steps(const std::vector<int> &of, bool looks_around)
   return fix->find_steps(of, external, looks_around, wanted.data(), rows[BY]);
 }
 
-// Everybody begins a step: it may be of any length, but roots end at output times.
+// Everybody begins a step: it may be of any length, but roots end at output times.  Where one step for all
+// goes on nobody's level changes, and all impulses reach equally far.
 
 void BlockSteps::begin_root()
 {
   const std::vector<int> &active = pair->active_particles();
-  double least = want_steps(active, false);
-  Root root = find_root(least);
+  StepLimit tightest = want_steps(active, false);
+  Root root = find_root(tightest);
   if (!root.one_for_all) {
     marked.clear();
     for (const int i : active)
       if (pair->pressure_term()[i] == 0.0) marked.push_back(i);
-    least = std::min(least, want_steps(marked, true));
-    root = find_root(least);
+    const StepLimit among_neighbours = want_steps(marked, true);
+    tightest.tighten(among_neighbours.dt, among_neighbours.by);
+    root = find_root(tightest);
   }
+  const bool goes_on =
+      begun() && at.alike && at.deepest == 0 && root.one_for_all && !root.newcomers;
   const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root.step;
   double *until = rows[UNTIL];
-  for (const int i : active) until[i] = (until[i] - end) * ratio;
+  if (goes_on)
+    at.span_of_all = 0.5 - (0.5 * end - end) * ratio / end;
+  else
+    for (const int i : active) until[i] = (until[i] - end) * ratio;
+  newcomers = false;
   at.line = {root.step, 0};
   coarsest = 0;
   at.reaches_output = root.step == root.remaining;
   at.output_time = root.output_time;
+  if (!goes_on) find_step_of_scene();
+  if (root.one_for_all) at.limit = root.by;
 }
 
-BlockSteps::Root BlockSteps::find_root(double least) const
+BlockSteps::Root BlockSteps::find_root(StepLimit tightest) const
 {
-  double least_of_all;
-  least = std::min(least, fix->tightest_vertex().dt);
-  MPI_Allreduce(&least, &least_of_all, 1, MPI_DOUBLE, MPI_MIN, world);
-  least_of_all = std::min(least_of_all, fix->longest_step());
-  WantedSteps mine, all;
-  for (const int i : pair->active_particles()) mine.add(wanted[i], least_of_all);
-  mine.count[0] += UPDATES_PER_VERTEX * fix->count_vertices();    // whatever they want
-  MPI_Allreduce(mine.count.data(), all.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
+  const StepLimit &vertex = fix->tightest_vertex();
+  tightest.tighten(vertex.dt, vertex.by);
+  struct {
+    double dt;
+    int by;
+  } mine = {tightest.dt, static_cast<int>(tightest.by)}, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  const double least = std::min(all.dt, fix->longest_step());
 
-  const double gain = at.alike ? options.gain : std::max(1.0, KEEPS * options.gain);
   Root root;
-  root.output_time = fix->next_output_time(least_of_all);
+  root.by = static_cast<Limit>(all.by);
+  root.output_time = fix->next_output_time(least);
   root.remaining = root.output_time - physical_time(update);
-  root.step = all.root_towards(root.remaining, least_of_all, OVERHEAD, gain);
-  root.one_for_all = root.step <= least_of_all;
+  root.one_for_all = true;
+  const double gain = at.alike ? options.gain : std::max(1.0, KEEPS * options.gain);
+  if (!may_gain(least, gain, root.newcomers)) {
+    root.step = step_towards(root.remaining, least);
+    return root;
+  }
+  WantedSteps here, anywhere;
+  for (const int i : pair->active_particles()) here.add(wanted[i], least);
+  here.count[0] += UPDATES_PER_VERTEX * fix->count_vertices();    // whatever they want
+  MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
+  root.step = anywhere.root_towards(root.remaining, least, OVERHEAD, gain);
+  root.one_for_all = root.step <= least;
   return root;
+}
+
+// Could unequal steps gain enough, if everybody took exactly what it wants?  Is anybody new?
+
+bool BlockSteps::may_gain(double least, double gain, bool &anybody_new) const
+{
+  const std::vector<int> &active = pair->active_particles();
+  const double of_vertices = UPDATES_PER_VERTEX * fix->count_vertices();
+  double exact = of_vertices;    // updates while one step for all has `equal` of them
+  for (const int i : active) exact += least / wanted[i];
+  const double equal = of_vertices + static_cast<double>(active.size());
+  const double mine[3] = {exact, equal, newcomers ? 1.0 : 0.0};
+  double all[3];
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  anybody_new = all[2] > 0.0;
+  return (1.0 + OVERHEAD) * all[1] > gain * (all[0] + OVERHEAD * all[1]);
 }
 
 // The step of each, the shortest, and whether it is everybody's.  Who is new, and lengthens its step, asks

@@ -152,6 +152,7 @@ class BlockSteps : protected Pointers {
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
   double ideal;
+  bool newcomers;    // on this rank since the last root step began, as far as it knows
 
   // by particle, owned and ghost; of owned particles that are not updated it stays as it is while
   // the order of the atoms does
@@ -176,13 +177,15 @@ class BlockSteps : protected Pointers {
   bool everyone_begins() const { return at.line.now == 0; }    // a step, but for who sleeps
 
   void choose();
-  double want_steps(const std::vector<int> &of, bool looks_around);
+  sphcloth::StepLimit want_steps(const std::vector<int> &of, bool looks_around);
   void begin_root();
   struct Root {
     double step, remaining, output_time;
-    bool one_for_all;
+    sphcloth::Limit by;    // of the tightest
+    bool one_for_all, newcomers;
   };
-  Root find_root(double least) const;
+  Root find_root(sphcloth::StepLimit tightest) const;
+  bool may_gain(double least, double gain, bool &anybody_new) const;
   void find_step_of_scene();
   void respect_neighbours();
   int vertex_level(int i) const;

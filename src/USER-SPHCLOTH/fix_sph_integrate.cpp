@@ -477,11 +477,11 @@ StepLimit FixSPHIntegrate::limit_of_vertex(int i, const FixPBDCloth &cloth) cons
    steps in powers of two
 ------------------------------------------------------------------------- */
 
-double FixSPHIntegrate::find_steps(const std::vector<int> &of, const double *const *external,
-                                   bool looks_around, double *dt, double *by)
+StepLimit FixSPHIntegrate::find_steps(const std::vector<int> &of, const double *const *external,
+                                      bool looks_around, double *dt, double *by)
 {
   flies_alone = !looks_around;
-  double least = std::numeric_limits<double>::infinity();
+  StepLimit tightest;
   const auto force_on = [&](int i, double *f) {
     for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + external[d][i];
   };
@@ -491,9 +491,9 @@ double FixSPHIntegrate::find_steps(const std::vector<int> &of, const double *con
       rank_error(lmp, FLERR, too_short(wanted, fmt::format(" for particle {}", atom->tag[i])));
     dt[i] = step.dt;
     by[i] = static_cast<double>(step.by);
-    least = std::min(least, step.dt);
+    tightest.tighten(step.dt, step.by);
   });
-  return least;
+  return tightest;
 }
 
 double FixSPHIntegrate::sound_time(int i) const

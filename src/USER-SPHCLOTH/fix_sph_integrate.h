@@ -70,11 +70,11 @@ class FixSPHIntegrate : public Fix {
 
   // What BlockSteps asks.  The steps that particles allow, between floor and ceiling, under forces that have these
   // beside f (three columns), with or without a look at whose neighbours are under pressure, and by which limits:
-  // dt has the steps before (0: none), and then theirs; the least of them.  What one is given; the ceiling; when
+  // dt has the steps before (0: none), and then theirs; the tightest of them.  What one is given; the ceiling; when
   // output is due next; the same for vertices of cloth, 0 for what is none.
   bool wants_force() const { return lambda.force > 0.0; }
-  double find_steps(const std::vector<int> &of, const double *const *external, bool looks_around,
-                    double *dt, double *by);
+  sphcloth::StepLimit find_steps(const std::vector<int> &of, const double *const *external,
+                                 bool looks_around, double *dt, double *by);
   void set_own_step(int i, double dt, double now)
   {
     state[i][OWN_STEP] = dt;

@@ -155,7 +155,6 @@ BUGS = [
     Bug("block: who has no impulse is not given those of others", "core/fluid_loops.h",
         "lists.others(0, slot, other, acts.data())", "lists.others(1, slot, other, acts.data())",
         BLOCK),
-    Bug("block: any gain is enough", "core/time_line.h", "/ (gain * least)", "/ least", CORE),
     Bug("contact: out on the other side", "core/contact.h",
         "gap_start >= 0.0 ? 1.0 : -1.0", "gap_start >= 0.0 ? -1.0 : 1.0", CONTACT),
     Bug("contact: two vertices take each other's part", "core/contact.h",

@@ -28,7 +28,7 @@ static constexpr double KEEPS = 0.8;
 
 BlockSteps::BlockSteps(LAMMPS *lmp_, FixSPHIntegrate *fix_, ParticleColumns &rows_) :
     Pointers(lmp_), fix(fix_), pair(nullptr), rows(rows_), apart(1), coarsest(0), finest_vertex(0),
-    ideal(0.0), newcomers(true), stage(LEVELS), known(false)
+    ideal(0.0), stage(LEVELS), known(false)
 {
 }
 
@@ -89,7 +89,6 @@ void BlockSteps::set_new(int i)
   rows[LEVEL][i] = at.deepest;
   rows[BEFORE][i] = Pace::FIRST;
   rows[CALL][i] = NEW;
-  newcomers = true;
   if (at.chosen) begin_own_step(i);
 }
 
@@ -162,7 +161,7 @@ StepLimit BlockSteps::want_steps(const std::vector<int> &of, bool looks_around)
 }
 
 // Everybody begins a step: it may be of any length, but roots end at output times.  Where one step for all
-// goes on nobody's level changes, and all impulses reach equally far.
+// goes on nobody's level changes, and all impulses reach equally far; who is new takes part in that.
 
 void BlockSteps::begin_root()
 {
@@ -177,15 +176,13 @@ void BlockSteps::begin_root()
     tightest.tighten(among_neighbours.dt, among_neighbours.by);
     root = find_root(tightest);
   }
-  const bool goes_on =
-      begun() && at.alike && at.deepest == 0 && root.one_for_all && !root.newcomers;
+  const bool goes_on = begun() && at.alike && at.deepest == 0 && root.one_for_all;
   const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root.step;
   double *until = rows[UNTIL];
   if (goes_on)
     at.span_of_all = 0.5 - (0.5 * end - end) * ratio / end;
   else
     for (const int i : active) until[i] = (until[i] - end) * ratio;
-  newcomers = false;
   at.line = {root.step, 0};
   coarsest = 0;
   at.reaches_output = root.step == root.remaining;
@@ -211,7 +208,7 @@ BlockSteps::Root BlockSteps::find_root(StepLimit tightest) const
   root.remaining = root.output_time - physical_time(update);
   root.one_for_all = true;
   const double gain = at.alike ? options.gain : std::max(1.0, KEEPS * options.gain);
-  if (!may_gain(least, gain, root.newcomers)) {
+  if (!may_gain(least, gain)) {
     root.step = step_towards(root.remaining, least);
     return root;
   }
@@ -224,19 +221,18 @@ BlockSteps::Root BlockSteps::find_root(StepLimit tightest) const
   return root;
 }
 
-// Could unequal steps gain enough, if everybody took exactly what it wants?  Is anybody new?
+// Could unequal steps gain enough, if everybody took exactly what it wants?
 
-bool BlockSteps::may_gain(double least, double gain, bool &anybody_new) const
+bool BlockSteps::may_gain(double least, double gain) const
 {
   const std::vector<int> &active = pair->active_particles();
   const double of_vertices = UPDATES_PER_VERTEX * fix->count_vertices();
   double exact = of_vertices;    // updates while one step for all has `equal` of them
   for (const int i : active) exact += least / wanted[i];
   const double equal = of_vertices + static_cast<double>(active.size());
-  const double mine[3] = {exact, equal, newcomers ? 1.0 : 0.0};
-  double all[3];
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
-  anybody_new = all[2] > 0.0;
+  const double mine[2] = {exact, equal};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   return (1.0 + OVERHEAD) * all[1] > gain * (all[0] + OVERHEAD * all[1]);
 }
 

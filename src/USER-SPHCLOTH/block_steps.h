@@ -152,7 +152,6 @@ class BlockSteps : protected Pointers {
   int coarsest;    // level of a step that may begin now
   int finest_vertex;    // level of the shortest step of a vertex
   double ideal;
-  bool newcomers;    // on this rank since the last root step began, as far as it knows
 
   // by particle, owned and ghost; of owned particles that are not updated it stays as it is while
   // the order of the atoms does
@@ -182,10 +181,10 @@ class BlockSteps : protected Pointers {
   struct Root {
     double step, remaining, output_time;
     sphcloth::Limit by;    // of the tightest
-    bool one_for_all, newcomers;
+    bool one_for_all;
   };
   Root find_root(sphcloth::StepLimit tightest) const;
-  bool may_gain(double least, double gain, bool &anybody_new) const;
+  bool may_gain(double least, double gain) const;
   void find_step_of_scene();
   void respect_neighbours();
   int vertex_level(int i) const;

@@ -90,8 +90,7 @@ warnings: $(VENV)/installed
 
 tidy: $(VENV)/strict
 	$(CMAKE_HERE) -S . -B build/tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
-	$(BIN)/clang-tidy --quiet -p build/tidy $(wildcard $(addsuffix /*.cpp, \
-	  src/USER-SPHCLOTH src/USER-SPHCLOTH/core src/plugin))
+	$(BIN)/clang-tidy --quiet -p build/tidy $(shell find src/USER-SPHCLOTH src/plugin -name '*.cpp')
 
 # the tests with a plugin that looks at every address and at undefined behaviour: an hour
 sanitize: $(VENV)/installed

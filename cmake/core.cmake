@@ -1,7 +1,7 @@
 # sphcloth::core: numerics without LAMMPS; the loops over neighbours are compiled once per kernel.
 
 include("${CMAKE_CURRENT_LIST_DIR}/checks.cmake")
-file(GLOB _core CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH/core/*.cpp")
+file(GLOB_RECURSE _core CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH/core/*.cpp")
 add_library(sphcloth_core STATIC ${_core})
 add_library(sphcloth::core ALIAS sphcloth_core)
 set_target_properties(sphcloth_core PROPERTIES POSITION_INDEPENDENT_CODE ON

@@ -209,8 +209,9 @@ def test_every_link_leads_somewhere(page: Path) -> None:
         assert goal.exists(), target
         if anchor:
             assert anchor in anchors(goal), target
-    for source in re.findall(r"`((?:core/)?\w+\.(?:h|cpp))`", prose):
-        ours = [path for folder in ("src", "tests/core") for path in (ROOT / folder).rglob(source)]
+    for source in re.findall(r"`((?:\w+/)*\w+\.(?:h|cpp))`", prose):
+        ours = [ROOT / source] if (ROOT / source).is_file() else [*(ROOT / "src").rglob(source)]
+        ours += (ROOT / "tests/core").rglob(source)
         assert ours or source in ("fix_nve.cpp", "version.h"), source
     for function in re.findall(r"`(?:\w+::)?(\w+)\(\)`", prose):
         assert re.search(rf"\b{function}(<\w+>)?\(", CODE) or function in TO_BE_WRITTEN, function

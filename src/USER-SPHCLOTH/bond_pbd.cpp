@@ -2,7 +2,7 @@
 
 #include "bond_pbd.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "error.h"

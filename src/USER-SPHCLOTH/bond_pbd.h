@@ -11,7 +11,7 @@ BondStyle(pbd,BondPBD);
 
 #include "bond.h"
 
-#include "pbd_material.h"
+#include "cloth/pbd_material.h"
 
 namespace LAMMPS_NS {
 

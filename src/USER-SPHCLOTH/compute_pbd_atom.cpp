@@ -1,6 +1,6 @@
 #include "compute_pbd_atom.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "fix_pbd_cloth.h"
 #include "memory.h"

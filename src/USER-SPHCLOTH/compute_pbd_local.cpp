@@ -1,9 +1,9 @@
 #include "compute_pbd_local.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "core/bytes.h"
-#include "core/constraints.h"
+#include "core/util/bytes.h"
+#include "core/pbd/constraints.h"
 #include "fix_pbd_cloth.h"
 #include "memory.h"
 #include "update.h"

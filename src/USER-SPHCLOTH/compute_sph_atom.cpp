@@ -1,6 +1,6 @@
 #include "compute_sph_atom.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "error.h"
 #include "fix_cloth_contact.h"

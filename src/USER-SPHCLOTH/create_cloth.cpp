@@ -1,8 +1,8 @@
 #include "create_cloth.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"

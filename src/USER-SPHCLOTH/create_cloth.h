@@ -11,7 +11,7 @@ CommandStyle(create_cloth,CreateCloth);
 
 #include "command.h"
 
-#include "core/sheet.h"
+#include "core/pbd/sheet_mesh.h"
 
 #include <optional>
 #include <string>

@@ -11,7 +11,7 @@ DihedralStyle(pbd,DihedralPBD);
 
 #include "dihedral.h"
 
-#include "pbd_material.h"
+#include "cloth/pbd_material.h"
 
 namespace LAMMPS_NS {
 

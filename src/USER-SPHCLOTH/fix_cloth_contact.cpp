@@ -3,9 +3,9 @@
 
 #include "fix_cloth_contact.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"

@@ -11,9 +11,9 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "fix.h"
 
-#include "contact_surface.h"
-#include "obstacle.h"
-#include "sheet_wall.h"
+#include "contact/contact_surface.h"
+#include "contact/obstacle.h"
+#include "fluid/mesh_boundary.h"
 
 #include <memory>
 #include <string>

@@ -1,16 +1,16 @@
 // Position-based dynamics of cloth: (4) to (9) and lines 19 to 29 of Algorithm 1.
 //
-// Constraints (cloth_constraints.h) are projected colour by colour; after a colour only the
+// Constraints (cloth/cloth_constraints.h) are projected colour by colour; after a colour only the
 // vertices that it moved are forwarded to other ranks.
 
 #include "fix_pbd_cloth.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
-#include "core/bytes.h"
+#include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_sph_integrate.h"
@@ -18,8 +18,8 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "rank_error.h"
-#include "restart_record.h"
+#include "lammps_util/rank_error.h"
+#include "lammps_util/restart_record.h"
 #include "sph_adaptive.h"
 #include "update.h"
 

@@ -11,13 +11,13 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "fix.h"
 
-#include "cloth_constraints.h"
-#include "cloth_guest.h"
-#include "cloth_topology.h"
-#include "contact_mesh.h"
-#include "core/cloth_solver.h"
-#include "pin_motion.h"
-#include "vertex_halo.h"
+#include "cloth/cloth_constraints.h"
+#include "cloth/solver_coupling.h"
+#include "cloth/cloth_topology.h"
+#include "contact/contact_mesh.h"
+#include "core/pbd/cloth_solver.h"
+#include "cloth/pin_motion.h"
+#include "cloth/vertex_halo.h"
 
 #include <array>
 #include <string>

@@ -4,9 +4,9 @@
 
 #include "fix_sph_emit.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
@@ -14,7 +14,7 @@
 #include "force.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "restart_record.h"
+#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>

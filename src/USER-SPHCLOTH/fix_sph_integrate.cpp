@@ -1,12 +1,12 @@
 // Semi-implicit Euler (lines 30 to 33 of Algorithm 1) with a constant or a global time step,
-// equations (10) to (12) and the limits in core/criteria.h.
+// equations (10) to (12) and the limits in core/timestep/step_limits.h.
 
 #include "fix_sph_integrate.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
-#include "block_steps.h"
+#include "lammps_util/atom_tools.h"
+#include "stepping/block_steps.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -17,8 +17,8 @@
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
-#include "rank_error.h"
-#include "restart_record.h"
+#include "lammps_util/rank_error.h"
+#include "lammps_util/restart_record.h"
 #include "sph_adaptive.h"
 #include "update.h"
 

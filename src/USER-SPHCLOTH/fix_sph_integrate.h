@@ -11,10 +11,10 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include "fix.h"
 
-#include "core/criteria.h"
-#include "core/tait.h"
-#include "output_times.h"
-#include "particle_columns.h"
+#include "core/timestep/step_limits.h"
+#include "core/sph/tait.h"
+#include "stepping/output_times.h"
+#include "lammps_util/particle_columns.h"
 
 #include <array>
 #include <memory>

@@ -1,12 +1,12 @@
-// Particle shifting, core/shift.h.  What is measured where the forces are, with ghosts in place, is
+// Particle shifting, core/sph/shifting.h.  What is measured where the forces are, with ghosts in place, is
 // applied when the next step moves the particles: a restart between the two measures it again.
 
 #include "fix_sph_shift.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
-#include "core/bytes.h"
+#include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_wall_sph.h"
@@ -14,7 +14,7 @@
 #include "group.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "restart_record.h"
+#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>

@@ -11,7 +11,7 @@ FixStyle(sph/shift,FixSPHShift);
 
 #include "fix.h"
 
-#include "core/shift.h"
+#include "core/sph/shifting.h"
 
 #include <array>
 #include <string>

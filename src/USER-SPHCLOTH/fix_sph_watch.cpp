@@ -3,9 +3,9 @@
 
 #include "fix_sph_watch.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -16,7 +16,7 @@
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
-#include "restart_record.h"
+#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>

@@ -1,18 +1,18 @@
-// Plane walls as half-spaces of fluid at rest density, core/wall.h.  pair_style sph/tait calls
+// Plane walls as half-spaces of fluid at rest density, core/sph/plane_wall.h.  pair_style sph/tait calls
 // this fix while it evaluates, since densities must be complete before the equation of state.
 
 #include "fix_wall_sph.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
+#include "lammps_util/atom_tools.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "input.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "rank_error.h"
+#include "lammps_util/rank_error.h"
 #include "update.h"
 #include "variable.h"
 

@@ -11,9 +11,9 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "fix.h"
 
-#include "core/shift.h"
-#include "core/wall.h"
-#include "fluid_wall.h"
+#include "core/sph/shifting.h"
+#include "core/sph/plane_wall.h"
+#include "fluid/fluid_boundary.h"
 
 #include <array>
 #include <string>

@@ -1,14 +1,14 @@
 // Weakly compressible SPH: density summation (1), momentum (2), Tait equation of state (3).
-// The sums themselves are in core/fluid_loops.h, what is said of types in sph_materials.cpp.
+// The sums themselves are in core/sph/fluid_loops.h, what is said of types in sph_materials.cpp.
 
 #include "pair_sph_tait.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "atom_tools.h"
-#include "block_steps.h"
+#include "lammps_util/atom_tools.h"
+#include "stepping/block_steps.h"
 #include "comm.h"
-#include "core/bytes.h"
+#include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_cloth_contact.h"
@@ -17,7 +17,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "rank_error.h"
+#include "lammps_util/rank_error.h"
 #include "timer.h"
 #include "update.h"
 

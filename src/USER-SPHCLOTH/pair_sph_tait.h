@@ -12,8 +12,8 @@ PairStyle(sph/tait,PairSPHTait);
 #include "atom.h"
 #include "pair.h"
 
-#include "core/wall.h"
-#include "sph_materials.h"
+#include "core/sph/plane_wall.h"
+#include "fluid/sph_materials.h"
 
 #include <Eigen/Core>
 

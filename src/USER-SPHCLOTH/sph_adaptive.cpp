@@ -3,7 +3,7 @@
 #include "sph_adaptive.h"
 
 #include "angle.h"
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "bond.h"
 #include "comm.h"

@@ -1,6 +1,6 @@
 #include "sph_write.h"
 
-#include "arg_reader.h"
+#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"

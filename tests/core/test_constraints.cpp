@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/cloth_solver.h"
+#include "core/pbd/cloth_solver.h"
 
 #include <limits>
 #include <random>

@@ -1,8 +1,8 @@
 #include "check.h"
-#include "core/box_grid.h"
-#include "core/contact.h"
-#include "core/disc_grid.h"
-#include "core/sides.h"
+#include "core/geometry/box_grid.h"
+#include "core/contact/point_triangle.h"
+#include "core/geometry/disc_grid.h"
+#include "core/contact/sheet_sides.h"
 
 #include <limits>
 #include <random>

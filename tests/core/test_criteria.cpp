@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/criteria.h"
+#include "core/timestep/step_limits.h"
 
 #include <set>
 #include <string>

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/gradient.h"
+#include "core/sph/gradient.h"
 
 #include <random>
 

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/kernel.h"
+#include "core/sph/kernel.h"
 
 using namespace sphcloth;
 

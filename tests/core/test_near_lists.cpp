@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/near_lists.h"
+#include "core/neighbor/dual_lists.h"
 
 #include <random>
 

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/neighbours.h"
+#include "core/neighbor/cell_lists.h"
 
 #include <random>
 #include <set>

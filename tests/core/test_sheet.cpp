@@ -1,6 +1,6 @@
 #include "check.h"
-#include "core/colouring.h"
-#include "core/sheet.h"
+#include "core/pbd/coloring.h"
+#include "core/pbd/sheet_mesh.h"
 
 #include <numeric>
 #include <set>

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/simd.h"
+#include "core/util/simd.h"
 
 #include <random>
 

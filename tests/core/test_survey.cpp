@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/survey.h"
+#include "core/neighbor/block_minmax.h"
 
 #include <random>
 

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/tait.h"
+#include "core/sph/tait.h"
 
 using namespace sphcloth;
 

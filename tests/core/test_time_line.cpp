@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/time_line.h"
+#include "core/timestep/time_bins.h"
 
 using namespace sphcloth;
 

@@ -1,5 +1,5 @@
 #include "check.h"
-#include "core/wall.h"
+#include "core/sph/plane_wall.h"
 
 #include <array>
 #include <limits>
@@ -11,7 +11,7 @@ namespace {
 constexpr double DELTAS[] = {0.0, 0.013, 0.2, 0.331, 0.5, 0.77, 0.96};
 
 // Midpoint rule over the slab between delta and 1, rings of radius t around its axis; in two
-// dimensions a ring is two points.  Uses nothing of wall.h.
+// dimensions a ring is two points.  Uses nothing of core/sph/plane_wall.h.
 template <class Term> double behind(double delta, int dim, const Term &term)
 {
   const int n = 1000;

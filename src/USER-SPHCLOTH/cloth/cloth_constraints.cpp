@@ -1,0 +1,205 @@
+// Constraints (4) to (6) of a cloth.
+//
+// The colours follow from the global IDs alone and every rank projects each constraint that touches
+// one of its vertices, so that the result does not depend on the number of ranks.  Nor does it on
+// the order within a colour, which is that of the vertices in memory.
+
+#include "cloth/cloth_constraints.h"
+
+#include "atom.h"
+#include "bond_pbd.h"
+#include "core/pbd/coloring.h"
+#include "dihedral_pbd.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// null: another style's
+
+const PBDMaterial *ClothConstraints::material_of_edge(int type) const
+{
+  const auto *bond = dynamic_cast<BondPBD *>(force->bond_match("pbd"));
+  return bond->owns(type) ? &bond->material(type) : nullptr;
+}
+
+const PBDMaterial *ClothConstraints::material_of_hinge(int type) const
+{
+  const auto *dihedral =
+      dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
+  return dihedral && dihedral->owns(type) ? &dihedral->material(type) : nullptr;
+}
+
+bool ClothConstraints::has_strain(int m) const
+{
+  const PBDMaterial *material = material_of_edge(mesh.edges.type[m]);
+  return material && !material->no_rest && material->n_springs() > 0 && edges.rest[m] > 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   what follows from the mesh, the same on every rank
+------------------------------------------------------------------------- */
+
+// Rest lengths and rest angles from the rest positions, which each vertex carries.
+
+void ClothConstraints::measure_rest(int groupbit, double **rest_x)
+{
+  const int n = mesh.n_vertices();
+  std::vector<Vec3> mine(n, Vec3::Zero()), rest(n);
+  int missing = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2]))
+      missing = static_cast<int>(atom->tag[i]);
+    mine[mesh.index_of(atom->tag[i])] = Vec3(rest_x[i][0], rest_x[i][1], rest_x[i][2]);
+  }
+  int any_missing = 0;
+  MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);
+  if (any_missing)
+    error->all(
+        FLERR,
+        "{}: vertex {} has no rest position, it was added after the fix: define the fix when "
+        "the cloth is complete",
+        owner, any_missing);
+  MPI_Allreduce(mine.data(), rest.data(), 3 * n, MPI_DOUBLE, MPI_SUM, world);
+
+  // nearest images, for cloth that closes over a periodic boundary
+  const auto from = [&](int a, int b) {
+    Vec3 d = rest[b] - rest[a];
+    domain->minimum_image(FLERR, d.data());
+    return d;
+  };
+  mean = 0.0;
+  edges.rest.clear();
+  for (const auto &[a, b] : mesh.edges.vertices) {
+    edges.rest.push_back(from(a, b).norm());
+    mean += edges.rest.back() / static_cast<double>(mesh.edges.size());
+  }
+  if (mean == 0.0) mean = 1.0;    // nothing has a size: residuals are lengths
+  hinges.rest.clear();
+  for (const auto &[a, e1, e2, b] : mesh.hinges.vertices) {
+    const double angle = hinge_angle(from(e1, a), Vec3::Zero(), from(e1, e2), from(e1, b));
+    hinges.rest.push_back(std::isnan(angle) ? 0.0 : angle);
+  }
+}
+
+void ClothConstraints::colour(int sweeps, bool at_once)
+{
+  const auto springs_of = [sweeps](const PBDMaterial *material) {
+    return material ? material->springs(1.0, sweeps) : std::vector<Spring>();
+  };
+  edges.springs.assign(1, {});
+  for (int t = 1; t <= atom->nbondtypes; t++)
+    edges.springs.push_back(springs_of(material_of_edge(t)));
+  hinges.springs.assign(1, {});
+  for (int t = 1; t <= atom->ndihedraltypes; t++)
+    hinges.springs.push_back(springs_of(material_of_hinge(t)));
+
+  edges.layers = 1;
+  for (const std::vector<Spring> &springs : edges.springs)
+    edges.layers = std::max(edges.layers, static_cast<int>(springs.size()));
+  edges.colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), edges.colours);
+  hinges.colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinges.colours);
+
+  crowd.assign(at_once ? mesh.n_vertices() : 0, 0);
+  count(edges);
+  count(hinges);
+}
+
+template <std::size_t N> void ClothConstraints::count(const Kind<N> &kind)
+{
+  if (crowd.empty()) return;
+  for (std::size_t m = 0; m < kind.elements.size(); m++)
+    for (int vertex : kind.elements.vertices[m])
+      crowd[vertex] += static_cast<int>(kind.springs[kind.elements.type[m]].size());
+}
+
+// What a constraint may do of its projection in a Jacobi sweep: the same for all its vertices, so
+// that momentum is kept.
+
+template <std::size_t N> double ClothConstraints::share_of(const std::array<int, N> &vertices) const
+{
+  if (crowd.empty()) return 1.0;
+  int most = 1;
+  for (int vertex : vertices) most = std::max(most, crowd[vertex]);
+  return 1.0 / most;
+}
+
+/* ----------------------------------------------------------------------
+   this rank's, after each list build
+------------------------------------------------------------------------- */
+
+void ClothConstraints::collect(VertexHalo &halo)
+{
+  std::vector<int> vertex_of_slot(halo.n_owned());
+  for (int s = 0; s < halo.n_owned(); s++)
+    vertex_of_slot[s] = mesh.index_of(atom->tag[halo.atom_of(s)]);
+  const auto found_edges = find(edges, halo, vertex_of_slot);
+  const auto found_hinges = find(hinges, halo, vertex_of_slot);
+  fill(distance, edges, found_edges, halo.n_slots());
+  fill(bending, hinges, found_hinges, halo.n_slots());
+  ask_for_ghosts(halo);
+}
+
+// Every element with at least one owned vertex, once, by colour: it is taken from the view of the
+// first of its vertices that is owned here.
+
+template <std::size_t N>
+ClothConstraints::ByColour<N> ClothConstraints::find(const Kind<N> &kind, VertexHalo &halo,
+                                                     const std::vector<int> &vertex_of_slot) const
+{
+  ByColour<N> found(kind.colours);
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s), vertex = vertex_of_slot[s];
+    for (int k = kind.elements.first[vertex]; k < kind.elements.first[vertex + 1]; k++) {
+      const int m = kind.elements.incident[k];
+      if (kind.springs[kind.elements.type[m]].empty()) continue;
+      Found<N> f{m, {}};
+      int viewer = -1;
+      for (std::size_t q = 0; q < N && (viewer < 0 || viewer == s); q++) {
+        f.slots[q] = halo.slot_of(mesh.image_here(kind.elements.vertices[m][q], i));
+        if (viewer < 0 && !halo.is_ghost(f.slots[q])) viewer = f.slots[q];
+      }
+      if (viewer == s) found[kind.colour[m]].push_back(f);
+    }
+  }
+  return found;
+}
+
+template <std::size_t N>
+void ClothConstraints::fill(Constraints<N> &c, const Kind<N> &kind, const ByColour<N> &found,
+                            int idle) const
+{
+  c.clear(kind.colours * kind.layers, idle);
+  for (int layer = 0; layer < kind.layers; layer++)
+    for (const std::vector<Found<N>> &of_colour : found) {
+      for (const Found<N> &f : of_colour) {
+        const std::vector<Spring> &springs = kind.springs[kind.elements.type[f.element]];
+        if (layer >= static_cast<int>(springs.size())) continue;
+        Spring spring = springs[layer];
+        spring.rest *= kind.rest[f.element];
+        c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]));
+      }
+      c.close_colour();
+    }
+}
+
+void ClothConstraints::ask_for_ghosts(VertexHalo &halo) const
+{
+  for (int s = halo.n_owned(); s < halo.n_slots(); s++) {
+    const int vertex = mesh.index_of(atom->tag[halo.atom_of(s)]);
+    halo.need(s, ALL);
+    for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++)
+      for (int layer = 0; layer < edges.layers; layer++)
+        halo.need(
+            s,
+            channel_of_edge_colour(edges.colour[mesh.edges.incident[k]] + edges.colours * layer));
+    for (int k = mesh.hinges.first[vertex]; k < mesh.hinges.first[vertex + 1]; k++)
+      halo.need(s, channel_of_hinge_colour(hinges.colour[mesh.hinges.incident[k]]));
+  }
+}

@@ -1,0 +1,155 @@
+#include "cloth/cloth_topology.h"
+
+#include "atom.h"
+#include "lammps_util/atom_tools.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "lammps_util/rank_error.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+using namespace LAMMPS_NS;
+
+// One way to write each element, so that two copies of it compare equal: edges ascending,
+// triangles rotated to start with the smallest vertex, hinges with the edge ascending.
+
+static void canonical(std::array<int, 2> &e)
+{
+  if (e[0] > e[1]) std::swap(e[0], e[1]);
+}
+
+static void canonical(std::array<int, 3> &t)
+{
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+}
+
+static void canonical(std::array<int, 4> &h)
+{
+  if (h[1] > h[2]) std::reverse(h.begin(), h.end());
+}
+
+int ClothTopology::index_of(tagint id) const
+{
+  // most often they are numbers in a row
+  if (!ids.empty() && id >= ids.front()) {
+    const std::size_t k = id - ids.front();
+    if (k < ids.size() && ids[k] == id) return static_cast<int>(k);
+  }
+  const auto it = std::lower_bound(ids.begin(), ids.end(), id);
+  return it != ids.end() && *it == id ? static_cast<int>(it - ids.begin()) : -1;
+}
+
+int ClothTopology::image_near(int vertex, int i) const
+{
+  int j = atom->map(ids[vertex]);
+  if (j < 0) return -1;
+  // the nearest of the images that are here may still be one across the box
+  if (atom->sametag[j] >= 0) j = domain->closest_image(i, j);
+  const double *a = atom->x[i], *b = atom->x[j];
+  return domain->minimum_image_check(a[0] - b[0], a[1] - b[1], a[2] - b[2]) ? -1 : j;
+}
+
+int ClothTopology::image_here(int vertex, int i) const
+{
+  const int j = image_near(vertex, i);
+  if (j < 0)
+    rank_error(
+        lmp, FLERR,
+        "{}: vertex {} is out of reach of vertex {} on this rank: raise the ghost cut-off with "
+        "'comm_modify cutoff' to the size of two edges",
+        owner, ids[vertex], atom->tag[i]);
+  return j;
+}
+
+Eigen::Vector3d ClothTopology::from(int i, int vertex) const
+{
+  const double *a = atom->x[i], *b = atom->x[image_here(vertex, i)];
+  return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+}
+
+void ClothTopology::gather(int groupbit)
+{
+  const int nlocal = atom->nlocal;
+  std::vector<tagint> mine;
+  for (int i = 0; i < nlocal; i++)
+    if (atom->mask[i] & groupbit) mine.push_back(atom->tag[i]);
+  ids = allgather(mine, comm->nprocs, world);
+  std::sort(ids.begin(), ids.end());
+
+  gather_elements(edges, "bond", [&](int i, auto add) {
+    for (int m = 0; m < atom->num_bond[i]; m++)
+      add({atom->tag[i], atom->bond_atom[i][m]}, atom->bond_type[i][m]);
+  });
+  gather_elements(triangles, "angle", [&](int i, auto add) {
+    for (int m = 0; m < atom->num_angle[i]; m++)
+      add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
+          std::min(atom->angle_type[i][m], 1));    // its type says nothing: two would be one twice
+  });
+  gather_elements(hinges, "dihedral", [&](int i, auto add) {
+    for (int m = 0; m < atom->num_dihedral[i]; m++)
+      add({atom->dihedral_atom1[i][m], atom->dihedral_atom2[i][m], atom->dihedral_atom3[i][m],
+           atom->dihedral_atom4[i][m]},
+          atom->dihedral_type[i][m]);
+  });
+}
+
+template <std::size_t N, class Collect>
+void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what, Collect collect)
+{
+  // elements of owned atoms with at least one vertex in the cloth, as N IDs and a type
+  std::vector<tagint> mine;
+  for (int i = 0; i < atom->nlocal; i++)
+    collect(i, [&](const std::array<tagint, N> &members, int type) {
+      if (type <= 0) return;    // switched off by LAMMPS
+      bool any = false;
+      for (tagint id : members) any = any || index_of(id) >= 0;
+      if (!any) return;
+      mine.insert(mine.end(), members.begin(), members.end());
+      mine.push_back(type);
+    });
+  const std::vector<tagint> all = allgather(mine, comm->nprocs, world);
+
+  struct Element {
+    std::array<int, N> vertices;
+    int type;
+  };
+  std::vector<Element> sorted(all.size() / (N + 1));
+  for (std::size_t m = 0; m < sorted.size(); m++) {
+    const tagint *record = &all[m * (N + 1)];
+    for (std::size_t k = 0; k < N; k++) {
+      sorted[m].vertices[k] = index_of(record[k]);
+      if (sorted[m].vertices[k] < 0)
+        error->all(
+            FLERR,
+            "{}: a {} of atom {} leaves the group at atom {}: put both into the fix group or "
+            "delete the {}",
+            owner, what, record[k ? 0 : 1], record[k], what);
+    }
+    canonical(sorted[m].vertices);
+    sorted[m].type = static_cast<int>(record[N]);
+  }
+  // copies of an element are one; those of another type are constraints of their own
+  const auto key = [](const Element &e) { return std::tie(e.vertices, e.type); };
+  std::sort(sorted.begin(), sorted.end(),
+            [&](const Element &a, const Element &b) { return key(a) < key(b); });
+  sorted.erase(std::unique(sorted.begin(), sorted.end(),
+                           [&](const Element &a, const Element &b) { return key(a) == key(b); }),
+               sorted.end());
+
+  elements.vertices.clear();
+  elements.type.clear();
+  elements.first.assign(n_vertices() + 1, 0);
+  for (const Element &e : sorted) {
+    elements.vertices.push_back(e.vertices);
+    elements.type.push_back(e.type);
+    for (int v : e.vertices) elements.first[v + 1]++;
+  }
+  std::partial_sum(elements.first.begin(), elements.first.end(), elements.first.begin());
+  elements.incident.resize(elements.first.back());
+  std::vector<int> cursor(elements.first.begin(), elements.first.end() - 1);
+  for (std::size_t m = 0; m < sorted.size(); m++)
+    for (int v : sorted[m].vertices) elements.incident[cursor[v]++] = static_cast<int>(m);
+}

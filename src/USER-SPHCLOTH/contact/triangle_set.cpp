@@ -1,0 +1,118 @@
+#include "contact/triangle_set.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "lammps_util/rank_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+
+TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_, const std::string &label_) :
+    Pointers(lmp_), label(label_), mesh(mesh_), link(link_), halo(lmp)
+{
+}
+
+Eigen::Vector3d TriangleSet::place(int slot) const
+{
+  const double *x = atom->x[halo.atom_of(slot)];
+  return {x[0], x[1], x[2]};
+}
+
+void TriangleSet::rebuild(double far)
+{
+  if (at_border.empty()) find_border();
+  std::vector<int> owned, reach;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+    if (!mesh->has_vertex(i)) continue;
+    reach.push_back(i);
+    if (i < atom->nlocal) owned.push_back(i);
+  }
+  halo.reset(1, owned);
+  triangles.clear();
+  element.clear();
+  add_triangles(reach);
+  for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
+  halo.connect(link);
+  check_reach(far);
+}
+
+// Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
+// out of reach is too far from this rank's particles to matter.
+
+void TriangleSet::add_triangles(const std::vector<int> &reach)
+{
+  const ClothTopology &cloth = mesh->topology();
+  const ClothElements<3> &t = cloth.triangles;
+  for (int i : reach) {
+    const int vertex = cloth.index_of(atom->tag[i]);
+    if (vertex < 0) continue;
+    for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
+      const std::array<int, 3> &members = t.vertices[t.incident[k]];
+      if (members[0] != vertex) continue;
+      const int j = cloth.image_near(members[1], i), l = cloth.image_near(members[2], i);
+      if ((j < 0 || l < 0) && i < atom->nlocal)
+        rank_error(
+            lmp, FLERR,
+            "{}: the triangle of vertices {}, {} and {} is larger than the ghost cut-off: raise "
+            "it with 'comm_modify cutoff', or refine the mesh",
+            label, cloth.ids[vertex], cloth.ids[members[1]], cloth.ids[members[2]]);
+      if (j < 0 || l < 0) continue;
+      triangles.push_back({halo.slot_of(i), halo.slot_of(j), halo.slot_of(l)});
+      element.push_back(t.incident[k]);
+    }
+  }
+}
+
+void TriangleSet::check_reach(double far)
+{
+  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
+  double longest_sq = 0.0;
+  for (const std::array<int, 3> &t : triangles)
+    for (int q = 0; q < 3; q++) {
+      const double *a = atom->x[halo.atom_of(t[q])], *b = atom->x[halo.atom_of(t[(q + 1) % 3])];
+      longest_sq =
+          std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
+    }
+  const double needed = std::sqrt(longest_sq) + far, reach = comm->get_comm_cutoff();
+  if (needed > reach)
+    rank_error(
+        lmp, FLERR,
+        "{}: the longest edge of the mesh and the reach of its triangles are {}, more than the ghost "
+        "cut-off {}: raise it with 'comm_modify cutoff', or refine the mesh",
+        label, needed, reach);
+}
+
+void TriangleSet::find_border()
+{
+  const auto &elements = mesh->topology().triangles.vertices;
+  std::map<std::array<int, 2>, int> triangles_at;
+  const auto edge = [](const std::array<int, 3> &t, int opposite) -> std::array<int, 2> {
+    const int a = t[(opposite + 1) % 3], b = t[(opposite + 2) % 3];
+    return {std::min(a, b), std::max(a, b)};
+  };
+  for (const auto &t : elements)
+    for (int q = 0; q < 3; q++) triangles_at[edge(t, q)]++;
+  at_border.resize(elements.size());
+  for (std::size_t m = 0; m < elements.size(); m++)
+    for (int q = 0; q < 3; q++) at_border[m][q] = triangles_at[edge(elements[m], q)] == 1;
+}
+
+void TriangleSet::check_winding() const
+{
+  const ClothTopology &cloth = mesh->topology();
+  std::map<std::array<int, 2>, int> at_edge;    // as a triangle runs along it
+  for (const auto &t : cloth.triangles.vertices)
+    for (int q = 0; q < 3; q++)
+      if (++at_edge[{t[q], t[(q + 1) % 3]}] > 1)
+        error->all(
+            FLERR,
+            "{}: two triangles run from vertex {} to vertex {}: a cloth with two sides must be "
+            "wound alike everywhere ('sphcloth mesh' does that); or give 'sides no'",
+            label, cloth.ids[t[q]], cloth.ids[t[(q + 1) % 3]]);
+}

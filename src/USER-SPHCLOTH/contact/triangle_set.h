@@ -1,0 +1,75 @@
+// The triangles of one mesh that are within reach of a rank, and where their vertices are.
+
+#ifndef SPHCLOTH_CONTACT_TRIANGLE_SET_H
+#define SPHCLOTH_CONTACT_TRIANGLE_SET_H
+
+#include "contact/contact_mesh.h"
+#include "core/geometry/box_grid.h"
+#include "platform.h"
+#include "cloth/vertex_halo.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class Fix;
+
+class TriangleSet : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  // link: the fix that lends its communication
+  TriangleSet(LAMMPS *, ContactMesh *, Fix *link, const std::string &label);
+
+  // After each list build.  A particle must see the whole of every triangle that is nearer than `far`.
+  void rebuild(double far);
+
+  // Is any there, on any rank?
+  bool has_triangles() const { return mesh->topology().triangles.size() > 0; }
+
+  // sides need triangles that are wound alike
+  void check_winding() const;
+
+  int pack_link(int n, const int *atoms, double *buf) const
+  {
+    return halo.pack_link(n, atoms, buf);
+  }
+  void unpack_link(int n, int first, const double *buf) { halo.unpack_link(n, first, buf); }
+
+ protected:
+  std::string label;
+  ContactMesh *mesh;
+  Fix *link;
+  VertexHalo halo;
+  std::vector<std::array<int, 3>> triangles;    // slots
+  std::vector<int> element;                     // of the mesh, of each triangle
+
+  // nothing is beyond the edge of an element that is opposite to a vertex
+  bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
+
+  // is a point of a triangle, by its barycentric weights, on the border?
+  bool is_on_border(int t, const Vec3 &weight) const
+  {
+    for (int q = 0; q < 3; q++)
+      if (weight[q] <= 0.0 && is_border(element[t], q)) return true;
+    return false;
+  }
+
+  // vertices as they are now, ghosts too
+  Vec3 place(int slot) const;
+
+ private:
+  std::vector<std::array<bool, 3>> at_border;    // of each element
+
+  void find_border();
+  void add_triangles(const std::vector<int> &reach);
+  void check_reach(double far);
+
+  friend class SheetWall;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

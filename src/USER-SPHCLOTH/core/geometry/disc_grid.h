@@ -1,0 +1,194 @@
+// Discs around triangles, sorted by their centres into cells: which triangles may be near a point, which may be
+// the nearest?  No triangle is nearer than its disc, nor farther than the centre.
+//
+// A query looks around the point as far as the largest disc may reach, so small ones and large ones
+// have grids of their own.
+
+#ifndef SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
+#define SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
+
+#include "core/util/bytes.h"
+#include "core/geometry/cell_grid.h"
+#include "core/util/simd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace sphcloth {
+
+struct Disc {
+  Eigen::Vector3d centre, normal;    // without a normal it is a ball
+  double radius;
+  double room = 0.0;    // how far from it the triangle may be
+};
+
+inline Disc disc_around(const Eigen::Vector3d &a, const Eigen::Vector3d &b,
+                        const Eigen::Vector3d &c)
+{
+  const Eigen::Vector3d centre = (a + b + c) / 3.0, normal = (b - a).cross(c - a);
+  const double radius_sq = std::max(
+      {(a - centre).squaredNorm(), (b - centre).squaredNorm(), (c - centre).squaredNorm()});
+  const double area = normal.norm();
+  return {centre, area > 0.0 ? Eigen::Vector3d(normal / area) : Eigen::Vector3d::Zero(),
+          std::sqrt(radius_sq)};
+}
+
+class DiscGrid {
+ public:
+  // for queries that look about as far as `reach`; buffers are kept from build to build
+
+  void build(const std::vector<Disc> &discs, double reach)
+  {
+    for (Size &size : sizes) size.members.clear();
+    for (std::size_t d = 0; d < discs.size(); d++) {
+      std::size_t n = 0;
+      const double size = discs[d].radius + discs[d].room;
+      for (double most = reach; size > most && n < MOST_SIZES - 1; most *= 2.0) n++;
+      if (n >= sizes.size()) sizes.resize(n + 1);
+      sizes[n].members.push_back(static_cast<int>(d));
+    }
+    for (Size &size : sizes) size.sort(discs, reach);
+  }
+
+  // calls visit(d) for every disc d that is not farther from p than `far`
+
+  template <class Visit> void within(const Eigen::Vector3d &p, double far, Visit visit)
+  {
+    for (Size &size : sizes)
+      if (size.look(p, far)) {
+        size.measure(p, std::numeric_limits<double>::infinity());
+        size.visit_near(p, far, visit);
+      }
+  }
+
+  // of those the ones that are not farther than the nearest centre of all, and `slack`
+
+  template <class Visit>
+  void nearest(const Eigen::Vector3d &p, double far, double slack, Visit visit)
+  {
+    double least_sq = far * far;
+    for (Size &size : sizes)
+      if (size.look(p, far)) least_sq = size.measure(p, least_sq);
+    const double most = std::min(far, std::sqrt(least_sq) + slack);
+    for (Size &size : sizes) size.visit_near(p, most, visit);
+  }
+
+  double bytes() const
+  {
+    double sum = 0.0;
+    for (const Size &s : sizes)
+      sum += bytes_of(s.members, s.first, s.cursor, s.items, s.x, s.y, s.z, s.disc, s.distance_sq);
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t MOST_SIZES = 32;
+
+  struct Size {
+    std::vector<int> members;
+    CellGrid grid;
+    double largest = 0.0;    // radius and room
+    std::vector<int> first, cursor, items;
+    std::vector<double> x, y, z;    // in the order of the cells
+    std::vector<Disc> disc;
+    // of the last query: the cells, if any, and how far the centres in them are
+    CellGrid::Cell lo, hi;
+    std::vector<double> distance_sq;
+
+    void sort(const std::vector<Disc> &discs, double reach)
+    {
+      Box bounds;
+      largest = 0.0;
+      for (const int d : members) {
+        bounds.extend(discs[d].centre);
+        largest = std::max(largest, discs[d].radius + discs[d].room);
+      }
+      grid.bounds = bounds;
+      if (members.empty()) return;
+      grid.cut(bounds, Eigen::Vector3d::Constant(0.5 * (reach + largest)), members.size());
+      const auto cell_of = [&](int d) {
+        const CellGrid::Cell c = grid.of(discs[d].centre);
+        return grid.number(c[0], c[1], c[2]);
+      };
+      first.assign(grid.size() + 1, 0);
+      for (const int d : members) first[cell_of(d) + 1]++;
+      for (std::size_t c = 1; c < first.size(); c++) first[c] += first[c - 1];
+      cursor.assign(first.begin(), first.end() - 1);
+      items.resize(members.size());
+      for (const int d : members) items[cursor[cell_of(d)]++] = d;
+      for (std::vector<double> *column : {&x, &y, &z, &distance_sq})
+        column->assign(items.size() + LANES, std::numeric_limits<double>::infinity());
+      disc.resize(items.size());
+      for (std::size_t n = 0; n < items.size(); n++) {
+        disc[n] = discs[items[n]];
+        x[n] = disc[n].centre[0];
+        y[n] = disc[n].centre[1];
+        z[n] = disc[n].centre[2];
+      }
+    }
+
+    // Which cells hold the centres of those within `far`?  None: false.
+    bool look(const Eigen::Vector3d &p, double far)
+    {
+      const double room = far + largest;
+      lo = CellGrid::Cell::Zero();
+      hi = CellGrid::Cell::Constant(-1);
+      if (grid.empty() || !(grid.bounds.squaredExteriorDistance(p) <= room * room)) return false;
+      lo = grid.of(p - Eigen::Vector3d::Constant(room));
+      hi = grid.of(p + Eigen::Vector3d::Constant(room));
+      return true;
+    }
+
+    // the least distance of a centre, squared, if it is below what is known
+    SPHCLOTH_MULTIVERSION double measure(const Eigen::Vector3d &p, double known)
+    {
+      const double px = p[0], py = p[1], pz = p[2];
+      double least[LANES];    // lane by lane, so that none waits for the one before
+      for (double &lane : least) lane = known;
+      for (int k = lo[2]; k <= hi[2]; k++)
+        for (int j = lo[1]; j <= hi[1]; j++)
+          for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
+            const double *cx = &x[n], *cy = &y[n], *cz = &z[n];
+            double *to = &distance_sq[n];
+#pragma omp simd
+            for (int l = 0; l < LANES; l++) {
+              const double dx = px - cx[l], dy = py - cy[l], dz = pz - cz[l];
+              to[l] = dx * dx + dy * dy + dz * dz;
+              least[l] = to[l] < least[l] ? to[l] : least[l];
+            }
+          }
+      return *std::min_element(least, least + LANES);
+    }
+
+    template <class Visit> void visit_near(const Eigen::Vector3d &p, double far, Visit visit) const
+    {
+      const double room = far + largest;
+      for (int k = lo[2]; k <= hi[2]; k++)
+        for (int j = lo[1]; j <= hi[1]; j++)
+          for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n++)
+            if (distance_sq[n] <= room * room && reaches(n, p, far)) visit(items[n]);
+    }
+
+    // is a disc within `far` of p?
+    bool reaches(int n, const Eigen::Vector3d &p, double far) const
+    {
+      const Disc &d = disc[n];
+      const double height = d.normal.dot(p - d.centre), height_sq = height * height;
+      const double aside = std::sqrt(std::max(0.0, distance_sq[n] - height_sq)) - d.radius;
+      const double most = far + d.room;
+      return height_sq + (aside > 0.0 ? aside * aside : 0.0) <= most * most;
+    }
+
+    // cells of a row along x lie one behind the other
+    int begin_of_row(int j, int k) const { return first[grid.number(lo[0], j, k)]; }
+    int end_of_row(int j, int k) const { return first[grid.number(hi[0], j, k) + 1]; }
+  };
+
+  std::vector<Size> sizes;    // of twice the radius each
+};
+
+}    // namespace sphcloth
+
+#endif

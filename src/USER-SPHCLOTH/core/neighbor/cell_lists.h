@@ -1,0 +1,492 @@
+// Neighbour lists of short-ranged particles, by type of the neighbour.
+//
+// Particles are sorted by type and then by cell, cells in rows along x, so that the neighbours of a
+// particle lie in a few contiguous runs of single-precision coordinates: lists are built several
+// times faster than over linked bins.  Each type has a grid of its own, as fine as its particles look
+// among each other.  A pair of types without a reach costs nothing, and the neighbours of a particle
+// come grouped by their type, so that a loop over one group has one set of coefficients.
+
+#ifndef SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
+#define SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/util/bytes.h"
+#include "core/contact/sheet_sides.h"
+#include "core/util/simd.h"
+
+namespace sphcloth {
+
+// Where particles are, to count coordinates from the centre in single precision
+
+struct Extent {
+  std::array<double, 3> lo, hi;
+
+  Extent()
+  {
+    lo.fill(std::numeric_limits<double>::max());
+    hi.fill(std::numeric_limits<double>::lowest());
+  }
+  void include(const double *x)
+  {
+    for (int d = 0; d < 3; d++) {
+      lo[d] = std::min(lo[d], x[d]);
+      hi[d] = std::max(hi[d], x[d]);
+    }
+  }
+};
+
+struct Bounds : Extent {
+  std::array<double, 3> centre;
+  double rounding;    // what that may do to a distance
+
+  Bounds(const double *x, int n)
+  {
+    for (int i = 0; i < n; i++) include(x + 3 * i);
+    double extent = 0.0;
+    for (int d = 0; d < 3; d++) {
+      centre[d] = 0.5 * (lo[d] + hi[d]);
+      extent = std::max(extent, hi[d] - lo[d]);
+    }
+    rounding = extent * 4.0 * std::numeric_limits<float>::epsilon();
+  }
+};
+
+// one group of neighbours; LANES indices past the end are readable and valid
+
+struct Stretch {
+  const int *of = nullptr;
+  int n = 0;
+};
+
+// For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones lie in others
+// behind it: nothing else moves.
+
+class Stretches {
+ public:
+  void start(std::size_t slots, int n_types)
+  {
+    types = n_types;
+    end = 0;
+    free = nullptr;
+    later.clear();
+    pieces.clear();
+    pieces.reserve(slots * n_types);
+  }
+  Stretch operator()(int slot, int type) const
+  {
+    const Piece &piece = pieces[number(slot, type)];
+    return {piece.of, piece.n};
+  }
+  int *open(int slot, int type) { return pieces[number(slot, type)].of; }
+  // room for at most n more entries and the slack behind them
+  int *room(int n)
+  {
+    if (free) return later_room(n);
+    const std::size_t need = end + n + SLACK;
+    // lists are most of the memory: grow by little
+    if (entries.size() < need) {
+      entries.reserve(need + need / 16);
+      entries.resize(need + need / 16);
+    }
+    return entries.data() + end;
+  }
+  void close(int n)
+  {
+    pieces.push_back({nullptr, n, n});
+    end += n;
+  }
+  // all are closed: what loops over whole groups read behind the last stretch
+  void finish()
+  {
+    int *last = room(0);
+    std::fill(last, last + SLACK, 0);
+    const std::size_t need = end + SLACK;
+    if (entries.capacity() > need + need / 32) {
+      std::vector<int> trimmed;
+      trimmed.reserve(need + need / 128);
+      trimmed.assign(entries.begin(), entries.begin() + need);
+      entries.swap(trimmed);
+    }
+    int *of = entries.data();
+    for (Piece &piece : pieces) {
+      piece.of = of;
+      of += piece.n;
+    }
+    free = of_later = of;    // nothing is left
+  }
+  // by n in the room that was given last
+  int *replace(int slot, int type, int n)
+  {
+    Piece &piece = pieces[number(slot, type)];
+    piece.n = n;
+    if (n <= piece.room) return std::copy_n(free, n, piece.of) - n;
+    piece.of = free;
+    piece.room = std::min(n + n / 8, static_cast<int>(of_later - free) - SLACK);
+    free += piece.room;
+    return piece.of;
+  }
+  double bytes() const
+  {
+    double sum = bytes_of(entries, pieces);
+    for (const std::vector<int> &more : later) sum += bytes_of(more);
+    return sum;
+  }
+
+ private:
+  static constexpr int SLACK = 2 * LANES;
+  struct Piece {
+    int *of;
+    int n, room;
+  };
+  int types = 0;
+  std::int64_t end = 0;
+  std::vector<Piece> pieces;
+  std::vector<int> entries;
+  std::vector<std::vector<int>> later;
+  int *free = nullptr, *of_later = nullptr;    // in the last of these: what is free, and its end
+
+  std::size_t number(int slot, int type) const
+  {
+    return static_cast<std::size_t>(slot) * types + type - 1;
+  }
+  int *later_room(int n)
+  {
+    constexpr int ENTRIES = 1 << 16;
+    if (of_later - free < n + SLACK) {
+      later.emplace_back(std::max(ENTRIES, n + SLACK));
+      free = later.back().data();
+      of_later = free + later.back().size();
+    }
+    return free;
+  }
+};
+
+class NeighbourLists {
+ public:
+  // x: [n_all][3], owned particles first; reach: [(n_types+1)^2], distance up to which the second
+  // type is listed as a neighbour of the first, 0: never; sides: of all particles, or null.  Who is
+  // parted by a sheet is not listed.
+  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach, const Sides *of_all = nullptr)
+  {
+    std::vector<int> none;
+    build(x, type, n_owned, n_all, n_types, reach, {}, none, of_all);
+  }
+
+  // [region][(n_types+1)^2], and the region of each particle
+  struct Near {
+    const double *distance = nullptr;
+    const int *region = nullptr;
+  };
+
+  // The same, and those that are near come first in each list; front: [slot][type], how many they are.
+  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all)
+  {
+    sides = of_all;
+    sort_into_cells(x, type, n_all, n_types, reach);
+    find_slots(type, n_owned, n_types);
+    lists.start(order.size(), n_types);
+    front.assign(near.distance ? order.size() * n_types : 0, 0);
+    int *in_front = front.data();
+    for (int t = 1; t <= n_types; t++)
+      for (int slot = begin(t); slot < begin(t + 1); slot++)
+        for (int other = 1; other <= n_types; other++) {
+          const int pair = t * (n_types + 1) + other;
+          const int n = list(slot, other, reach[pair], t == other);
+          if (near.distance)
+            *in_front++ = bring_to_front(lists.room(0), n, near_in(near, slot, n_types)[pair]);
+          lists.close(n);
+        }
+    lists.finish();
+    finish();
+  }
+
+  // Some of them anew, of the same particles where they are now, in the same slots: those that are
+  // due(slot, type, other).
+  template <class Due>
+  void renew(const double *x, const int *type, int n_owned, int n_all, int n_types,
+             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all,
+             Due due)
+  {
+    sides = of_all;
+    sort_into_cells(x, type, n_all, n_types, reach);
+    find_places(n_owned);
+    for (int t = 1; t <= n_types; t++)
+      for (int slot = begin(t); slot < begin(t + 1); slot++)
+        for (int other = 1; other <= n_types; other++) {
+          if (!due(slot, t, other)) continue;
+          const int pair = t * (n_types + 1) + other;
+          const int n = list(slot, other, reach[pair], t == other);
+          front[static_cast<std::size_t>(slot) * n_types + other - 1] =
+              bring_to_front(lists.replace(slot, other, n), n, near_in(near, slot, n_types)[pair]);
+        }
+    finish();
+  }
+
+  // owned particles by type and then in space: those of a type are the slots begin(t) to
+  // begin(t + 1)
+  int begin(int t) const { return slots_of[t]; }
+  int slots() const { return static_cast<int>(order.size()); }
+  int at(int slot) const { return order[slot]; }
+  Stretch operator()(int slot, int t) const { return lists(slot, t); }
+  // a stretch whose order may be changed
+  int *open(int slot, int t) { return lists.open(slot, t); }
+  double bytes() const
+  {
+    return lists.bytes() + bytes_of(px, py, pz, key, id, order, place, cell_start, cell, candidate);
+  }
+
+ private:
+  // cells of one type
+
+  struct Grid {
+    std::array<double, 3> lo{}, hi{};
+    std::array<int, 3> n{1, 1, 1};
+    double inv_side = 0.0;
+    std::int64_t first = 0;    // cell, of all types
+
+    std::int64_t cells() const { return static_cast<std::int64_t>(n[0]) * n[1] * n[2]; }
+    std::int64_t row(int cy, int cz) const
+    {
+      return first + (static_cast<std::int64_t>(cz) * n[1] + cy) * n[0];
+    }
+    int along(int d, double x) const
+    {
+      // what is not a number lies in the first
+      return static_cast<int>(std::min(std::max(0.0, (x - lo[d]) * inv_side), n[d] - 1.0));
+    }
+    std::int64_t at(const double *x) const
+    {
+      return row(along(1, x[1]), along(2, x[2])) + along(0, x[0]);
+    }
+  };
+
+  std::vector<Grid> grids;    // by type
+  std::array<double, 3> centre;
+  double slack = 0.0;    // what rounding to single precision may do to a distance
+  std::vector<int> slots_of, order;
+  std::vector<int> place;    // of a slot among the sorted particles
+  std::vector<int> cell;    // of each particle, or its place
+  int sorted = 0;    // particles
+  std::vector<int> cell_start;    // of all types, and one more
+  std::vector<int> id;    // sorted particles: index, position
+  AlignedVector<float> px, py, pz;
+  std::vector<int> candidate;    // of one particle
+  std::vector<float> key;
+  Stretches lists;
+  const Sides *sides = nullptr;    // during a build
+
+  // Half of how far a type looks among its own, or, if it does not, of what others see of it
+
+  static double cell_side(int t, int n_types, const double *reach)
+  {
+    if (const double own = reach[t * (n_types + 1) + t]; own > 0.0) return 0.5 * own;
+    double least = std::numeric_limits<double>::max();
+    for (int other = 1; other <= n_types; other++)
+      if (const double far = reach[other * (n_types + 1) + t]; far > 0.0)
+        least = std::min(least, far);
+    return 0.5 * least;
+  }
+
+  // returns how many cells there are
+
+  std::int64_t set_grids(const double *x, const int *type, int n_all, int n_types,
+                         const double *reach)
+  {
+    std::vector<Extent> extents(n_types + 1);
+    std::vector<int> count(n_types + 1, 0);
+    for (int i = 0; i < n_all; i++) {
+      extents[type[i]].include(x + 3 * i);
+      count[type[i]]++;
+    }
+    grids.assign(n_types + 1, Grid());
+    std::int64_t cells = 0;
+    for (int t = 1; t <= n_types; t++) {
+      grids[t].first = cells;
+      set_grid(grids[t], extents[t], count[t], cell_side(t, n_types, reach));
+      cells += grids[t].cells();
+    }
+    return cells;
+  }
+
+  static void set_grid(Grid &grid, const Extent &extent, int n, double side)
+  {
+    if (n == 0) return;
+    const auto cells_along = [&](int d) {
+      return 1.0 + std::floor((extent.hi[d] - extent.lo[d]) / side);
+    };
+    // few particles far apart: larger cells, not more of them
+    while (cells_along(0) * cells_along(1) * cells_along(2) > 4.0 * n + 64.0) side *= 1.3;
+    grid.lo = extent.lo;
+    grid.hi = extent.hi;
+    grid.inv_side = 1.0 / side;
+    for (int d = 0; d < 3; d++) grid.n[d] = static_cast<int>(cells_along(d));
+  }
+
+  // counting sort by type and cell
+
+  void sort_into_cells(const double *x, const int *type, int n_all, int n_types,
+                       const double *reach)
+  {
+    const double longest = *std::max_element(reach, reach + (n_types + 1) * (n_types + 1));
+    sorted = 0;
+    if (n_all == 0 || longest == 0.0) return;
+    const Bounds bounds(x, n_all);
+    centre = bounds.centre;
+    slack = bounds.rounding;
+
+    cell_start.assign(set_grids(x, type, n_all, n_types, reach) + 1, 0);
+    cell.resize(n_all);
+    for (int i = 0; i < n_all; i++) {
+      cell[i] = static_cast<int>(grids[type[i]].at(x + 3 * i));
+      cell_start[cell[i]]++;
+    }
+    int before = 0;
+    for (int &start : cell_start) {
+      const int count = start;
+      start = before;
+      before += count;
+    }
+    id.resize(n_all);
+    for (int i = 0; i < n_all; i++) id[cell_start[cell[i]]++] = i;
+    for (std::size_t c = cell_start.size() - 1; c > 0; c--) cell_start[c] = cell_start[c - 1];
+    cell_start[0] = 0;
+
+    px.resize(n_all + LANES);
+    py.resize(n_all + LANES);
+    pz.resize(n_all + LANES);
+    id.resize(n_all + LANES);
+    for (int p = 0; p < n_all; p++) {
+      const int i = id[p];
+      px[p] = static_cast<float>(x[3 * i] - centre[0]);
+      py[p] = static_cast<float>(x[3 * i + 1] - centre[1]);
+      pz[p] = static_cast<float>(x[3 * i + 2] - centre[2]);
+    }
+    sorted = n_all;
+  }
+
+  void find_slots(const int *type, int n_owned, int n_types)
+  {
+    order.clear();
+    place.clear();
+    slots_of.assign(n_types + 2, 0);
+    for (int p = 0; p < sorted; p++) {
+      const int i = id[p];
+      if (i >= n_owned) continue;
+      order.push_back(i);
+      place.push_back(p);
+      slots_of[type[i] + 1]++;
+    }
+    for (int t = 1; t <= n_types + 1; t++) slots_of[t] += slots_of[t - 1];
+  }
+
+  // of the slots that there are
+  void find_places(int n_owned)
+  {
+    cell.resize(n_owned);
+    place.resize(order.size());
+    for (int p = 0; p < sorted; p++)
+      if (id[p] < n_owned) cell[id[p]] = p;
+    for (std::size_t slot = 0; slot < order.size(); slot++) place[slot] = cell[order[slot]];
+  }
+
+  // lists live long, what they are made of need not
+  void finish()
+  {
+    for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
+    for (auto *list : {&cell, &cell_start, &place, &id}) give_back(*list);
+  }
+
+  // Behind all lists; returns how many are listed.  Their squared distances are in `key`.
+
+  int list(int slot, int other, double reach, bool same_type)
+  {
+    if (reach == 0.0) return 0;
+    const double far = reach + slack;
+    const int n = candidates(slot, other, far, same_type);
+    if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
+    return compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
+                   lists.room(n));
+  }
+
+  const double *near_in(const Near &near, int slot, int n_types) const
+  {
+    const int pairs = (n_types + 1) * (n_types + 1);
+    return near.distance + static_cast<std::size_t>(near.region[at(slot)]) * pairs;
+  }
+
+  // those of the list just made, of n, that are nearer; returns how many
+
+  int bring_to_front(int *list, int n, double near)
+  {
+    if (n == 0 || near == 0.0) return 0;
+    const double far = near + slack;
+    return partition(key.data(), list, n, static_cast<float>(far * far), candidate.data());
+  }
+
+  void leave_out_parted(Sides mine, int n)
+  {
+    for (int k = 0; k < n; k++)
+      if (key[k] < std::numeric_limits<float>::max() && parted(mine, sides[candidate[k]]))
+        key[k] = std::numeric_limits<float>::max();
+  }
+
+  // everyone in the cells that the sphere around a particle touches, with the squared distance;
+  // returns how many
+
+  SPHCLOTH_MULTIVERSION int candidates(int slot, int other, double reach, bool same_type)
+  {
+    const int self = place[slot];
+    const Grid &grid = grids[other];
+    const float xi = px[self], yi = py[self], zi = pz[self];
+    std::array<int, 3> from, to;
+    const std::array<float, 3> at{xi, yi, zi};
+    for (int d = 0; d < 3; d++) {
+      const double x = at[d] + centre[d];
+      if (x + reach < grid.lo[d] || x - reach > grid.hi[d]) return 0;
+      from[d] = grid.along(d, x - reach);
+      to[d] = grid.along(d, x + reach);
+    }
+    int n = 0;
+    for (int cz = from[2]; cz <= to[2]; cz++)
+      for (int cy = from[1]; cy <= to[1]; cy++) {
+        const std::int64_t row = grid.row(cy, cz);
+        const int begin = cell_start[row + from[0]], end = cell_start[row + to[0] + 1];
+        const std::size_t need = n + whole_groups(end - begin) + 2 * LANES;
+        if (key.size() < need) {
+          key.resize(2 * need);
+          candidate.resize(2 * need);
+        }
+        distances(begin, end - begin, xi, yi, zi, key.data() + n, candidate.data() + n);
+        if (same_type && begin <= self && self < end)
+          key[n + self - begin] = std::numeric_limits<float>::max();
+        n += end - begin;
+      }
+    return n;
+  }
+
+  SPHCLOTH_INLINE void distances(int begin, int n, float xi, float yi, float zi, float *rsq,
+                                 int *index) const
+  {
+    const float *x = px.data() + begin, *y = py.data() + begin, *z = pz.data() + begin;
+    const int *of = id.data() + begin;
+    for (int k = 0; k < n; k += LANES)
+#pragma omp simd
+      for (int m = k; m < k + LANES; m++) {
+        const float dx = xi - x[m], dy = yi - y[m], dz = zi - z[m];
+        rsq[m] = dx * dx + dy * dy + dz * dz;
+        index[m] = of[m];
+      }
+  }
+};
+
+}    // namespace sphcloth
+
+#endif

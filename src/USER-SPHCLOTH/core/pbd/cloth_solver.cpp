@@ -1,0 +1,316 @@
+#include "core/pbd/cloth_solver.h"
+
+#include <algorithm>
+
+namespace sphcloth {
+
+namespace {
+
+  constexpr int WIDE = GROUP<double>;
+
+  // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is
+  // projected in columns: x of each, y of each, and so on.  Only differences of vertices are needed,
+  // so these are taken row by row and then turned into columns, with a w in the lane that is free.
+  // What a vertex is moved by, but for its w, is turned back into rows, whose last lane is 0: added
+  // to the rows of the vertices they leave w as it is.
+
+  struct Column {
+    alignas(64) double x[WIDE], y[WIDE], z[WIDE], w[WIDE];
+
+    SPHCLOTH_INLINE void put(int l, double a, double b, double c) { x[l] = a, y[l] = b, z[l] = c; }
+  };
+
+  struct Rows {
+    Row of[WIDE];
+
+    SPHCLOTH_INLINE void to(Column &c) const { to_columns(of, c.x, c.y, c.z, c.w); }
+    SPHCLOTH_INLINE void from(const Column &c) { to_rows(c.x, c.y, c.z, of); }
+  };
+
+  SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
+  SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
+
+  template <bool START>
+  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int colour, const ClothState &s)
+  {
+    const Vertex *start = s.start, *way = s.way;
+    Vertex *moved = s.change ? s.change : s.way;
+    for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+      const int *one = &c.slot[0][m], *two = &c.slot[1][m];
+      Rows before, now;
+      for (int l = 0; l < WIDE; l++) {
+        const Row &way1 = row(way[one[l]]), &way2 = row(way[two[l]]);
+        before.of[l] = row(start[one[l]]) - row(start[two[l]]);
+        now.of[l] = before.of[l] + (way1 - way2);
+        take_last(now.of[l], way1 + way2);
+      }
+      Column e, d, step;
+      before.to(e);
+      now.to(d);
+      const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
+                   *most = &c.most[m];
+      double *lambda = &c.lambda[m];
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const double a = compliance[l] * s.inv_dt_sq;
+        const DistanceStep by = START
+            ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
+                                  k[l], a, lambda[l], most[l])
+            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l], most[l]);
+        lambda[l] += by.lambda;
+        step.put(l, by.x, by.y, by.z);
+      }
+      Rows by;
+      by.from(step);
+      for (int l = 0; l < WIDE; l++) {
+        const double w1 = way[one[l]].w, w2 = way[two[l]].w;
+        row(moved[one[l]]) += w1 * by.of[l];
+        row(moved[two[l]]) -= w2 * by.of[l];
+      }
+    }
+  }
+
+  // A group of hinges in columns: wing a, edge 2 and wing b relative to edge 1, with the w of each;
+  // once projected, what they are moved by
+
+  struct HingeGroup {
+    Column a, e2, b, e1;    // of edge 1 only w is of use
+
+    SPHCLOTH_INLINE void read(const Constraints<4> &c, int m, const Vertex *start,
+                              const Vertex *way)
+    {
+      Rows rows_a, rows_2, rows_b, rows_1;
+      for (int l = 0; l < WIDE; l++) {
+        const int edge = c.slot[1][m + l];
+        const Row &start1 = row(start[edge]), &way1 = row(way[edge]);
+        const auto relative = [&](int vertex, Row &r) {
+          r = (row(start[vertex]) - start1) + (row(way[vertex]) - way1);
+          take_last(r, row(way[vertex]));
+        };
+        relative(c.slot[0][m + l], rows_a.of[l]);
+        relative(c.slot[2][m + l], rows_2.of[l]);
+        relative(c.slot[3][m + l], rows_b.of[l]);
+        rows_1.of[l] = way1;
+      }
+      rows_a.to(a);
+      rows_2.to(e2);
+      rows_b.to(b);
+      rows_1.to(e1);
+    }
+
+    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq)
+    {
+      const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
+                   *most = &c.most[m];
+      double *lambda = &c.lambda[m];
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const HingeShape h =
+            hinge_shape(a.x[l], a.y[l], a.z[l], e2.x[l], e2.y[l], e2.z[l], b.x[l], b.y[l], b.z[l]);
+        const double x2 = -(h.a2 * h.ax + h.b2 * h.bx), y2 = -(h.a2 * h.ay + h.b2 * h.by),
+                     z2 = -(h.a2 * h.az + h.b2 * h.bz);
+        const double x1 = h.ax + h.bx + x2, y1 = h.ay + h.by + y2, z1 = h.az + h.bz + z2;
+        const double ga = h.ax * h.ax + h.ay * h.ay + h.az * h.az,
+                     gb = h.bx * h.bx + h.by * h.by + h.bz * h.bz, g1 = x1 * x1 + y1 * y1 + z1 * z1,
+                     g2 = x2 * x2 + y2 * y2 + z2 * z2;
+        const double weight = a.w[l] * ga + b.w[l] * gb + e1.w[l] * g1 + e2.w[l] * g2;
+        const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
+        const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
+        const double lever = weight - LEAST_LEVER * w * steepest;
+        const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
+        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
+                                            compliance[l] * inv_dt_sq, lambda[l], most[l]);
+        lambda[l] += step;
+        a.put(l, step * h.ax, step * h.ay, step * h.az);
+        e2.put(l, step * x2, step * y2, step * z2);
+        b.put(l, step * h.bx, step * h.by, step * h.bz);
+      }
+    }
+
+    SPHCLOTH_INLINE void move(const Constraints<4> &c, int m, const Vertex *way,
+                              Vertex *moved) const
+    {
+      Rows by_a, by_2, by_b;
+      by_a.from(a);
+      by_2.from(e2);
+      by_b.from(b);
+      for (int l = 0; l < WIDE; l++) {
+        const auto add = [&](int vertex, const Row &by) {
+          const double w_of = way[vertex].w;
+          row(moved[vertex]) += w_of * by;
+        };
+        add(c.slot[0][m + l], by_a.of[l]);
+        add(c.slot[2][m + l], by_2.of[l]);
+        add(c.slot[3][m + l], by_b.of[l]);
+        // what the others get: the sum of the gradients is zero however short the edge is
+        add(c.slot[1][m + l], -(by_a.of[l] + by_2.of[l] + by_b.of[l]));
+      }
+    }
+  };
+
+  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only project
+  // or only move, a processor begins with the next group before it has ended the last.
+
+  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
+  {
+    constexpr int BATCH = 4;
+    const Vertex *start = s.start, *way = s.way;
+    Vertex *moved = s.change ? s.change : s.way;
+    const int end = c.begin[colour + 1];
+    for (int m = c.begin[colour]; m < end; m += BATCH * WIDE) {
+      HingeGroup group[BATCH];
+      const int n = std::min(BATCH, (end - m) / WIDE);
+      for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, way);
+      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq);
+      for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, way, moved);
+    }
+  }
+
+}    // namespace
+
+void project(Constraints<2> &c, int colour, const ClothState &s)
+{
+  s.along_start ? project_distances<true>(c, colour, s) : project_distances<false>(c, colour, s);
+}
+
+void project(Constraints<4> &c, int colour, const ClothState &s) { project_hinges(c, colour, s); }
+
+SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int colour, const Vertex *p, Vertex *v,
+                                double share)
+{
+  for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+    const int *one = &c.slot[0][m], *two = &c.slot[1][m];
+    Rows apart, faster;
+    for (int l = 0; l < WIDE; l++) {
+      const Row &p1 = row(p[one[l]]), &p2 = row(p[two[l]]);
+      apart.of[l] = p1 - p2;
+      take_last(apart.of[l], p1 + p2);
+      faster.of[l] = row(v[one[l]]) - row(v[two[l]]);
+    }
+    Column d, u, step;
+    apart.to(d);
+    faster.to(u);
+#pragma omp simd
+    for (int l = 0; l < WIDE; l++) {
+      const DistanceStep by =
+          damping_step(d.x[l], d.y[l], d.z[l], u.x[l], u.y[l], u.z[l], d.w[l], share);
+      step.put(l, by.x, by.y, by.z);
+    }
+    Rows by;
+    by.from(step);
+    for (int l = 0; l < WIDE; l++) {
+      const double w1 = p[one[l]].w, w2 = p[two[l]].w;
+      row(v[one[l]]) += w1 * by.of[l];
+      row(v[two[l]]) -= w2 * by.of[l];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what is asked for now and then
+------------------------------------------------------------------------- */
+
+namespace {
+
+  Vec3 place(const Vertex &v) { return {v.x, v.y, v.z}; }
+
+  double error_of(const Constraints<2> &c, const Vertex *p, int m)
+  {
+    return (place(p[c.slot[0][m]]) - place(p[c.slot[1][m]])).norm() - c.rest[m];
+  }
+
+  double error_of(const Constraints<4> &c, const Vertex *p, int m)
+  {
+    const double angle = hinge_angle(place(p[c.slot[0][m]]), place(p[c.slot[1][m]]),
+                                     place(p[c.slot[2][m]]), place(p[c.slot[3][m]]));
+    return std::isnan(angle) ? 0.0 : angle_difference(angle, c.rest[m]);
+  }
+
+  // unit: of a constraint's error
+
+  template <std::size_t N, class Unit>
+  double largest_residual(const Constraints<N> &c, const Vertex *p, double inv_dt_sq, Unit unit)
+  {
+    double largest = 0.0;
+    for (int m = 0; m < c.size(); m++) {
+      if (!c.in_full[m]) continue;
+      bool any_moves = false;
+      for (std::size_t q = 0; q < N; q++) any_moves = any_moves || p[c.slot[q][m]].w > 0.0;
+      if (!any_moves) continue;
+      const double left = error_of(c, p, m) + c.compliance[m] * inv_dt_sq * c.lambda[m];
+      if (left < 0.0 && c.lambda[m] >= c.most[m]) continue;    // slack
+      largest = std::max(largest, std::fabs(left) / unit(c.rest[m]));
+    }
+    return largest;
+  }
+
+  template <std::size_t N>
+  double sum_of_energies(const Constraints<N> &c, const Vertex *p, int n_owned)
+  {
+    double sum = 0.0;
+    for (int m = 0; m < c.size(); m++) {
+      if (c.compliance[m] == 0.0 || c.slot[0][m] >= n_owned) continue;
+      const double error = error_of(c, p, m);
+      if (error < 0.0 && c.most[m] == 0.0) continue;
+      sum += 0.5 * error * error / c.compliance[m];
+    }
+    return sum;
+  }
+
+}    // namespace
+
+void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)
+{
+  for (int m = 0; m < c.size(); m++) {
+    const int one = c.slot[0][m], two = c.slot[1][m];
+    if (c.lambda[m] == 0.0 || (p[one].w > 0.0 && p[two].w > 0.0)) continue;
+    Vec3 edge = place(p[one]) - place(p[two]);
+    if (start) {
+      const Vec3 before = place(start[one]) - place(start[two]);
+      const double pull = std::fabs(c.lambda[m]) * (p[one].w + p[two].w) / edge.norm();
+      if (!start_is_void(edge.normalized().dot(before), before.norm(), pull)) edge = before;
+    }
+    const Vec3 pull = c.lambda[m] * edge.normalized();
+    if (p[one].w == 0.0) on(one, pull);
+    if (p[two].w == 0.0) on(two, -pull);
+  }
+}
+
+void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, const OnHeld &on)
+{
+  for (int m = 0; m < c.size(); m++) {
+    const std::array<int, 4> s{c.slot[0][m], c.slot[1][m], c.slot[2][m], c.slot[3][m]};
+    if (c.lambda[m] == 0.0 || std::all_of(s.begin(), s.end(), [&](int q) { return p[q].w > 0.0; }))
+      continue;
+    const Vec3 e1 = place(p[s[1]]), a = place(p[s[0]]) - e1, e = place(p[s[2]]) - e1,
+               b = place(p[s[3]]) - e1;
+    const HingeShape h = hinge_shape(a[0], a[1], a[2], e[0], e[1], e[2], b[0], b[1], b[2]);
+    const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
+    const Vec3 g2 = -h.a2 * ga - h.b2 * gb;
+    const std::array<Vec3, 4> gradient{ga, -ga - g2 - gb, g2, gb};
+    for (int q = 0; q < 4; q++)
+      if (p[s[q]].w == 0.0) on(s[q], c.lambda[m] * gradient[q]);
+  }
+}
+
+double residual(const Constraints<2> &c, const Vertex *p, double inv_dt_sq, double length)
+{
+  return largest_residual(c, p, inv_dt_sq, [&](double rest) { return rest > 0.0 ? rest : length; });
+}
+
+double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
+{
+  return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
+}
+
+double elastic_energy(const Constraints<2> &c, const Vertex *p, int n_owned)
+{
+  return sum_of_energies(c, p, n_owned);
+}
+
+double elastic_energy(const Constraints<4> &c, const Vertex *p, int n_owned)
+{
+  return sum_of_energies(c, p, n_owned);
+}
+
+}    // namespace sphcloth

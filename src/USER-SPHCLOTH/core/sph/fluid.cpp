@@ -1,0 +1,53 @@
+#include "core/sph/fluid.h"
+
+namespace sphcloth {
+
+template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision);
+extern template std::unique_ptr<Fluid> fluid_of_kernel<WendlandC2>(Precision);
+extern template std::unique_ptr<Fluid> fluid_of_kernel<WendlandC4>(Precision);
+extern template std::unique_ptr<Fluid> fluid_of_kernel<CubicSpline>(Precision);
+extern template std::unique_ptr<Fluid> fluid_of_kernel<QuinticSpline>(Precision);
+
+std::unique_ptr<Fluid> Fluid::create(KernelName kernel, Precision precision)
+{
+  return with_kernel(kernel, [&](auto k) { return fluid_of_kernel<decltype(k)>(precision); });
+}
+
+void Fluid::list(const Particles &p, const double *support, double skin, const Motion &motion)
+{
+  everyone = false;
+  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, support, skin, model.dimension,
+              motion, p.sides);
+}
+
+bool Fluid::select(const Particles &p)
+{
+  if (everyone && !p.active) return false;
+  everyone = !p.active;
+  selection.slots.clear();
+  selection.first.assign(model.n_types + 2, 0);
+  for (int t = 1; t <= model.n_types; t++) {
+    selection.first[t] = selection.slots.size();
+    const bool all = !p.active || model.role[t] != Role::FLUID;
+    for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++)
+      if (all || p.is_active(lists.at(slot))) selection.slots.push_back(slot);
+  }
+  selection.first[model.n_types + 1] = selection.slots.size();
+  return true;
+}
+
+int Fluid::count_inside(const Particles &p, int owned, int type, int most)
+{
+  const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
+  const Stretch list = neighbours(owned, type);
+  const double *x = p.x + 3 * owned;
+  int n = 0;
+  for (int k = 0; k < list.n && n < most; k++) {
+    const double *y = p.x + 3 * list.of[k];
+    const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+    n += dx * dx + dy * dy + dz * dz < support_sq;
+  }
+  return n;
+}
+
+}    // namespace sphcloth

@@ -1,0 +1,186 @@
+// The fluid of one rank: neighbours, density (1), momentum (2), boundary particles.
+//
+// A fluid particle sums over fluid neighbours (its mass m_j) and over boundary neighbours, walls
+// and cloth, which count with the mass rho0_i V_b that water in their volume V_b would have.
+// Akinci et al., ACM Trans. Graph. 31 (2012) 62.
+//
+// This is what the pair style sees; the loops, one set per kernel and precision, are in
+// core/sph/fluid_loops.h.
+
+#ifndef SPHCLOTH_CORE_SPH_FLUID_H
+#define SPHCLOTH_CORE_SPH_FLUID_H
+
+#include <memory>
+#include <vector>
+
+#include "core/sph/kernel.h"
+#include "core/neighbor/dual_lists.h"
+#include "core/sph/tait.h"
+
+namespace sphcloth {
+
+enum class Role : int { NONE, FLUID, BOUNDARY };
+
+// MIXED: pair terms in single precision from integer coordinates, sums in double
+
+enum class Precision : int { DOUBLE, MIXED };
+
+enum class Friction : int { NONE, ARTIFICIAL, ANY };
+
+// whom forces are for
+enum class On { ALL, FLUID, BOUNDARIES };
+
+// what is found beside the forces: d rho/dt, the speed at which the fastest neighbour comes near
+enum class Also : int { NOTHING, RATE, RATE_AND_APPROACH };
+
+// one pair of types
+
+struct PairTerms {
+  KernelScale kernel;
+  double nu = 0.0;           // kinematic viscosity
+  double monaghan = 0.0;     // alpha c0 h_s of the artificial viscosity
+  double soft = 0.0;         // 0.01 h_s^2, keeps its mu finite
+  double rho0 = 0.0;         // rest density of the fluid partner of a boundary
+  double stiffness = 1.0;    // pressure on this boundary over the fluid's own pressure
+  double diffusion = 0.0;    // 2 delta c0 h_s of the density, two fluids of one type only
+};
+
+struct FluidModel {
+  int dimension = 3, n_types = 0;
+  Friction friction = Friction::NONE;
+  Also also = Also::NOTHING;
+  std::vector<Role> role;          // [n_types + 1]
+  std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
+  std::vector<PairTerms> terms;    // [(n_types + 1)^2]
+  const PairTerms &pair(int i, int j) const { return terms[i * (n_types + 1) + j]; }
+};
+
+// per-particle arrays, owned particles first; x, v and f are [n][3]
+
+struct Particles {
+  int n_owned = 0, n_all = 0;
+  const int *type = nullptr;
+  const double *x = nullptr, *v = nullptr;
+  const double *amount = nullptr;    // fluid: mass m; boundary: volume V_b
+  const double *pressure = nullptr;    // p / rho^2
+  double *rho = nullptr;
+  double *f = nullptr, *drho = nullptr;    // what forces() adds to
+  double *approach = nullptr;              // of the fluid, what it finds if asked
+  double force_unit = 1.0;                 // of mass times acceleration
+  const Sides *sides = nullptr;    // for new lists; null: there are no sheets
+  double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
+  int active_column = 0;
+
+  bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
+};
+
+// what the neighbours do to one particle, per mass of fluid or per volume of a boundary
+
+struct Acceleration {
+  double x = 0.0, y = 0.0, z = 0.0;
+  double drho = 0.0;    // d rho / dt
+  double approach = 0.0;    // the largest speed of a neighbour inside the support, 0 if all recede
+  double virial[6] = {};    // half of sum r_ij f_ij: xx, yy, zz, xy, xz, yz
+};
+
+// Slots of the lists, in their order, and where those of a type begin
+
+struct Selection {
+  std::vector<int> slots;
+  std::vector<std::size_t> first;    // [n_types + 2]
+
+  struct Range {
+    const int *from, *to;
+    const int *begin() const { return from; }
+    const int *end() const { return to; }
+  };
+  Range of(int t) const { return {slots.data() + first[t], slots.data() + first[t + 1]}; }
+};
+
+class Fluid {
+ public:
+  static std::unique_ptr<Fluid> create(KernelName, Precision);
+  virtual ~Fluid() = default;
+
+  FluidModel model;
+
+  // new neighbour lists, see NearLists
+  void list(const Particles &, const double *support, double skin, const Motion &);
+  // in every other evaluation, first
+  void follow(const Particles &p) { lists.follow(p.x, p.type, p.n_owned, p.n_all, p.sides); }
+
+  // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
+  // False if nothing has changed.
+  bool select(const Particles &);
+  const Selection &active() const { return selection; }
+
+  // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
+  // in parts of the box lengths, so that periodic images are exact.
+  struct Box {
+    double lo[3], length[3], margin;
+  };
+  virtual void place(const Particles &, const Box &) = 0;
+
+  // amount = 1 / sum_k W_bk over the boundary particles of the same type, with itself
+  virtual void volumes(const Particles &, int type, double *amount) = 0;
+
+  // Refreshes the neighbours of every active fluid particle and every boundary particle, and sums
+  // the density (1) if asked.
+  virtual void gather(const Particles &, bool sum) = 0;
+
+  // Gradient [n][3] of the density of every active fluid particle, from the fluid of its type
+  virtual void density_gradients(const Particles &, double *gradient) = 0;
+
+  // d rho/dt by continuity, from the density and velocity of all, where they were a time `back` ago;
+  // with diffusion if the gradients of all, ghosts too, are given
+  virtual void density_rates(const Particles &, const double *gradient, double back,
+                             double *rate) = 0;
+
+  // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
+  virtual void smooth_densities(const Particles &, double *smooth) = 0;
+
+  // p/rho^2 of the boundary particles of a type: the mean of the fluid around each, weighted with W
+  virtual void boundary_pressures(const Particles &, int type, double *pressure) = 0;
+
+  // Records density, volume, velocity and pressure of all particles.
+  virtual void record(const Particles &) = 0;
+
+  // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
+  virtual void forces(const Particles &, On) = 0;
+
+  // Impulses of particles that take steps of their own, given to both partners of a pair: instead of
+  // its pressure, every particle has it times the time for which it acts, and `span` is that time,
+  // which friction takes as the mean of two.  Those with a span below 0 are asleep: they have their
+  // plain pressure, and the partner's time counts.  For all, owned and ghost.
+  virtual void record_impulses(const Particles &, const double *pressure_time,
+                               const double *span) = 0;
+  virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;
+
+  // the virials of the same forces: receive(context, i, ...)
+  using Receiver = void (*)(void *context, int i, const Acceleration &);
+  virtual void virials(const Particles &, Receiver, void *context) = 0;
+
+  // number density of a square or cubic lattice by summation (1)
+  virtual double lattice_sum(double support, double spacing) const = 0;
+  virtual double bytes() const = 0;
+
+  const NearLists &order() const { return lists; }
+  NearLists &order() { return lists; }
+  // neighbours of one type inside the support, and some a little outside it
+  Stretch neighbours(int owned, int type)
+  {
+    lists.refresh(lists.slot(owned));
+    return lists(lists.slot(owned), type);
+  }
+  // how many are inside the support; counts up to `most`
+  int count_inside(const Particles &, int owned, int type, int most);
+
+ protected:
+  NearLists lists;
+  Selection selection;
+  bool everyone = false;    // is selected, of these lists
+};
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,284 @@
+// Limits of the time step: equations (10) to (12), and the acoustic, viscous and density limits
+// that stability asks for.
+//
+// (10) and (11) use the support radius H, the paper's h.  The acoustic and the viscous limit use
+// the smoothing length h_s = H/2, as stability analysis does.
+//
+// The control by compression follows Ihmsen, Akinci, Gissler & Teschner, VRIPHYS 2010, 79.
+
+#ifndef SPHCLOTH_CORE_TIMESTEP_STEP_LIMITS_H
+#define SPHCLOTH_CORE_TIMESTEP_STEP_LIMITS_H
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/util/simd.h"
+
+namespace sphcloth {
+
+// those of a particle or a vertex, then those of the step
+
+enum class Limit {
+  NONE,
+  VELOCITY,
+  FORCE,
+  ACOUSTIC,
+  VISCOUS,
+  DENSITY,
+  RELATIVE,
+  WETTED,
+  CLOTH,
+  CEILING,
+  FLOOR,
+  GROWTH,
+  FLUCTUATION,
+  OUTPUT
+};
+inline constexpr int N_LIMITS = 1 + static_cast<int>(Limit::OUTPUT);
+// the limits that a particle can have for itself, the ceiling as the last
+inline constexpr int N_OF_PARTICLES = static_cast<int>(Limit::CEILING);
+
+inline const char *limit_name(Limit limit)
+{
+  switch (limit) {
+    case Limit::NONE: return "none";
+    case Limit::VELOCITY: return "velocity";
+    case Limit::FORCE: return "force";
+    case Limit::ACOUSTIC: return "acoustic";
+    case Limit::VISCOUS: return "viscous";
+    case Limit::DENSITY: return "density";
+    case Limit::RELATIVE: return "relative";
+    case Limit::WETTED: return "wetted";
+    case Limit::CLOTH: return "cloth";
+    case Limit::CEILING: return "max";
+    case Limit::FLOOR: return "min";
+    case Limit::GROWTH: return "growth";
+    case Limit::FLUCTUATION: return "fluctuation";
+    case Limit::OUTPUT: return "output";
+  }
+  return "none";
+}
+
+// coefficients; a coefficient of 0 switches its limit off
+
+struct StepCoefficients {
+  double velocity = 0.1;     // lambda_v of (10)
+  double force = 0.05;       // lambda_f of (11)
+  double acoustic = 0.5;     // of h_s/c; symplectic stepping is stable up to 1.6
+  double viscous = 0.2;      // of h_s^2/nu; stable up to 0.3 in 3-D
+  double density = 0.1;      // largest relative change of density in one step
+  double relative = 0.0;     // as velocity, of the speed at which a neighbour comes near
+  double cloth = 0.0;        // way of a vertex over the shortest edge at it
+  std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
+};
+
+// what one particle brings along
+
+struct StepState {
+  double support;     // H
+  double speed_sq;    // |v|^2
+  double accel_sq;    // |dv/dt|^2
+  double sound;       // c
+  double nu;          // kinematic viscosity, laminar and artificial together
+  double rho;
+  double drho;        // d rho / dt
+  double approach = 0.0;    // largest speed at which a neighbour comes near
+  double until_pressed = 0.0;    // time after which a particle without pressure has one, 0: it has
+};
+
+struct StepLimit {
+  double dt = std::numeric_limits<double>::infinity();
+  Limit by = Limit::NONE;
+
+  void tighten(double candidate, Limit reason)
+  {
+    if (candidate < dt) {
+      dt = candidate;
+      by = reason;
+    }
+  }
+};
+
+// (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches, as
+// vectors want it.
+
+SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
+{
+  constexpr double NEVER = std::numeric_limits<double>::infinity();
+  const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : NEVER; };
+  const auto with = [](double coefficient, double dt) { return coefficient > 0.0 ? dt : NEVER; };
+  const double smoothing = 0.5 * s.support;
+  StepLimit limit;
+  limit.tighten(with(lambda.velocity, ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq))),
+                Limit::VELOCITY);
+  limit.tighten(
+      with(lambda.force, lambda.force * std::sqrt(ratio(s.support, std::sqrt(s.accel_sq)))),
+      Limit::FORCE);
+  // in free flight there is no sound, until the particle is compressed; half of the way to there
+  // leaves time for what the flight does not know
+  limit.tighten(with(lambda.acoustic,
+                     std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
+                Limit::ACOUSTIC);
+  limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
+                Limit::VISCOUS);
+  limit.tighten(with(lambda.density, ratio(lambda.density * s.rho, std::fabs(s.drho))),
+                Limit::DENSITY);
+  limit.tighten(with(lambda.relative, ratio(lambda.relative * s.support, s.approach)),
+                Limit::RELATIVE);
+  return limit;
+}
+
+// The same of many particles at once
+
+struct StepStates {
+  static constexpr int MOST = 64;
+  alignas(64) double support[MOST], speed_sq[MOST], accel_sq[MOST], sound[MOST], nu[MOST],
+      rho[MOST], drho[MOST], approach[MOST], until_pressed[MOST];
+
+  SPHCLOTH_INLINE void set(int k, const StepState &s)
+  {
+    support[k] = s.support;
+    speed_sq[k] = s.speed_sq;
+    accel_sq[k] = s.accel_sq;
+    sound[k] = s.sound;
+    nu[k] = s.nu;
+    rho[k] = s.rho;
+    drho[k] = s.drho;
+    approach[k] = s.approach;
+    until_pressed[k] = s.until_pressed;
+  }
+  SPHCLOTH_INLINE StepState operator[](int k) const
+  {
+    return {support[k], speed_sq[k], accel_sq[k], sound[k],        nu[k],
+            rho[k],     drho[k],     approach[k], until_pressed[k]};
+  }
+};
+
+struct StepLimits {
+  alignas(64) double dt[StepStates::MOST], by[StepStates::MOST];
+  StepLimit operator[](int k) const { return {dt[k], static_cast<Limit>(static_cast<int>(by[k]))}; }
+};
+
+SPHCLOTH_MULTIVERSION inline void
+particle_limits(const StepCoefficients &lambda, const StepStates &states, int n, StepLimits &limits)
+{
+#pragma omp simd
+  for (int k = 0; k < n; k++) {
+    const StepLimit limit = particle_limit(lambda, states[k]);
+    limits.dt[k] = limit.dt;
+    limits.by[k] = static_cast<double>(limit.by);
+  }
+}
+
+// of a vertex of a cloth, whose sound is that of the fluid that wets it
+
+inline StepLimit vertex_limit(const StepCoefficients &lambda, const StepState &s, double edge)
+{
+  StepCoefficients of_vertex = lambda;
+  of_vertex.acoustic = lambda.wetted.value_or(lambda.acoustic);
+  StepLimit limit = particle_limit(of_vertex, s);
+  if (limit.by == Limit::ACOUSTIC) limit.by = Limit::WETTED;
+  if (lambda.cloth > 0.0 && s.speed_sq > 0.0)
+    limit.tighten(lambda.cloth * edge / std::sqrt(s.speed_sq), Limit::CLOTH);
+  return limit;
+}
+
+// how far densities are above the rest density, relative to it
+
+struct Compression {
+  double largest = 0.0, mean = 0.0;
+};
+
+// The step of the controller: small factors, and half a step at once for a shock, whenever the
+// largest compression passes eta times 2, 4, 8 and so on.  It starts at START h_s/c0, and below
+// LEAST h_s/c0 a shorter step compresses no less.  Water at rest, of a depth that compresses it by
+// eta at the ground, has a mean compression of eta/2.
+
+struct FluctuationControl {
+  static constexpr double PACE = 0.002, MEAN = 0.5, START = 0.25, LEAST = 0.05;
+  double eta = 0.0;    // 0: off
+  double sound_time = 0.0;    // h_s/c0
+
+  double step(double previous, const Compression &now, double largest_before) const
+  {
+    if (previous == 0.0) return START * sound_time;
+    return std::max(LEAST * sound_time, factor(now, largest_before) * previous);
+  }
+  double factor(const Compression &now, double largest_before) const
+  {
+    if (doublings(now.largest) > doublings(largest_before)) return 0.5;
+    return now.largest < eta && now.mean < MEAN * eta ? 1.0 + PACE : 1.0 - PACE;
+  }
+  double doublings(double largest) const
+  {
+    return std::floor(std::log2(std::max(1.0, largest / eta)));
+  }
+};
+
+// The step that is taken: the tightest particle's limit between floor and ceiling, growing at
+// most by `growth` over the previous step (no limit if previous is 0: the first step).
+
+inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, double floor,
+                              double ceiling)
+{
+  wanted.tighten(ceiling, Limit::CEILING);
+  if (previous > 0.0) wanted.tighten(growth * previous, Limit::GROWTH);
+  if (wanted.dt < floor) {
+    wanted.dt = floor;
+    wanted.by = Limit::FLOOR;
+  }
+  return wanted;
+}
+
+// The time in which something that changes at a rate, and that rate by `growth`, crosses a gap:
+// gap = rate t + growth t^2/2.
+
+inline double time_to_cross(double gap, double rate, double growth)
+{
+  const double ahead = std::max(0.0, gap), root = std::sqrt(rate * rate + 2.0 * growth * ahead);
+  if (rate > 0.0) return 2.0 * ahead / (rate + root);
+  return growth > 0.0 ? (root - rate) / growth : std::numeric_limits<double>::infinity();
+}
+
+/* ----------------------------------------------------------------------
+   output times: the multiples of an interval
+------------------------------------------------------------------------- */
+
+// Some roundings above n times the interval, so that a test `time >= n T` in decimals is true and
+// time over interval rounds down to n, also where the time at the end of a step is rounded.
+
+inline double output_time(double n, double interval)
+{
+  return n * interval * (1.0 + 2.0 * std::numeric_limits<double>::epsilon());
+}
+
+// The number of the last output time up to now; what is nearer than `slack` counts as reached.
+
+inline double output_times_until(double now, double interval, double slack)
+{
+  return std::floor((now + slack) / interval);
+}
+
+// The step towards something that is `remaining` away.  It arrives exactly, and the last two steps
+// are equal rather than a whole and a tiny one.
+
+inline double step_towards(double remaining, double dt)
+{
+  constexpr double ROUNDING = 1e-9;
+  if (remaining <= (1.0 + ROUNDING) * dt) return remaining;
+  return std::min(dt, 0.5 * remaining);
+}
+
+// (15): a particle's own step in whole steps of now, rounded down, at least one
+
+inline long long whole_steps(double own, double dt)
+{
+  constexpr double MOST = 1e15, ROUNDING = 1e-12;
+  return static_cast<long long>(std::clamp((1.0 + ROUNDING) * own / dt, 1.0, MOST));
+}
+
+}    // namespace sphcloth
+
+#endif

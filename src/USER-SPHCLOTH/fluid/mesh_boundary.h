@@ -1,0 +1,156 @@
+// A mesh as a wall to the fluid beside it: what the kernel of a particle misses behind the nearest point
+// of the mesh is filled as behind a plane there, core/sph/plane_wall.h.  The mesh may be coarser than the
+// fluid: what a particle pushes is spread over the triangle by the weights of that point.
+
+#ifndef SPHCLOTH_FLUID_MESH_BOUNDARY_H
+#define SPHCLOTH_FLUID_MESH_BOUNDARY_H
+
+#include "core/sph/plane_wall.h"
+#include "contact/triangle_set.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairSPHTait;
+
+// the point of a mesh that is nearest to a particle
+
+struct Foot {
+  int particle = 0, sheet = 0;
+  std::array<int, 3> vertices{};    // slots
+  Eigen::Vector3d weight, normal;    // barycentric; from the mesh to the particle
+  double distance = 0.0;
+  Eigen::Vector3d from_border =
+      Eigen::Vector3d::Zero();    // in the plane, unit; 0: the border is far
+  double border_distance = 0.0;
+  double share = 1.0;    // of what fills, beside other meshes
+  sphcloth::WallTable::Value value{0.0, 0.0}, beyond{0.0, 0.0};    // of plane and border
+};
+
+class SheetWall : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  SheetWall(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
+
+  // After each list build: whom each particle may be nearest to until the next one.  reach(i): of the
+  // kernel of an owned particle, 0 for one that does not feel this wall.
+  void look(double skin, const std::function<double(int)> &reach);
+
+  // where particles stand now, those within reach, added to what is there
+  void find_feet(int sheet, std::vector<Foot> &feet);
+
+  Vec3 velocity_at(const Foot &) const;
+
+  // force on the mesh at a foot; handed over to owned vertices, take(atom, force)
+  void give(const Foot &foot, const Vec3 &push) { spread(foot, push, forces); }
+  void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
+
+  // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
+  void wet(const Foot &foot, const Vec3 &amount) { spread(foot, amount, wetting); }
+  void hand_over_wetting(const std::function<void(int, const Vec3 &)> &take)
+  {
+    sum_up(wetting, take);
+  }
+
+ private:
+  struct Candidate {
+    int triangle;
+    double distance;    // at the list build
+  };
+  struct Seeker {
+    int particle;
+    double reach;
+    Vec3 at;    // at the list build
+    std::size_t first, last;    // candidates, nearest first
+    std::size_t first_border, last_border;
+  };
+  TriangleSet *set;
+  double skin = 0.0;
+  std::vector<Candidate> candidates;
+  std::vector<std::array<int, 2>> borders;    // slots of the ends
+  std::vector<Seeker> seekers;
+  std::vector<Vec3> places, places_then;    // by slot, now and at the list build
+  std::vector<Vec3> forces, wetting;    // by slot
+
+  void find_places();
+  void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
+  Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
+  bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
+  void find_border(const Vec3 &at, const Seeker &, Foot &) const;
+  static void spread(const Foot &, const Vec3 &, std::vector<Vec3> &);
+  void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
+};
+
+// All meshes of a scene together.  Where they cover a share lambda of the kernel of a particle, its
+// density is the sum over particles over gamma = 1 - lambda, and forces are the gradient of the energy
+// with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where several meshes
+// are near, each counts as far as it does not lie behind nearer ones.
+
+class SheetWalls : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  SheetWalls(LAMMPS *lmp_, const std::string &label_, int groupbit_) :
+      Pointers(lmp_), label(label_), groupbit(groupbit_)
+  {
+  }
+
+  // anew for each run, with the meshes that are there
+  void init(PairSPHTait *);
+  void add(const ContactMesh *, TriangleSet *);
+  double reach() const;    // as far as fluid feels a mesh until the next list build
+  void look();    // after each list build
+
+  // What pair_style sph/tait asks for while it evaluates, in this order: where everybody is now; by
+  // what the density of an owned fluid particle is stretched, 1/gamma; what is added to the rate of its
+  // density, where it was a time `back` ago; the force on it and on the meshes, with p/rho^2, and what
+  // FluidWall says of more; and that all are pushed.
+  void begin();
+  double stretch(int i);
+  double density_rate(int i, double back);
+  void push(int i, double pressure_term);
+  void push_more(int i, double pressure_term, double times);
+  void prolong(double times) { lasts = times; }
+  void end();
+  // what was pushed so far is handed over now, to take(owned vertex, force)
+  void hand_over(const std::function<void(int, const Vec3 &)> &take);
+
+  // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
+  double approach(int i);
+  // is a mesh within reach?  All of them may move.
+  bool is_beside(int i) const { return first[i] >= 0; }
+
+  // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
+  void want_wetting() { wetting_wanted = true; }
+  double fluid_mass(int i) const { return wetting[i][0]; }
+  double sound(int i) const { return wetting[i][0] > 0.0 ? wetting[i][1] / wetting[i][0] : 0.0; }
+
+ private:
+  std::string label;
+  const int groupbit;
+  PairSPHTait *pair = nullptr;
+  sphcloth::WallTable table;
+  std::vector<SheetWall> sheets;
+  std::vector<Foot> feet;    // of one particle together, the nearest first
+  std::vector<int> first;    // of an owned particle, -1: none
+  bool wetting_wanted = false;
+  double lasts = 1.0;    // how many times as long as the step what was pushed acts
+  std::vector<Vec3> wetting;    // by owned atom
+
+  template <class Do> void for_feet(int i, Do something);
+  void push(int i, double pressure_term, double times, bool first_push);
+  double support(int i) const;
+  static double covered(const Foot &);
+  Vec3 rise(const Foot &) const;
+  Vec3 velocity_from(const Foot &) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

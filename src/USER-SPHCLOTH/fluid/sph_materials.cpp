@@ -1,0 +1,285 @@
+// pair_coeff of pair_style sph/tait: reading, mixing, restart.
+
+#include "fluid/sph_materials.h"
+
+#include "lammps_util/arg_reader.h"
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+static const std::string COEFF = "pair_coeff (sph/tait)";
+
+static const std::vector<std::string> PRESSURES = {"own", "mirror", "extrapolate"};
+
+void SPHMaterials::allocate()
+{
+  const int n = atom->ntypes + 1;
+  types.assign(n, TypeData());
+  pairs.assign(n * n, PairData());
+  unsettle();
+}
+
+const SPHMaterials::PairData &SPHMaterials::said(int i, int j) const
+{
+  return pairs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
+}
+
+/* ----------------------------------------------------------------------
+   pair_coeff I I fluid rho0 ... | pair_coeff I I boundary ... | pair_coeff I J keyword ...
+------------------------------------------------------------------------- */
+
+void SPHMaterials::read(int narg, char **arg, int **setflag)
+{
+  unsettle();
+  if (narg < 3) utils::missing_cmd_args(FLERR, COEFF, error);
+  const int n = atom->ntypes + 1;
+  ArgReader args(lmp, COEFF, narg, arg);
+  const auto [ilo, ihi] = args.range("first type", atom->ntypes);
+  const auto [jlo, jhi] = args.range("second type", atom->ntypes);
+
+  const std::string role = arg[2];
+  const bool of_type = role == "fluid" || role == "boundary" || role == "none";
+  TypeData data;
+  PairData pair;
+  if (of_type) {
+    args.word("role");
+    if (role == "fluid") data = read_fluid(args, pair);
+    if (role == "boundary") data = read_boundary(args);
+    args.end();
+  } else
+    pair = read_pair(args);
+
+  int count = 0;
+  for (int i = ilo; i <= ihi; i++)
+    for (int j = std::max(jlo, i); j <= jhi; j++) {
+      if ((i == j) != of_type) continue;
+      if (of_type) types[i] = data;
+      pairs[i * n + j] = pair;
+      setflag[i][j] = 1;
+      count++;
+    }
+  if (count) return;
+  if (of_type)
+    error->all(FLERR, "{}: a role belongs to one type: give the same type twice (I = J)", COEFF);
+  error->all(
+      FLERR,
+      "{}: pair {} {} has no role: start with 'fluid', 'boundary' or 'none' for I = J, and give "
+      "I < J for two types",
+      COEFF, arg[0], arg[1]);
+}
+
+SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &own) const
+{
+  TypeData t;
+  t.role = Role::FLUID;
+  t.eos.rho0 = args.positive("rho0");
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
+      t.eos.k = read_stiffness(args, keyword);
+    else if (keyword == "gamma") {
+      t.eos.gamma = args.number("gamma");
+      if (!(t.eos.gamma > 1.0))
+        args.fail("gamma", std::to_string(t.eos.gamma), "give a number > 1");
+    } else if (keyword == "nu")
+      t.nu = args.at_least("nu", 0.0);
+    else if (keyword == "alpha")
+      t.alpha = args.at_least("alpha", 0.0);
+    else if (keyword == "support")
+      own.support = args.positive("support");
+    else
+      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support");
+  }
+  if (t.eos.k == 0.0)
+    error->all(FLERR, "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'",
+               COEFF);
+  return t;
+}
+
+// k, or what it follows from
+
+double SPHMaterials::read_stiffness(ArgReader &args, const std::string &keyword) const
+{
+  const double value = args.positive(keyword);
+  if (keyword == "k") return value;
+  if (keyword == "c0") return value * value;
+  return Tait::stiffness_from_fluctuation(value, args.positive("fluctuation reference speed"));
+}
+
+SPHMaterials::TypeData SPHMaterials::read_boundary(ArgReader &args) const
+{
+  TypeData t;
+  t.role = Role::BOUNDARY;
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "volume" && args.more() && std::strcmp(args.peek(), "auto") == 0) {
+      args.word("volume");
+      t.volume = 0.0;
+    } else if (keyword == "volume")
+      t.volume = args.positive("volume");
+    else if (keyword == "pressure")
+      t.pressure = static_cast<Pressure>(args.choice(keyword, PRESSURES));
+    else
+      args.unknown(keyword, "volume, pressure");
+  }
+  return t;
+}
+
+SPHMaterials::PairData SPHMaterials::read_pair(ArgReader &args) const
+{
+  PairData p;
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
+      p.stiffness = read_stiffness(args, keyword);
+    else if (keyword == "nu")
+      p.nu = args.at_least("nu", 0.0);
+    else if (keyword == "alpha")
+      p.alpha = args.at_least("alpha", 0.0);
+    else if (keyword == "support")
+      p.support = args.positive("support");
+    else
+      args.unknown(keyword,
+                   "k, c0, fluctuation, nu, alpha, support for two types, or fluid, "
+                   "boundary for one type");
+  }
+  return p;
+}
+
+/* ----------------------------------------------------------------------
+   what follows for a pair
+------------------------------------------------------------------------- */
+
+double SPHMaterials::find_support(int i, int j) const
+{
+  if (said(i, j).support > 0.0) return said(i, j).support;
+  if (i == j) return default_support;
+  if (is_fluid(i) == is_fluid(j)) return 0.5 * (support(i, i) + support(j, j));
+  return is_fluid(i) ? support(i, i) : support(j, j);
+}
+
+double SPHMaterials::find_viscosity(int i) const
+{
+  // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2))
+  const TypeData &t = types[i];
+  const double artificial =
+      t.alpha * t.eos.sound_speed() * 0.5 * support(i, i) / (2.0 * (domain->dimension + 2));
+  return t.nu + artificial;
+}
+
+void SPHMaterials::settle()
+{
+  unsettle();
+  const int n = static_cast<int>(types.size());
+  std::vector<double> radii(n * n, 0.0), nus(n, 0.0);
+  for (int i = 1; i < n; i++) {
+    if (is_fluid(i)) nus[i] = find_viscosity(i);
+    for (int j = 1; j < n; j++) radii[i * n + j] = find_support(i, j);
+  }
+  supports = std::move(radii);
+  viscosities = std::move(nus);
+}
+
+void SPHMaterials::unsettle()
+{
+  supports.clear();
+  viscosities.clear();
+}
+
+// What the user did not say of a pair: the mean of two fluids, the fluid's own at a boundary.
+
+double SPHMaterials::nu(int i, int j) const
+{
+  const double own = said(i, j).nu;
+  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).nu + fluid_of(j, i).nu);
+}
+
+double SPHMaterials::alpha(int i, int j) const
+{
+  const double own = said(i, j).alpha;
+  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).alpha + fluid_of(j, i).alpha);
+}
+
+PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
+{
+  const PairData &own = said(i, j);
+  const TypeData &a = fluid_of(i, j), &b = fluid_of(j, i);
+  if (own.stiffness > 0.0 && types[i].role == types[j].role)
+    error->all(FLERR,
+               "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
+               "own with I = J",
+               COEFF, i, j);
+
+  PairTerms t;
+  const double radius = support(i, j), smoothing = 0.5 * radius;
+  const double sound = 0.5 * (a.eos.sound_speed() + b.eos.sound_speed());
+  t.kernel = with_kernel(
+      kernel, [&](auto k) { return kernel_scale<decltype(k)>(radius, domain->dimension); });
+  t.nu = nu(i, j);
+  t.monaghan = alpha(i, j) * sound * smoothing;
+  t.soft = 0.01 * smoothing * smoothing;
+  t.rho0 = a.eos.rho0;
+  t.stiffness = own.stiffness > 0.0 ? own.stiffness / a.eos.k : 1.0;
+  for (int k : {i, j})
+    if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;
+  return t;
+}
+
+double SPHMaterials::reach(int i, int j) const
+{
+  if (types[i].role == Role::NONE || types[j].role == Role::NONE) return 0.0;
+  // boundary particles only meet to measure their volume
+  if (is_boundary(i) && is_boundary(j) && (i != j || types[i].volume > 0.0)) return 0.0;
+  return support(i, j);
+}
+
+/* ----------------------------------------------------------------------
+   restart and data files
+------------------------------------------------------------------------- */
+
+void SPHMaterials::write_restart(FILE *fp) const
+{
+  fwrite(types.data(), sizeof(TypeData), types.size(), fp);
+  fwrite(pairs.data(), sizeof(PairData), pairs.size(), fp);
+}
+
+void SPHMaterials::read_restart(FILE *fp)
+{
+  allocate();
+  if (comm->me == 0) {
+    utils::sfread(FLERR, types.data(), sizeof(TypeData), types.size(), fp, nullptr, error);
+    utils::sfread(FLERR, pairs.data(), sizeof(PairData), pairs.size(), fp, nullptr, error);
+  }
+  MPI_Bcast(types.data(), static_cast<int>(types.size() * sizeof(TypeData)), MPI_BYTE, 0, world);
+  MPI_Bcast(pairs.data(), static_cast<int>(pairs.size() * sizeof(PairData)), MPI_BYTE, 0, world);
+}
+
+// All digits, so that a data file gives the same forces.  Data files want a line for every pair; a
+// stiffness is there only if it was said, for there is none to mix.
+
+std::string SPHMaterials::words(int i, int j) const
+{
+  const auto only_if = [](double value, const char *keyword) {
+    return value > 0.0 ? fmt::format(" {} {}", keyword, value) : "";
+  };
+  const TypeData &t = types[i];
+  const PairData &own = said(i, j);
+  if (i != j)
+    return fmt::format("support {} nu {} alpha {}", support(i, j), nu(i, j), alpha(i, j)) +
+        only_if(own.stiffness, "k");
+  if (t.role == Role::NONE) return "none";
+  if (is_boundary(i))
+    return "boundary pressure " + PRESSURES[static_cast<int>(t.pressure)] +
+        only_if(t.volume, "volume");
+  return fmt::format("fluid {} k {} gamma {} nu {} alpha {}", t.eos.rho0, t.eos.k, t.eos.gamma,
+                     t.nu, t.alpha) +
+      only_if(own.support, "support");
+}

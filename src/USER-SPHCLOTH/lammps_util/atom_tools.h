@@ -1,0 +1,108 @@
+// What several styles ask of atoms and of the clock.
+
+#ifndef SPHCLOTH_LAMMPS_UTIL_ATOM_TOOLS_H
+#define SPHCLOTH_LAMMPS_UTIL_ATOM_TOOLS_H
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "domain.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+inline double atom_mass(const Atom *atom, int i)
+{
+  return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
+}
+
+// A number that changes when the owned atoms, or their places in the arrays, do (FNV-1a).
+
+inline std::uint64_t order_of_atoms(const Atom *atom)
+{
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (int i = 0; i < atom->nlocal; i++)
+    hash = (hash ^ static_cast<std::uint64_t>(atom->tag[i])) * 0x100000001b3U;
+  return hash;
+}
+
+// at the end of the current step
+
+inline double physical_time(const Update *update)
+{
+  return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
+}
+
+// For fixes that are restored.  LAMMPS, where a run begins, would forget the time between the last change
+// of dt and a restart file that was written in the middle of a run.
+
+inline void keep_restored_time(Update *update) { update->update_time(); }
+
+// collective: is any atom in both groups?
+
+inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_Comm world)
+{
+  int mine = 0, any = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && atom->mask[i] & other_groupbit) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
+// collective
+
+inline tagint largest_id(const Atom *atom, MPI_Comm world)
+{
+  tagint mine = 0, all = 0;
+  for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all;
+}
+
+// collective: every rank's list behind one another
+
+inline std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
+{
+  int n = static_cast<int>(mine.size());
+  std::vector<int> counts(nprocs), displs(nprocs, 0);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
+  std::vector<tagint> all(displs.back() + counts.back());
+  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), counts.data(), displs.data(),
+                 MPI_LMP_TAGINT, world);
+  return all;
+}
+
+// An atom of this rank, in group all and in those of groupbits; its local index, or -1 if the place
+// belongs to another rank.
+
+inline int create_owned_atom(Atom *atom, Domain *domain, tagint tag, int type, const double *place,
+                             int groupbits)
+{
+  double x[3] = {place[0], place[1], place[2]};
+  imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
+  if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) return -1;
+  atom->avec->create_atom(type, x);
+  const int i = atom->nlocal - 1;
+  atom->tag[i] = tag;
+  atom->image[i] = image;
+  atom->mask[i] = 1 | groupbits;
+  return i;
+}
+
+// after atoms came or went: ghosts are void, IDs are found anew
+
+inline void refresh_map(Atom *atom)
+{
+  if (atom->map_style == Atom::MAP_NONE) return;
+  atom->nghost = 0;
+  atom->map_init();
+  atom->map_set();
+}
+
+}    // namespace LAMMPS_NS
+
+#endif

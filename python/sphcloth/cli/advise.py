@@ -1,0 +1,52 @@
+"""``sphcloth advise``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from sphcloth.cli.options import JsonFile, Ranks
+
+EXAMPLES = """
+Examples:
+
+sphcloth advise in.drop
+
+sphcloth advise in.pour --var hold=corners --ranks 2 --probe-steps 3000 --speed 4
+"""
+
+
+def advise(
+    script: Annotated[Path, typer.Argument(metavar="IN", help="Input script; it is not changed.")],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--var", "--set", metavar="NAME=VALUE", help="Set a variable of the script."),
+    ] = None,
+    ranks: Ranks = 1,
+    steps: Annotated[
+        int, typer.Option("--probe-steps", min=1, help="Stop after so many steps.")
+    ] = 1000,
+    seconds: Annotated[
+        float, typer.Option("--probe-time", min=1.0, help="Stop after so many seconds.")
+    ] = 60.0,
+    speed: Annotated[
+        float | None, typer.Option(help="Largest speed that you expect, beside the one measured.")
+    ] = None,
+    stretch: Annotated[
+        float, typer.Option(min=1e-9, help="Largest strain of an edge that you accept.")
+    ] = 0.01,
+    json_file: JsonFile = None,
+) -> None:
+    """Run a script for a short time and say what the scene needs, and what it does not."""
+    from sphcloth.advice.command import advise as find_advice
+    from sphcloth.advice.probe import Probe
+    from sphcloth.examples import parse_settings
+
+    probe = Probe(script, parse_settings(settings or [], "--var"), ranks, steps, seconds)
+    found = find_advice(probe, Console(), speed=speed, stretch=stretch)
+    found.show(Console())
+    if json_file is not None:
+        found.write(json_file)

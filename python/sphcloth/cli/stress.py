@@ -1,0 +1,60 @@
+"""``sphcloth stress``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from sphcloth.cli.options import JsonFile
+
+EXAMPLES = """
+Examples:
+
+sphcloth stress --quick
+
+sphcloth stress impact-3-normal --scheme global,block --ranks 1,2
+
+sphcloth stress --json stress.json
+"""
+
+
+def stress(
+    case: Annotated[
+        str | None,
+        typer.Argument(metavar="CASE", help="Name of a case; all without one; --list shows them."),
+    ] = None,
+    scheme: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,...",
+            help="Schemes: constant, global, individual, block.",
+            show_default="all that are meaningful",
+        ),
+    ] = None,
+    ranks: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N,M,...", help="Numbers of MPI ranks.", show_default="1,2,4; quick 1,2"
+        ),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Run the smaller variants.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
+    ] = None,
+    json_file: JsonFile = None,
+    show_list: Annotated[
+        bool, typer.Option("--list", help="Show all cases and what must happen.")
+    ] = False,
+) -> None:
+    """Run the extremes; exit code 1 if one of them does not do what it must."""
+    from sphcloth.stress import command
+
+    console = Console()
+    if show_list:
+        command.show_cases(console)
+        return
+    found = command.stress(case, scheme, ranks, quick, out, json_file, console)
+    raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)

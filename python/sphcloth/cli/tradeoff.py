@@ -1,0 +1,155 @@
+"""``sphcloth tradeoff``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from sphcloth.cli.options import JsonFile, grouped
+from sphcloth.errors import UserError
+
+EXAMPLES = """
+Examples:
+
+sphcloth tradeoff dam-break --quick
+
+sphcloth tradeoff two-resolutions --scheme constant,global --vary acoustic=0.5,1.0,1.5 --error 0.02
+
+sphcloth tradeoff my.in --vary dt=1e-3,5e-4 --reference dt=1e-5 --quantity KinEng
+"""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """With what the scene is run."""
+
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=A,B,...",
+            help="Values to try of a variable of the script, or of a limit of fix sph/integrate; "
+            "several make all combinations. In the place of what the scene varies by itself.",
+        ),
+    ] = None
+    scheme: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,...",
+            help="Schemes: constant, global, individual, block.",
+            show_default="those that the scene names; a script's own",
+        ),
+    ] = None
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Set a variable in all runs."),
+    ] = None
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=A,B,...",
+            help="Run all, the reference too, with each of these values of a variable, and take "
+            "means: for scenes where single runs differ by chance. A setting that fails once has "
+            "failed.",
+        ),
+    ] = None
+    reference: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="Settings of the run that is taken for exact."),
+    ] = None
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How many ranks and runs there are at a time, and how often wall times are measured."""
+
+    ranks: Annotated[int, typer.Option(min=1, help="Number of MPI ranks of a run.")] = 1
+    jobs: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            help="Runs side by side, 0 for as many as the cores allow. Wall times are only good "
+            "with 1.",
+        ),
+    ] = 1
+    repeat: Annotated[
+        int,
+        typer.Option(min=1, help="How often each wall time is measured; the shortest counts."),
+    ] = 1
+
+
+@grouped
+def tradeoff(
+    *,
+    scene: Annotated[
+        str | None,
+        typer.Argument(metavar="SCENE", help="A packaged scene (--list), or an input script."),
+    ] = None,
+    settings: Settings,
+    quantity: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[:NORM]",
+            help="A quantity of the scene or a column of the log; norm rms, max or end. The first "
+            "one ranks the settings.",
+        ),
+    ] = None,
+    error: Annotated[
+        float, typer.Option(min=0.0, help="Relative error within which the cheapest is sought.")
+    ] = 0.01,
+    quick: Annotated[bool, typer.Option("--quick", help="Run the smaller variant.")] = False,
+    effort: Effort,
+    last_run: Annotated[
+        bool,
+        typer.Option("--last-run", help="Of a script of your own, look at the last run alone."),
+    ] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Forget the runs that are in the folder.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Output folder.", show_default="sphcloth-tradeoff-SCENE")
+    ] = None,
+    json_file: JsonFile = None,
+    show_list: Annotated[bool, typer.Option("--list", help="Show the packaged scenes.")] = False,
+) -> None:
+    """Run a scene with many settings: error against particle updates and wall time."""
+    from sphcloth.examples import parse_settings
+    from sphcloth.tradeoff import command
+    from sphcloth.tradeoff.report import show, write_all
+    from sphcloth.tradeoff.study import Plan, study
+
+    console = Console()
+    if show_list:
+        command.show_scenes(console)
+        return
+    if scene is None:
+        raise UserError("which scene? sphcloth tradeoff --list shows them")
+    found = command.find_scene(scene, quantity or [], last_run)
+    plan = Plan(
+        command.find_schemes(found, settings.scheme),
+        command.parse_variations(settings.vary or []),
+        parse_settings(settings.settings or []),
+        parse_settings(settings.reference or [], "--reference"),
+        error,
+        quick,
+        command.parse_variations(settings.over or [], "--over"),
+    )
+    folder = out or Path(f"sphcloth-tradeoff-{found.name}")
+    result = study(
+        found,
+        plan,
+        folder,
+        console,
+        ranks=effort.ranks,
+        jobs=command.number_of_jobs(effort.jobs, effort.ranks),
+        repeat=effort.repeat,
+        fresh=fresh,
+    )
+    files = write_all(result, folder)
+    if json_file is not None:
+        result.write(json_file)
+    show(result, console)
+    console.print(*(str(file) for file in files), sep="\n", highlight=False, soft_wrap=True)

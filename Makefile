@@ -43,7 +43,7 @@ validate: $(VENV)/installed
 	  "from sphcloth.validation.validate import all_cases; print(*all_cases())"); do \
 	  $(BIN)/sphcloth validate $$case --out build/validate/$$case || failed=1; done; exit $$failed
 
-# what docs/reliability.md is made of
+# what docs/evidence/reliability.md is made of
 FOUND := build/reliability
 
 # every extreme with every scheme on 1, 2 and 4 ranks: an hour on two cores
@@ -75,7 +75,7 @@ mutate: $(VENV)/installed
 
 # the tables of the page, of whatever the targets above have left
 reliability-page: $(VENV)/installed
-	$(BIN)/python -m sphcloth.stress.page $(FOUND) docs/reliability.md
+	$(BIN)/python -m sphcloth.stress.page $(FOUND) docs/evidence/reliability.md
 
 lint: $(VENV)/installed
 	$(BIN)/ruff check python tests

@@ -82,8 +82,8 @@ def add_contents(app, page: str, source: list[str]) -> None:
             new = [link for link in dict.fromkeys(links) if link not in known]
             known.update(new)
             source[0] += contents(head, new)
-    if page == "docs/python":
-        source[0] += contents("Modules", [posixpath.relpath(REFERENCE, "docs")])
+    if page == "docs/howto/python":
+        source[0] += contents("Modules", [posixpath.relpath(REFERENCE, posixpath.dirname(page))])
 
 
 def contents(caption: str, pages: list[str]) -> str:

@@ -306,7 +306,7 @@ def start(script: str, screen: str = "none") -> None:
 
 SCENE = START + ATOMS
 EMIT = "fix pour water sph/emit 99 1 0.05 disc 0 0 {} 0.2 velocity 0 0 -1\nrun 0"
-# head of docs/faq.md -> what provokes the message there
+# head of docs/howto/faq.md -> what provokes the message there
 PROVOKED = {
     "`Unrecognized pair style`": "plugin clear\npair_style sph/tait 0.1",
     "`Overriding built-in command style`": "clear",
@@ -348,7 +348,7 @@ SAID_ELSEWHERE = {
 
 def messages() -> dict[str, str]:
     """Head -> message of the questions that have one."""
-    page = (ROOT / "docs" / "faq.md").read_text()
+    page = (ROOT / "docs" / "howto" / "faq.md").read_text()
     found = re.findall(r"^### ((?:(?!^#).)*?)\n\n```text\n(.*?)```$", page, re.M | re.S)
     return dict(found)
 

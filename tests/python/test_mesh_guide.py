@@ -1,4 +1,4 @@
-"""docs/from_a_mesh_to_a_scene.md does what it says."""
+"""docs/howto/from_a_mesh_to_a_scene.md does what it says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from test_cli import call
 
-GUIDE = Path(__file__).parents[2] / "docs" / "from_a_mesh_to_a_scene.md"
+GUIDE = Path(__file__).parents[2] / "docs" / "howto" / "from_a_mesh_to_a_scene.md"
 
 
 def blocks(language: str) -> list[str]:

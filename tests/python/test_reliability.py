@@ -1,4 +1,4 @@
-"""What makes the tables of docs/reliability.md: small runs of each, and the page itself."""
+"""What makes the tables of docs/evidence/reliability.md: small runs of each, and the page."""
 
 import json
 import re
@@ -14,7 +14,7 @@ from sphcloth.stress.case import SPACING
 from sphcloth.stress.endurance import Growth, Look, Memory
 from sphcloth.stress.equality import SAME_PLACE, Found, Scene, Way
 
-PAGE = Path(__file__).parents[2] / "docs" / "reliability.md"
+PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "reliability.md"
 
 
 def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):

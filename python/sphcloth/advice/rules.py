@@ -24,7 +24,7 @@ TOO_STIFF, TOO_SOFT = 1.5, 0.8
 SOFT = 0.02
 # steps between two list builds that are neither too few nor too many, and the ones aimed at
 OFTEN, SELDOM, BETWEEN = 5, 60, 15
-# skin over support: what was measured to be best lies between (docs/speed.md)
+# skin over support: what was measured to be best lies between (docs/evidence/speed.md)
 LEAST_SKIN, MOST_SKIN = 0.1, 1.2
 # constant steps over smoothing length / speed of sound: the default of global, and stability
 USUAL, STABLE = 0.5, 1.6

@@ -52,7 +52,7 @@ class Way:
     begins: bool = False
 
     def fits(self, box: str, scheme: str) -> bool:
-        """Whether LAMMPS ends in the same state without us, see docs/reliability.md.
+        """Whether LAMMPS ends in the same state without us, see docs/evidence/reliability.md.
 
         A box that deforms is one step behind: images move by what it grew in the step before,
         which is another way where steps change, and none where a run begins.

@@ -1,7 +1,7 @@
-"""Tables of ``docs/reliability.md`` from what the runs wrote.
+"""Tables of ``docs/evidence/reliability.md`` from what the runs wrote.
 
-``python -m sphcloth.stress.page build/reliability docs/reliability.md`` replaces what stands
-between ``<!-- table NAME -->`` and ``<!-- end -->``. A table whose file is not there stays.
+``python -m sphcloth.stress.page build/reliability docs/evidence/reliability.md`` replaces what
+stands between ``<!-- table NAME -->`` and ``<!-- end -->``. A table whose file is not there stays.
 """
 
 from __future__ import annotations

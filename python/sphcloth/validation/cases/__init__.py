@@ -1,1 +1,1 @@
-"""The cases: one package each, found by themselves; see ``docs/validation.md`` to add one."""
+"""The cases, one package each; ``docs/evidence/validation.md`` says how to add one."""

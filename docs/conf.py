@@ -39,6 +39,7 @@ exclude_patterns = ["**/.*", "build/reference/modules.rst"]
 html_theme = "furo"
 html_title = "SPHCLOTH"
 html_math_renderer = "mathml"
+html_static_path = ["static"]
 html_copy_source = False
 highlight_language = "none"
 
@@ -69,6 +70,8 @@ napoleon_use_ivar = True  # attributes of dataclasses: in the docstring, not onc
 def setup(app):
     """Connect the functions below."""
     app.connect("source-read", add_contents)
+    app.connect("source-read", show_scripts)
+    app.add_css_file("gallery.css")
     app.connect("build-finished", write_entrance)
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
 
@@ -84,6 +87,22 @@ def add_contents(app, page: str, source: list[str]) -> None:
             source[0] += contents(head, new)
     if page == "docs/howto/python":
         source[0] += contents("Modules", [posixpath.relpath(REFERENCE, posixpath.dirname(page))])
+
+
+# the script of an example, as the index links to it
+SCRIPT = r"\]\(\.\./(examples/\w+)/(in\.\w+|\w+\.py)\)"
+
+
+def show_scripts(app, page: str, source: list[str]) -> None:
+    """End the page of an example with its script, and let the pictures of the index lead there."""
+    index = (Path(app.srcdir) / f"{root_doc}.md").read_text()
+    scripts = dict(re.findall(SCRIPT, index))
+    folder = posixpath.dirname(page)
+    if page == root_doc:
+        source[0] = re.sub(SCRIPT, r"](../\1/README.md#script)", source[0])
+    elif folder in scripts:
+        name = scripts[folder]
+        source[0] += f"\n## Script\n\n```{{literalinclude}} {name}\n:caption: {name}\n```\n"
 
 
 def contents(caption: str, pages: list[str]) -> str:

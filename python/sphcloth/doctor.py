@@ -15,6 +15,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from sphcloth import results
 from sphcloth.errors import UserError
 from sphcloth.plugin import STYLES, plugin_path
 from sphcloth.programs import installed_version, program
@@ -47,6 +48,12 @@ class Check:
     detail: str
     remedy: str = ""
 
+    @property
+    def mark(self) -> str:
+        """The mark of the verdict for the screen."""
+        warns = self.passed and self.remedy
+        return "[yellow]warning[/]" if warns else results.mark(self.passed)
+
 
 @dataclass(frozen=True)
 class Findings:
@@ -63,7 +70,7 @@ class Findings:
     def write(self, path: Path) -> None:
         """Write everything and the verdict as JSON."""
         values = asdict(self) | {"passed": self.passed}
-        path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+        results.write_json(path, values)
 
     def show(self, console: Console) -> None:
         """Print versions and checks as tables, then the remedies, the first failure's first."""
@@ -72,17 +79,17 @@ class Findings:
             versions.add_row(name, version)
         checks = Table("check", "", "found", title="checks")
         for check in self.checks:
-            checks.add_row(check.name, _mark(check), check.detail)
+            checks.add_row(check.name, check.mark, check.detail)
         console.print(versions, checks)
         for check in sorted(self.checks, key=lambda check: check.passed):
             if check.remedy:
-                console.print(f"{_mark(check)} {check.name}: {check.remedy}")
+                console.print(f"{check.mark} {check.name}: {check.remedy}")
 
 
 def examine() -> Findings:
     """Collect versions and run all checks; takes a few seconds."""
     versions = {"python": platform.python_version()}
-    versions |= {package: installed_version(package) for package in PACKAGES}
+    versions |= results.versions(*PACKAGES)
     probed, said = _probe()
     versions |= {
         "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", said) or "unknown",
@@ -210,9 +217,3 @@ def _first_match(pattern: str, text: str, flags: int = 0) -> str:
     """Return the first group of a pattern's first match, empty if there is none."""
     match = re.search(pattern, text, flags | re.MULTILINE)
     return match.group(1).strip() if match else ""
-
-
-def _mark(check: Check) -> str:
-    if not check.passed:
-        return "[red]failed[/]"
-    return "[yellow]warning[/]" if check.remedy else "[green]ok[/]"

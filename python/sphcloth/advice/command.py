@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -16,6 +15,7 @@ from sphcloth.advice.probe import Probe, moved
 from sphcloth.advice.rules import Proposal, facts, needs
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.errors import UserError
+from sphcloth.results import write_json
 
 # share of the largest way by which an end may differ without what is tried to count as needed
 SAME = 0.01
@@ -50,8 +50,7 @@ class Advice:
         probe = {"steps": self.run.steps, "time": self.run.time, "whole": self.run.whole}
         kinds = ("facts", "needs", "unused")
         found = {kind: [asdict(each) for each in getattr(self, kind)] for kind in kinds}
-        text = json.dumps({"script": str(self.script), "probe": probe} | found, indent=2)
-        path.write_text(text + "\n", encoding="utf-8")
+        write_json(path, {"script": str(self.script), "probe": probe} | found)
 
     def show(self, console: Console) -> None:
         """Print what was found, each with the line to type."""

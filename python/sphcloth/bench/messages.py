@@ -21,7 +21,8 @@ from rich.table import Table
 from sphcloth.bench.timing import Runner, read_timing
 from sphcloth.errors import UserError
 from sphcloth.plugin import plugin_path
-from sphcloth.programs import installed_version, lammps_on
+from sphcloth.programs import lammps_on
+from sphcloth.results import versions
 
 SCRIPT = Path(__file__).parent / "in.messages"
 RANKS = (2, 4, 8)
@@ -139,7 +140,7 @@ def bench_messages(rounds: int, across: int, steps: int, console: Console) -> di
     result = {
         "bench": "messages",
         "particles": across**3,
-        "versions": {name: installed_version(name) for name in ("lammps", "mpich", "sphcloth")},
+        "versions": versions("lammps", "mpich", "sphcloth"),
         "found": found,
         "particle_ns": 1e9 * particle,
         "expected": _expected(found, Cluster(particle=particle)),

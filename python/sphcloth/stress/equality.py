@@ -7,7 +7,6 @@ LAMMPS itself.
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -21,6 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
+from sphcloth.results import write_json
 from sphcloth.stress.case import SCENES, SCHEMES, SPACING
 from sphcloth.stress.runner import run_script
 
@@ -201,7 +201,7 @@ def show(found: Sequence[Found], console: Console) -> None:
     table = Table("way", *(f"{box}, {scheme}" for box, scheme in kinds))
     for way in dict.fromkeys((f.way, f.ranks) for f in found):
         here = {(f.box, f.scheme): f for f in found if (f.way, f.ranks) == way}
-        table.add_row(way[0], *(_mark(here.get(kind)) for kind in kinds))
+        table.add_row(way[0], *(_cell(here.get(kind)) for kind in kinds))
     console.print("largest difference of a place over the spacing", table)
     for f in found:
         if not f.passed:
@@ -209,7 +209,7 @@ def show(found: Sequence[Found], console: Console) -> None:
             console.print(f"{f.box}, {f.scheme}, {f.way}, {f.ranks} ranks: {what}")
 
 
-def _mark(found: Found | None) -> str:
+def _cell(found: Found | None) -> str:
     if found is None or found.place is None:
         return "" if found is None else "[red]no end[/]"
     text = f"{found.place / SPACING:.1e}" if found.place else "0"
@@ -225,12 +225,12 @@ def main(
     console, found = Console(), []
     for one in matrix(box.split(","), scheme.split(",")):
         found.append(one)
-        console.print(f"{one.box}, {one.scheme}, {one.way}: {_mark(one)}", highlight=False)
+        console.print(f"{one.box}, {one.scheme}, {one.way}: {_cell(one)}", highlight=False)
     show(found, console)
     if json_file is not None:
         json_file.parent.mkdir(parents=True, exist_ok=True)
         result = [asdict(one) | {"passed": one.passed} for one in found]
-        json_file.write_text(json.dumps(result, indent=2) + "\n")
+        write_json(json_file, result)
     raise typer.Exit(0 if all(one.passed for one in found) else 1)
 
 

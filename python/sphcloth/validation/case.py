@@ -6,14 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from sphcloth.errors import UserError
-
-if TYPE_CHECKING:
-    from sphcloth.validation.bench import Bench
-
-Value = float | int | str
+from sphcloth.results import Value
+from sphcloth.validation.runner import Runner
 
 
 @dataclass(frozen=True)
@@ -115,7 +111,7 @@ class Case:
         parameters: all that ``--set`` may change.
         quantities: all that is measured, in the order of the table.
         measure: runs the script for some parameters and returns a value for each quantity. It
-            gets all parameters by name, and the bench that runs LAMMPS and knows the folder.
+            gets all parameters by name, and the runner that runs LAMMPS and knows the folder.
         folder: where the script is.
     """
 
@@ -123,7 +119,7 @@ class Case:
     summary: str
     parameters: tuple[Parameter, ...]
     quantities: tuple[Quantity, ...]
-    measure: Callable[[Mapping[str, Value], Bench], Mapping[str, float]]
+    measure: Callable[[Mapping[str, Value], Runner], Mapping[str, float]]
     folder: Path
 
     @property

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # times of the profiles in gap^2 / nu; those of Morris, Fox and Zhu, and the end
 TIMES = (0.0225, 0.045, 0.1125, 0.225, 1.0)
@@ -73,14 +73,14 @@ def parameters(*own: Parameter) -> tuple[Parameter, ...]:
     return *PARAMETERS, *own, *method
 
 
-def measure(flow: Start, values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(flow: Start, values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their profiles with the series."""
     across = [round(COARSE * values["across"]), values["across"]]
     labels = ("coarse", "fine")
-    runs = [_run(flow, values, bench, label, n) for label, n in zip(labels, across, strict=True)]
+    runs = [_run(flow, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
     errors = [[_error(flow, frame) for frame in _frames(flow, run)] for run in runs]
     order = compare.order([compare.rms(each) for each in errors], across)
-    _plot(flow, runs[-1], dict(zip(labels, errors, strict=True)), bench.out / f"{bench.name}.png")
+    _plot(flow, runs[-1], dict(zip(labels, errors, strict=True)), runner.picture)
     drag = runs[-1].thermo["v_lower"][-1]
     return {
         "profile": max(errors[-1]),
@@ -92,11 +92,11 @@ def measure(flow: Start, values: Mapping[str, Value], bench: Bench) -> dict[str,
     }
 
 
-def _run(flow: Start, values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(flow: Start, values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the script with so many particles across."""
     t_last = TIMES[-1] * flow.gap**2 / flow.nu
     # a little longer than the last time, which is a frame then
-    return bench.run(
+    return runner.run(
         label,
         t_last * (FRAMES + 0.5) / FRAMES,
         {

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sphcloth.validation.bench import Run
 from sphcloth.validation.case import Parameter, Value
+from sphcloth.validation.runner import Run
 
 SOLVERS = ("gs", "jacobi", "substeps")
 DIRECTIONS = ("current", "start")

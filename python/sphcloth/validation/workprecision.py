@@ -9,7 +9,6 @@ compliance, by the script of ``hanging-chain``.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
+from sphcloth.results import Value, write_json
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench
-from sphcloth.validation.case import Value
 from sphcloth.validation.cases import hanging_chain, pendulum
+from sphcloth.validation.runner import Runner
 
 # the pendulum: seconds, links, and the numbers of steps and sweeps
 LINKS, TIME = 10, 1.0
@@ -49,7 +48,7 @@ class Point:
     value: float
 
 
-def pendulum_points(bench: Bench) -> list[Point]:
+def pendulum_points(runner: Runner) -> list[Point]:
     """Return the error of a chain of links that swings from level, for many settings."""
     base = pendulum.CASE.values({}, quick=False) | {"links": LINKS, "time": TIME}
     settings = {
@@ -73,14 +72,14 @@ def pendulum_points(bench: Bench) -> list[Point]:
             # one sweep in a substep: ten substeps in a step
             each = base | {"iterations": 10} | changes | {"dt": TIME / steps}
             label = f"{len(points):03d}"
-            run = pendulum.run_pendulum(each, bench, label)
+            run = pendulum.run_pendulum(each, runner, label)
             error = float(np.max(pendulum.path_errors(run, each)))
             sweeps = float(run.thermo["Step"][-1]) * each["iterations"]
             points.append(Point(name, sweeps * LINKS, error))
     return points
 
 
-def trap_points(bench: Bench) -> list[Point]:
+def trap_points(runner: Runner) -> list[Point]:
     """Return the stretch over that of the springs for one bond and a chain, over the sweeps."""
     base = hanging_chain.CASE.values({}, quick=False) | {"dt": TRAP_DT}
     loads = {
@@ -102,7 +101,7 @@ def trap_points(bench: Bench) -> list[Point]:
                 each = base | physics | changes | {"iterations": sweeps}
                 if each.pop("tenth", False):  # what a code without equation (9) does with 0.1
                     each["k"] = 1 - 0.9**sweeps
-                run = hanging_chain.run_chain(each, bench, f"{len(points):03d}")
+                run = hanging_chain.run_chain(each, runner, f"{len(points):03d}")
                 length = -float(hanging_chain.heights_of(run)[-1])
                 stretch = (length - chain.links * chain.length) / chain.stretch
                 points.append(Point(f"{load}, {model}", sweeps, stretch))
@@ -146,7 +145,7 @@ def plot_trap(points: Sequence[Point], path: Path) -> None:
 
 
 Plot = Callable[[Sequence[Point], Path], None]
-STUDIES: Mapping[str, tuple[object, Callable[[Bench], list[Point]], Plot]] = {
+STUDIES: Mapping[str, tuple[object, Callable[[Runner], list[Point]], Plot]] = {
     "pendulum": (pendulum.CASE, pendulum_points, plot_pendulum),
     "trap": (hanging_chain.CASE, trap_points, plot_trap),
 }
@@ -155,11 +154,11 @@ STUDIES: Mapping[str, tuple[object, Callable[[Bench], list[Point]], Plot]] = {
 def study(name: str, out: Path, console: Console) -> dict[str, list[dict[str, Value]]]:
     """Run one study; writes its plot and its points to a folder."""
     case, measure, plot = STUDIES[name]
-    bench = Bench(case.script, out / name, 1, console)
-    points = measure(bench)
+    runner = Runner(case.script, out / name, 1, console)
+    points = measure(runner)
     plot(points, out / f"{name}.png")
     found = {key: [asdict(point) for point in curve] for key, curve in curves(points).items()}
-    (out / f"{name}.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    write_json(out / f"{name}.json", found)
     return found
 
 

@@ -8,7 +8,6 @@ them both ways, ``... top`` and ``... corners`` hang up sheets of rigid edges.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -21,8 +20,9 @@ from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 from rich.console import Console
 
+from sphcloth.results import write_json
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
+from sphcloth.validation.runner import Run, Runner
 
 SCRIPT = Path(__file__).parent / "in.membrane"
 CELLS = 16
@@ -147,30 +147,30 @@ def mean_strain(run: Run) -> NDArray[np.float64]:
     return fit[1:].T
 
 
-def pull(bench: Bench, net: Net, degrees: float, cells: int = CELLS) -> tuple[float, float]:
+def pull(runner: Runner, net: Net, degrees: float, cells: int = CELLS) -> tuple[float, float]:
     """Return Young's modulus and Poisson's ratio that a sheet shows."""
     label = f"{net.label}_{degrees:g}"
     values = {"what": "pull", "angle": degrees, "tension": TENSION, "cells": cells}
-    gradient = mean_strain(bench.run(label, SETTLE, {**net.variables(cells), **values}))
+    gradient = mean_strain(runner.run(label, SETTLE, {**net.variables(cells), **values}))
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     along = float(np.array([c, s]) @ gradient @ [c, s])
     across = float(np.array([-s, c]) @ gradient @ [-s, c])
     return TENSION / along, -across / along
 
 
-def shear(bench: Bench, net: Net, gamma: float, cells: int = CELLS) -> float:
+def shear(runner: Runner, net: Net, gamma: float, cells: int = CELLS) -> float:
     """Return twice the energy per area over the square of the shear, the border held."""
     values = {"what": "shear", "gamma": gamma, "cells": cells, **SHEARED}
-    run = bench.run(f"{net.label}_{gamma:g}", SHEARED_FOR, {**net.variables(cells), **values})
+    run = runner.run(f"{net.label}_{gamma:g}", SHEARED_FOR, {**net.variables(cells), **values})
     return 2 * float(run.thermo["f_sheet[7]"][-1]) / net.width(cells) / gamma**2
 
 
-def pull_study(bench: Bench) -> list[dict[str, object]]:
+def pull_study(runner: Runner) -> list[dict[str, object]]:
     """Return the moduli of all nets at all angles, measured and of the infinite net."""
     found = []
     for net in (*NETS, *WHOLE):
         for degrees in ANGLES:
-            modulus, poisson = pull(bench, net, degrees)
+            modulus, poisson = pull(runner, net, degrees)
             exact = moduli(stiffness(net), degrees)
             found.append(
                 {
@@ -185,12 +185,12 @@ def pull_study(bench: Bench) -> list[dict[str, object]]:
     return found
 
 
-def shear_study(bench: Bench) -> list[dict[str, object]]:
+def shear_study(runner: Runner) -> list[dict[str, object]]:
     """Return the shear moduli of all nets, sheared both ways, and of the infinite net."""
     found = []
     for net in NETS:
         for gamma in SHEARS:
-            modulus, exact = shear(bench, net, gamma), float(stiffness(net)[2, 2])
+            modulus, exact = shear(runner, net, gamma), float(stiffness(net)[2, 2])
             found.append(
                 {"sheet": net.name, "gamma": gamma, "modulus": modulus, "exact modulus": exact}
             )
@@ -225,12 +225,12 @@ class Shape:
 
 
 def hang(
-    bench: Bench, pattern: str, held: str, cells: int, sweeps: int, seed: int
+    runner: Runner, pattern: str, held: str, cells: int, sweeps: int, seed: int
 ) -> tuple[Shape, Run]:
     """Hang up a sheet."""
     label = f"{held}_{pattern}_{cells}_{sweeps}_{seed}"
     values = {"what": "hang", "pattern": pattern, "held": held, "cells": cells, "seed": seed}
-    run = bench.run(label, REST, {**RIGID, **HUNG, **values, "iterations": sweeps})
+    run = runner.run(label, REST, {**RIGID, **HUNG, **values, "iterations": sweeps})
     first, last = run.trajectory[0], run.trajectory[-1]
     # the displacement at the start is not in the plane of the sheet
     at = {(round(x, 6), round(z, 6)): n for n, (x, _, z) in enumerate(first.positions)}
@@ -253,28 +253,28 @@ def hang(
     return shape, run
 
 
-def top_study(bench: Bench) -> list[dict[str, object]]:
+def top_study(runner: Runner) -> list[dict[str, object]]:
     """Return sheets that hang from their upper side."""
     return [
-        asdict(hang(bench, pattern, "top", cells, sweeps, SEEDS[0])[0])
+        asdict(hang(runner, pattern, "top", cells, sweeps, SEEDS[0])[0])
         for cells, counts in TOP
         for pattern in ("square", "diagonal", "equilateral", "cross")
         for sweeps in counts
     ]
 
 
-def corner_study(bench: Bench) -> list[dict[str, object]]:
+def corner_study(runner: Runner) -> list[dict[str, object]]:
     """Return sheets that hang from two corners, and draw those of the most sweeps."""
     found, shown = [], {}
     for cells, counts in CORNERS:
         for pattern in ("square", "diagonal", "equilateral", "cross"):
             for sweeps in counts:
                 for seed in SEEDS:
-                    shape, run = hang(bench, pattern, "corners", cells, sweeps, seed)
+                    shape, run = hang(runner, pattern, "corners", cells, sweeps, seed)
                     found.append(asdict(shape))
                     if seed == SEEDS[0]:
                         shown[pattern] = run
-    draw_shapes(shown, bench.out.parent / "corners.png")
+    draw_shapes(shown, runner.out.parent / "corners.png")
     return found
 
 
@@ -329,7 +329,7 @@ def plot_pull(points: Sequence[Mapping[str, object]], path: Path) -> None:
 
 
 Points = list[dict[str, object]]
-STUDIES: Mapping[str, Callable[[Bench], Points]] = {
+STUDIES: Mapping[str, Callable[[Runner], Points]] = {
     "pull": pull_study,
     "shear": shear_study,
     "top": top_study,
@@ -339,10 +339,10 @@ STUDIES: Mapping[str, Callable[[Bench], Points]] = {
 
 def study(name: str, out: Path, console: Console) -> Points:
     """Run one study; writes its points, and its plot if it has one, to a folder."""
-    points = STUDIES[name](Bench(SCRIPT, out / name, 1, console))
+    points = STUDIES[name](Runner(SCRIPT, out / name, 1, console))
     if name == "pull":
         plot_pull(points, out / "pull.png")
-    (out / f"{name}.json").write_text(json.dumps(points, indent=2) + "\n", encoding="utf-8")
+    write_json(out / f"{name}.json", points)
     return points
 
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from rich.console import Console
 
 from sphcloth.errors import UserError
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Value
+from sphcloth.validation.runner import Run, Runner
 
 FOLDER = Path(__file__).parent
 
@@ -28,8 +28,8 @@ CODES = tuple(SUPPORT)
 
 
 @dataclass
-class StockBench(Bench):
-    """A bench whose script takes some variables more than the case gives.
+class StockRunner(Runner):
+    """A runner whose script takes some variables more than the case gives.
 
     Attributes:
         extra: script variables that are no parameters of the case.
@@ -74,7 +74,7 @@ def compare_stock(
     *,
     quick: bool = False,
     ranks: int = 1,
-) -> tuple[dict[str, float], StockBench]:
+) -> tuple[dict[str, float], StockRunner]:
     """Run a case by one of the codes and measure it as the case is measured.
 
     Args:
@@ -87,7 +87,7 @@ def compare_stock(
         ranks: number of MPI ranks.
 
     Returns:
-        Name -> value of every quantity of the case, and the bench with its runs.
+        Name -> value of every quantity of the case, and the runner with its runs.
 
     Raises:
         UserError: no such script, a setting that is not allowed, or LAMMPS failed.
@@ -99,8 +99,8 @@ def compare_stock(
     extra = {key: text for key, text in own.items() if key not in known}
     _check(extra, script)
     out.mkdir(parents=True, exist_ok=True)
-    bench = StockBench(script, out, ranks, console, extra=extra)
-    return dict(case.measure(values, bench)), bench
+    runner = StockRunner(script, out, ranks, console, extra=extra)
+    return dict(case.measure(values, runner)), runner
 
 
 def _check(extra: Mapping[str, str], script: Path) -> None:

@@ -26,7 +26,7 @@ def main() -> int:
     settings = dict(text.partition("=")[::2] for text in given.settings)
     start = time.monotonic()
     try:
-        measured, bench = compare_stock(
+        measured, runner = compare_stock(
             given.case,
             given.code,
             settings,
@@ -40,10 +40,10 @@ def main() -> int:
         return 2
     for name, value in measured.items():
         print(f"{name:22s} {value:.4g}")
-    steps = bench.runs[-1].thermo
+    steps = runner.runs[-1].thermo
     print(f"{'time_step':22s} {steps['Dt'][-1]:.4g} (unit of time of the script)")
-    print(f"{'steps':22s} {' '.join(map(str, bench.steps()))}")
-    print(f"{'particle_updates':22s} {bench.particle_updates():.3g}")
+    print(f"{'steps':22s} {' '.join(map(str, runner.steps()))}")
+    print(f"{'particle_updates':22s} {runner.particle_updates():.3g}")
     print(f"{'wall_time':22s} {time.monotonic() - start:.1f} s")
     return 0
 

@@ -13,9 +13,9 @@ from scipy.optimize import curve_fit
 
 from sphcloth.references.added_mass_piston import Piston
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
+from sphcloth.validation.runner import Run, Runner
 
 # time in which the water settles on the sheet, which is held, and rate of its damping: h/c0, c0/h
 SETTLE, DAMPING = 40.0, 0.45
@@ -111,18 +111,18 @@ class Swing:
         return cls(period, loss, scatter, np.array([time, height, fitted]))
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Pluck sheets of several masses, and the lightest one at half the resolution."""
     masses = np.geomspace(values["lightest"], values["heaviest"], values["runs"])
     pistons = [_piston(values, float(mass)) for mass in masses]
     layers = values["layers"]
-    runs = [_run(piston, values, bench, f"{piston.areal:g}", layers) for piston in pistons]
+    runs = [_run(piston, values, runner, f"{piston.areal:g}", layers) for piston in pistons]
     swings = [_swing(run, piston) for run, piston in zip(runs, pistons, strict=True)]
     fewer = round(COARSE * layers)
-    coarse = _swing(_run(pistons[0], values, bench, "coarse", fewer), pistons[0])
+    coarse = _swing(_run(pistons[0], values, runner, "coarse", fewer), pistons[0])
     errors = [swing.period / p.period - 1 for swing, p in zip(swings, pistons, strict=True)]
     losses = [swing.loss for swing in swings]
-    _plot(pistons, swings, bench.out / f"{bench.name}.png")
+    _plot(pistons, swings, runner.picture)
     return {
         "period": _worst(errors),
         "growth": max(0.0, -min(losses)) if np.all(np.isfinite(losses)) else math.nan,
@@ -145,12 +145,14 @@ def _piston(values: Mapping[str, Value], mass: float) -> Piston:
     return Piston(mass, stiffness, height, rho0, sound)
 
 
-def _run(piston: Piston, values: Mapping[str, Value], bench: Bench, label: str, layers: int) -> Run:
+def _run(
+    piston: Piston, values: Mapping[str, Value], runner: Runner, label: str, layers: int
+) -> Run:
     """Run the script with so many layers."""
     dropped = ("lightest", "heaviest", "runs", "periods", "sound")
     shared = {name: values[name] for name in values if name not in dropped}
     t_settle = SETTLE * piston.height / piston.sound
-    return bench.run(
+    return runner.run(
         label,
         t_settle + values["periods"] * piston.period,
         shared

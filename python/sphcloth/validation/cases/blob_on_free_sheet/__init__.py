@@ -14,9 +14,9 @@ from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
 from sphcloth.references.blob_on_free_sheet import Collision
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density_in_space, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # the run goes on until the drop would have gone so far across the sheet; radii of the drop
 FAR = 4.0
@@ -109,23 +109,23 @@ class Impact:
         return crossings(mesh, self.run.trajectory).count
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run all speeds and angles, and one impact on several ranks."""
     speeds = [min(speed, values["fastest"]) for speed in SPEEDS]
     impacts = {
-        (speed, angle): _impact(values, bench, speed, angle)
+        (speed, angle): _impact(values, runner, speed, angle)
         for angle in (90.0, values["grazing"])
         for speed in dict.fromkeys(speeds)
     }
     normal = [impacts[speed, 90.0] for speed in dict.fromkeys(speeds)]
     every = list(impacts.values())
-    _plot(impacts, bench)
+    _plot(impacts, runner)
     return {
         "momentum": max(impact.change for impact in every),
         "energy_rise": max(rise(impact.total) for impact in every),
         "kinetic_rise": max(rise(impact.kinetic) for impact in every),
         "crossed": sum(impact.crossed for impact in every),
-        **_ranks(values, bench),
+        **_ranks(values, runner),
         "momentum_at_first": max(_first(impact) for impact in every),
         "least_energy": min(_least(impact) for impact in every),
         "slow_lost": 1 - float(normal[0].total[-1]),
@@ -140,7 +140,7 @@ def rise(energy: NDArray[np.float64]) -> float:
 
 def _impact(
     values: Mapping[str, Value],
-    bench: Bench,
+    runner: Runner,
     speed: float,
     angle: float,
     label: str = "",
@@ -152,7 +152,7 @@ def _impact(
     # along a grazing way the drop comes down slowly, and must not leave the sheet
     down = max(-float(collision.velocity[2]), 0.3 * collision.speed)
     t_end = FAR * values["radius"] / down
-    run = bench.run(
+    run = runner.run(
         label or f"{speed:g}_{angle:g}",
         t_end,
         shared
@@ -181,7 +181,7 @@ def _least(impact: Impact) -> float:
     return float(np.min(impact.kinetic)) / least
 
 
-def _ranks(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def _ranks(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Return how far runs on 2, 4, ... ranks end from that on one, over radius and speed."""
     counts = [1]
     while 2 * counts[-1] <= values["most_ranks"]:
@@ -189,7 +189,7 @@ def _ranks(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     runs = [
         _impact(
             values,
-            dataclasses.replace(bench, ranks=count),
+            dataclasses.replace(runner, ranks=count),
             COMPARED,
             90.0,
             label=f"ranks_{count}",
@@ -211,7 +211,7 @@ def _ranks(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     return {"ranks": max(distance), "ranks_energy": max(energy)}
 
 
-def _plot(impacts: Mapping[tuple[float, float], Impact], bench: Bench) -> None:
+def _plot(impacts: Mapping[tuple[float, float], Impact], runner: Runner) -> None:
     """Draw the energies over time, and two impacts from the side."""
     figure, axes = compare.panels(2, 2)
     angles = sorted({angle for _, angle in impacts}, reverse=True)
@@ -230,7 +230,7 @@ def _plot(impacts: Mapping[tuple[float, float], Impact], bench: Bench) -> None:
             x, _, z = frame.select(kind).positions.T
             side.plot(x, z, marker, ms=1)
         side.set(xlabel="x (m)", ylabel="z (m)", aspect="equal", title=f"{max(chosen):g} c0")
-    compare.save(figure, bench.out / f"{bench.name}.png")
+    compare.save(figure, runner.picture)
 
 
 CASE = Case(

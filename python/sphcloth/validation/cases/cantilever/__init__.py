@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # of the lowest mode of a cantilever: omega = 3.516 sqrt(B / (mass per area * L^4))
 LOWEST_MODE = 3.516
@@ -44,18 +44,18 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two numbers of links to rest and compare with the elastica."""
     elastica = HeavyElastica(values["gamma"])
     links = [round(COARSE * values["links"]), values["links"]]
     coarse, fine = (
-        _run({**values, "links": n}, bench, label)
+        _run({**values, "links": n}, runner, label)
         for n, label in zip(links, ("coarse", "fine"), strict=True)
     )
     rows = _rows(fine, values)
     exact = _exact(elastica, values["links"])
     drops = [-_rows(run, values)[-1, 1] for run in (coarse, fine)]
-    _plot(elastica, rows, bench.out / f"{bench.name}.png")
+    _plot(elastica, rows, runner.picture)
     last = fine.trajectory[-1]
     return {
         "drop": drops[-1] / elastica.drop - 1,
@@ -70,12 +70,12 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     lowest = LOWEST_MODE * math.sqrt(values["gravity"] / (values["free"] * values["gamma"]))
     time = values["settle"] / lowest
     shared = {name: values[name] for name in values if name != "settle"}
     steps = cloth.stepping(time, values["dt"], frames=10)
-    return bench.run(label, time, shared | steps | {"drag": DRAG * lowest})
+    return runner.run(label, time, shared | steps | {"drag": DRAG * lowest})
 
 
 def _rows(run: Run, values: Mapping[str, Value]) -> NDArray[np.float64]:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references.catenary import HangingPolygon
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # rate of the drag in sqrt(g / length)
 DRAG = 4.0
@@ -42,17 +42,17 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run to rest and compare with the polygon, for the order along current directions."""
     polygon = _polygon(values)
-    fine = _run(values, bench, "fine")
+    fine = _run(values, runner, "fine")
     current = [
-        _error(_run({**values, "direction": "current", "dt": dt}, bench, label), polygon)
+        _error(_run({**values, "direction": "current", "dt": dt}, runner, label), polygon)
         for label, dt in (("coarse", COARSE * values["dt"]), ("current", values["dt"]))
     ]
     joints = _joints(fine)
     weight = (polygon.links + 1) * polygon.mass * polygon.gravity
-    _plot(polygon, joints, bench.out / f"{bench.name}.png")
+    _plot(polygon, joints, runner.picture)
     return {
         "shape": _error(fine, polygon),
         "sag": (-float(np.min(joints[:, 1])) - polygon.sag) / polygon.length,
@@ -76,12 +76,12 @@ def _polygon(values: Mapping[str, Value]) -> HangingPolygon:
     )
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     unit = math.sqrt(values["length"] / values["gravity"])
     time = values["settle"] * unit
     shared = {name: values[name] for name in values if name != "settle"}
     changed = {"span": values["span"] * values["length"], "drag": DRAG / unit}
-    return bench.run(label, time, shared | changed | cloth.stepping(time, values["dt"], frames=10))
+    return runner.run(label, time, shared | changed | cloth.stepping(time, values["dt"], frames=10))
 
 
 def _error(run: Run, polygon: HangingPolygon) -> float:

@@ -7,18 +7,18 @@ from pathlib import Path
 
 from sphcloth.references.couette import CouetteStart
 from sphcloth.validation import channel
-from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Value
+from sphcloth.validation.runner import Runner
 
 PARAMETERS = channel.parameters(
     Parameter("lid", 1.25e-5, "m/s", "velocity V of the upper plate", 1e-9, 10.0),
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their profiles with the series."""
     flow = CouetteStart(values["gap"], values["nu"], values["lid"])
-    return channel.measure(flow, values, bench)
+    return channel.measure(flow, values, runner)
 
 
 CASE = Case(

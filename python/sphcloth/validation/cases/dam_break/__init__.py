@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from sphcloth.references import dam_break
 from sphcloth.references.dam_break import Column
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # shares of the particles over the width, from the coarsest run to the finest
 SHARES = {"coarse": 0.25, "middle": 0.5, "fine": 1.0}
@@ -76,18 +76,18 @@ class Front:
         return compare.rms(mine - np.interp(times, other.times, other.places))
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run three resolutions, compare the finest with experiments and the others with it."""
     column = Column(values["width"], values["gravity"])
     across = [round(share * values["across"]) for share in SHARES.values()]
-    runs = [_run(column, values, bench, label, n) for label, n in zip(SHARES, across, strict=True)]
+    runs = [_run(column, values, runner, label, n) for label, n in zip(SHARES, across, strict=True)]
     fronts = [Front.of(run, column) for run in runs]
     coarse, middle, fine = fronts
     shift = dam_break.best_shift(fine.times, fine.places)
     excess = dam_break.outside(fine.times, fine.places, shift)
     unshifted = dam_break.outside(fine.times, fine.places, 0.0)
     seen = dict(zip(SHARES, fronts, strict=True))
-    _plot(column, seen, runs[-1], shift, bench.out / f"{bench.name}.png")
+    _plot(column, seen, runs[-1], shift, runner.picture)
     return {
         "front": _largest(excess),
         "front_rms": compare.rms(excess),
@@ -101,12 +101,14 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(column: Column, values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(
+    column: Column, values: Mapping[str, Value], runner: Runner, label: str, across: int
+) -> Run:
     """Run the script with so many particles over the width."""
     sound = values["sound"] * math.sqrt(2 * column.gravity * column.width)
     t_settle = values["settle"] * math.sqrt(2 * column.width / column.gravity)
     shared = {name: value for name, value in values.items() if name != "settle"}
-    return bench.run(
+    return runner.run(
         label,
         t_settle + END * column.time,
         shared

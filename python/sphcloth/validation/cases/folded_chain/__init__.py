@@ -11,8 +11,8 @@ from scipy.interpolate import CubicSpline
 
 from sphcloth.references import folded_chain
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # the coarse run of the order of convergence: share of the links
 COARSE = 0.5
@@ -40,11 +40,11 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two numbers of links and find when the free end is lowest."""
     links = [_odd(COARSE * values["links"]), _odd(values["links"])]
     runs = [
-        _run({**values, "links": n}, bench, label)
+        _run({**values, "links": n}, runner, label)
         for n, label in zip(links, ("coarse", "fine"), strict=True)
     ]
     free = folded_chain.free_fall(values["length"], values["gravity"])
@@ -55,7 +55,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     fallen = runs[-1].trajectory.times <= exact_fall
     exact = chain.positions(runs[-1].trajectory.times[fallen])[:, -1]
     error = np.linalg.norm(_tip(runs[-1])[fallen] - exact, axis=1) / values["length"]
-    _plot(runs[-1], exact, free, values["length"], bench.out / f"{bench.name}.png")
+    _plot(runs[-1], exact, free, values["length"], runner.picture)
     return {
         "fall": falls[-1] / ideal - 1,
         "fall_links": falls[-1] * free / exact_fall - 1,
@@ -71,10 +71,10 @@ def _odd(links: float) -> int:
     return 2 * (round(links) // 2) + 1
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     free = folded_chain.free_fall(values["length"], values["gravity"])
     time = UNTIL * folded_chain.fall_over_free_fall() * free
-    return bench.run(label, time, {**values, **cloth.stepping(time, values["dt"], FRAMES)})
+    return runner.run(label, time, {**values, **cloth.stepping(time, values["dt"], FRAMES)})
 
 
 def _tip(run: Run) -> NDArray[np.float64]:

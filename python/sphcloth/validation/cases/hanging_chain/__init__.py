@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # drag that calms the slowest motion along the chain without a swing, in its angular frequency
 DRAG = 2.0
@@ -45,21 +45,21 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run the chain to rest, and again for a table over sweeps and time steps."""
     chain = chain_of(values)
-    run = run_chain(values, bench, "converged")
+    run = run_chain(values, runner, "converged")
     heights, force = heights_of(run), float(run.thermo["f_chain[3]"][-1])
     at_rest = chain.links * chain.length
     errors, forces = {}, {}
     for share in STEPS:
         for sweeps in _sweeps(values):
             changed = {**values, "dt": share * values["dt"], "iterations": sweeps}
-            each = run_chain(changed, bench, f"dt_{share:g}_sweeps_{sweeps}")
+            each = run_chain(changed, runner, f"dt_{share:g}_sweeps_{sweeps}")
             errors[share, sweeps] = (-heights_of(each)[-1] - at_rest) / chain.stretch - 1
             forces[share, sweeps] = each.thermo["f_chain[3]"][-1] / _carried(chain) - 1
     few = SWEEPS[0]
-    _plot(chain, heights, values["dt"], errors, bench.out / f"{bench.name}.png")
+    _plot(chain, heights, values["dt"], errors, runner.picture)
     return {
         "stretch": (-heights[-1] - at_rest) / chain.stretch - 1,
         "force": force / _carried(chain) - 1,
@@ -87,14 +87,14 @@ def _carried(chain: HangingChain) -> float:
     return chain.support + chain.mass * chain.gravity
 
 
-def run_chain(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def run_chain(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     """Run the script until the chain is at rest."""
     chain = chain_of(values)
     time = values["settle"] / chain.slowest
     shared = {name: values[name] for name in values if name not in ("settle", "table")}
     steps = cloth.stepping(time, values["dt"], frames=10)
     drag = min(DRAG * chain.slowest, STRONGEST_DRAG / values["dt"])
-    return bench.run(label, time, shared | steps | {"drag": drag})
+    return runner.run(label, time, shared | steps | {"drag": drag})
 
 
 def heights_of(run: Run) -> NDArray[np.float64]:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the column settles, in c0 / H
 DAMPING = 3.2
@@ -70,17 +70,17 @@ class State:
         return (self.pressure - column.pressure(self.depth)) / column.pressure(column.height)
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the finer one with the Tait column."""
     column = _column(values)
     layers = [round(COARSE * values["layers"]), values["layers"]]
-    coarse = _run(values, bench, "coarse", layers[0], min(COARSE_TIME, values["time"]))
-    fine = _run(values, bench, "fine", layers[1], values["time"])
+    coarse = _run(values, runner, "coarse", layers[0], min(COARSE_TIME, values["time"]))
+    fine = _run(values, runner, "fine", layers[1], values["time"])
     rest = [
         _state(run.trajectory[-1], values, n) for run, n in zip((coarse, fine), layers, strict=True)
     ]
     errors = [compare.rms(state.error(column)[state.inside]) for state in rest]
-    _plot(column, rest[-1], fine, bench.out / f"{bench.name}.png")
+    _plot(column, rest[-1], fine, runner.picture)
     return {
         "pressure": errors[-1],
         "pressure_everywhere": compare.rms(rest[-1].error(column)),
@@ -98,12 +98,12 @@ def _column(values: Mapping[str, Value]) -> TaitColumn:
     return TaitColumn(values["height"], values["rho0"], values["gravity"], sound, values["gamma"])
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str, layers: int, time: float) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, layers: int, time: float) -> Run:
     """Run the script with so many layers and so much time without damping."""
     sound = _column(values).sound
     t_settle = values["settle"] * math.sqrt(values["height"] / values["gravity"])
     shared = {name: values[name] for name in values if name not in ("sound", "settle", "time")}
-    return bench.run(
+    return runner.run(
         label,
         t_settle + time,
         shared

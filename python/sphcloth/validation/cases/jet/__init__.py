@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from sphcloth.references.jet import Jet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # share of the particles over the thickness in the coarse run
 COARSE = 0.5
@@ -50,16 +50,16 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the mean force with the momentum that the jet brings."""
     jet = Jet(values["thickness"], values["speed"], values["angle"], values["rho0"])
     across = [round(COARSE * values["across"]), values["across"]]
     labels = ("coarse", "fine")
-    runs = [_run(jet, values, bench, label, n) for label, n in zip(labels, across, strict=True)]
+    runs = [_run(jet, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
     windows = [_window(jet, values, n) for n in across]
     forces = [_steady(run, window) for run, window in zip(runs, windows, strict=True)]
     errors = [float(np.mean(force)) / jet.force - 1 for force in forces]
-    _plot(jet, dict(zip(labels, runs, strict=True)), windows[-1], bench.out / f"{bench.name}.png")
+    _plot(jet, dict(zip(labels, runs, strict=True)), windows[-1], runner.picture)
     first, second = np.array_split(forces[-1], 2)
     return {
         "force": errors[-1],
@@ -73,9 +73,9 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(jet: Jet, values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(jet: Jet, values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the script with so many particles over the thickness."""
-    return bench.run(
+    return runner.run(
         label,
         _window(jet, values, across)[1],
         {

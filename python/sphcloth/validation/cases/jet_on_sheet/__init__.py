@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density_in_space, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # share of the particles over the thickness in the coarse run
 COARSE = 0.5
@@ -70,21 +70,21 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the force of the pins with the momentum that is turned."""
     # on a lattice whose summed density is rho0 there is less mass per volume
     mass_per_volume = values["rho0"] / lattice_density_in_space(values)
     jet = TurnedJet(values["thickness"], values["speed"], mass_per_volume)
     across = [max(4, round(COARSE * values["across"])), values["across"]]
     labels = ("coarse", "fine")
-    runs = [_run(jet, values, bench, label, n) for label, n in zip(labels, across, strict=True)]
+    runs = [_run(jet, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
     windows = [_window(jet, values, n) for n in across]
     found = [
         _balance(jet, values, run, window, n)
         for run, window, n in zip(runs, windows, across, strict=True)
     ]
     fine = runs[-1]
-    _plot(jet, values, dict(zip(labels, runs, strict=True)), windows[-1], found[-1], bench)
+    _plot(jet, values, dict(zip(labels, runs, strict=True)), windows[-1], found[-1], runner)
     last = fine.trajectory[_steady_frames(fine, windows[-1])[-1]]
     sheet = last.select(2).positions
     return {
@@ -96,11 +96,13 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(jet: TurnedJet, values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(
+    jet: TurnedJet, values: Mapping[str, Value], runner: Runner, label: str, across: int
+) -> Run:
     """Run the script with so many particles over the thickness."""
     dropped = ("stretch",)
     shared = {name: values[name] for name in values if name not in dropped}
-    return bench.run(
+    return runner.run(
         label,
         _window(jet, values, across)[1],
         shared
@@ -192,7 +194,7 @@ def _plot(
     runs: Mapping[str, Run],
     window: tuple[float, float],
     found: Mapping[str, float],
-    bench: Bench,
+    runner: Runner,
 ) -> None:
     """Draw the force over time in each run, and water and sheet of the fine one."""
     figure, (force, flow) = compare.panels(2)
@@ -217,7 +219,7 @@ def _plot(
     flow.plot(x, z, "k.", ms=2)
     half = 0.6 * values["span"]
     flow.set(xlabel="x / B", ylabel="z / B", xlim=(-half, half), ylim=(-2, 3), aspect="equal")
-    compare.save(figure, bench.out / f"{bench.name}.png")
+    compare.save(figure, runner.picture)
 
 
 CASE = Case(

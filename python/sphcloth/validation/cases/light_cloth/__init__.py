@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references import light_cloth
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 FRAMES = 20
 # the runs of the order of convergence: time steps in that of the case
@@ -42,19 +42,19 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run all stiffnesses, and the largest one with half the time step."""
     deepest = light_cloth.lowest(values["rows"], values["size"], values["gravity"], values["time"])
     stiffnesses = np.geomspace(values["softest"], values["stiffest"], values["runs"])
     runs = [
-        _run({**values, "stiffness": float(stiffness)}, bench, f"stiffness_{stiffness:.3g}")
+        _run({**values, "stiffness": float(stiffness)}, runner, f"stiffness_{stiffness:.3g}")
         for stiffness in stiffnesses
     ]
     halved = {**values, "stiffness": values["stiffest"], "dt": REFINED * values["dt"]}
-    finer = _run(halved, bench, "finer")
+    finer = _run(halved, runner, "finer")
     lowest = [_lowest(run) / deepest - 1 for run in runs]
     rows = [_rows(run, values) for run in (runs[-1], finer)]
-    _plot(runs, stiffnesses, values, deepest, bench.out / f"{bench.name}.png")
+    _plot(runs, stiffnesses, values, deepest, runner.picture)
     return {
         "lowest": max(lowest, key=abs),
         "lowest_reference": deepest,
@@ -66,11 +66,11 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     dropped = ("softest", "stiffest", "runs", "time")
     shared = {name: values[name] for name in values if name not in dropped}
     steps = cloth.stepping(values["time"], values["dt"], FRAMES)
-    return bench.run(label, values["time"], shared | steps)
+    return runner.run(label, values["time"], shared | steps)
 
 
 def _lowest(run: Run) -> float:

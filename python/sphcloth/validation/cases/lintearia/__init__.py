@@ -18,10 +18,10 @@ from sphcloth.metrics import crossings
 from sphcloth.references.lintearia import HeavyLintearia, Lintearia
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
+from sphcloth.validation.runner import Run, Runner
 
 MODES = ("wall", "both", "contact", "pressure")
 # particles over L of the coarse run of the order of convergence, in those of the case, and at least
@@ -131,7 +131,7 @@ class Pool:
         return np.linalg.norm(self.sheet - place, axis=1)
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions to rest and compare the finer one with the curve."""
     exact = curve_of(values)
     if round(values["layers"] / values["mesh"]) < LEAST_ROWS:
@@ -141,11 +141,11 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
         )
     across = coarse_and_fine(values)
     runs = [
-        _run(values, bench, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
+        _run(values, runner, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
     ]
     pools = [pool_of(run, values, n) for run, n in zip(runs, across, strict=True)]
     fine, pool = runs[-1], pools[-1]
-    _plot(exact, pools, fine, bench.out / f"{bench.name}.png")
+    _plot(exact, pools, fine, runner.picture)
     order = compare.order([compare.rms(each.distances(exact)) for each in pools], across)
     return {
         "lift": pool.pull[1] / exact.lift - 1,
@@ -178,12 +178,12 @@ def curve_of(values: Mapping[str, Value]) -> HeavyLintearia:
     return HeavyLintearia(Lintearia(*(values[name] for name in names)), values["areal"])
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the script with so many particles over L."""
     light = curve_of(values).light
     unit = math.sqrt(values["L"] / values["gravity"])
     shared = {name: values[name] for name in values if name != "settle"}
-    return bench.run(
+    return runner.run(
         label,
         values["settle"] * unit,
         shared

@@ -15,9 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from sphcloth.validation.bench import Run
 from sphcloth.validation.case import Value
 from sphcloth.validation.cases.lintearia import Pool, coarse_and_fine, curve_of, pool_of
+from sphcloth.validation.runner import Run
 
 # colours of the runs of one mode, the coarsest first
 COLOURS = ("tab:orange", "tab:blue", "tab:green", "tab:red")

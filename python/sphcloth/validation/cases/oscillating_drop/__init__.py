@@ -13,9 +13,9 @@ from scipy.interpolate import CubicSpline
 
 from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega
 DAMPING, SETTLE = 10.0, 2.0
@@ -86,16 +86,16 @@ class Motion:
         return float(last) / periods if is_near else math.nan
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the finer one with the ideal drop."""
     drop = EllipticDrop(values["sigma"] * values["omega"], values["omega"])
     across = [round(COARSE * values["across"]), values["across"]]
     labels = ("coarse", "fine")
-    runs = [_run(drop, values, bench, label, n) for label, n in zip(labels, across, strict=True)]
+    runs = [_run(drop, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
     seen = [Motion.of(run) for run in runs]
     period = seen[-1].period(drop, values["periods"])
     rms = [compare.rms(each.errors(drop)) for each in seen]
-    _plot(drop, dict(zip(labels, seen, strict=True)), bench.out / f"{bench.name}.png")
+    _plot(drop, dict(zip(labels, seen, strict=True)), runner.picture)
     return {
         "semi_axis": float(np.max(np.abs(seen[-1].errors(drop)))),
         "semi_axis_rms": rms[-1],
@@ -110,14 +110,14 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
 
 
 def _run(
-    drop: EllipticDrop, values: Mapping[str, Value], bench: Bench, label: str, across: int
+    drop: EllipticDrop, values: Mapping[str, Value], runner: Runner, label: str, across: int
 ) -> Run:
     """Run the script with so many particles over the radius."""
     t_settle = SETTLE / drop.omega
     # a little longer than whole periods: the end of the last one lies inside
     t_end = t_settle + (values["periods"] + 0.1) * drop.period
     shared = {name: value for name, value in values.items() if name != "periods"}
-    return bench.run(
+    return runner.run(
         label,
         t_end,
         shared

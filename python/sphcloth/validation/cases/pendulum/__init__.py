@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline
 from sphcloth.references.chain import LinkedPendulum
 from sphcloth.references.pendulum import pendulum_period
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # time steps of the coarse runs of the order of convergence, in that of the fine ones
 COARSE = 2.0
@@ -44,19 +44,19 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run one link and the chain with two time steps each."""
     expected = pendulum_period(values["length"], values["gravity"], math.radians(values["angle"]))
     single = {**values, "links": 1, "time": 1.05 * expected}
-    swings = [run_pendulum(coarser(single), bench, "period_coarse")]
-    swings.append(run_pendulum(single, bench, "period_fine"))
+    swings = [run_pendulum(coarser(single), runner, "period_coarse")]
+    swings.append(run_pendulum(single, runner, "period_fine"))
     periods = [_period(run) / expected - 1 for run in swings]
     level = {**values, "angle": 90.0}
-    runs = [run_pendulum(coarser(level), bench, "coarse"), run_pendulum(level, bench, "fine")]
+    runs = [run_pendulum(coarser(level), runner, "coarse"), run_pendulum(level, runner, "fine")]
     errors = [path_errors(run, values) for run in runs]
     largest = [float(np.max(error)) for error in errors]
     order = compare.order(largest, _rates(runs))
-    _plot(runs, errors, values, bench.out / f"{bench.name}.png")
+    _plot(runs, errors, values, runner.picture)
     return {
         "period": periods[-1],
         "period_reference": expected,
@@ -80,12 +80,12 @@ def coarser(values: Mapping[str, Value]) -> dict[str, Value]:
     return {**values, "dt": COARSE * values["dt"]}
 
 
-def run_pendulum(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def run_pendulum(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     """Run the script over ``time``."""
     shared = {name: values[name] for name in values if name != "time"}
     frames = cloth.frames_near(values["time"], values["dt"], FRAMES)
     steps = cloth.stepping(values["time"], values["dt"], frames)
-    return bench.run(label, values["time"], shared | steps)
+    return runner.run(label, values["time"], shared | steps)
 
 
 def path_errors(run: Run, values: Mapping[str, Value]) -> NDArray[np.float64]:

@@ -14,10 +14,10 @@ from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import above_sheet, crossings
 from sphcloth.references.pinned_weight import Load
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
+from sphcloth.validation.runner import Run, Runner
 
 MODES = ("both", "contact", "wall")
 # edges over the side in the coarse run, in those of the case
@@ -68,16 +68,16 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions to rest and weigh them."""
     load = _load(values)
     across = [round(COARSE * values["across"]), values["across"]]
     runs = [
-        _run(values, bench, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
+        _run(values, runner, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
     ]
     coarse, fine = runs
     errors = [_mean(run, "v_pins_z") / load.weight - 1 for run in runs]
-    _plot(load, runs, bench.out / f"{bench.name}.png")
+    _plot(load, runs, runner.picture)
     return {
         "pins": errors[-1],
         "pins_by_atom": _mean(fine, "v_atoms_z") / load.weight - 1,
@@ -102,7 +102,7 @@ def _load(values: Mapping[str, Value]) -> Load:
     return Load(values["side"], values["areal"], water, values["rho0"], values["gravity"])
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str, across: int) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the script with so many edges over the side."""
     load, unit = _load(values), math.sqrt(values["side"] / values["gravity"])
     settle = values["settle"] * unit
@@ -117,7 +117,7 @@ def _run(values: Mapping[str, Value], bench: Bench, label: str, across: int) -> 
         "lattice": _lattice(values),
         "t_settle": settle,
     }
-    return bench.run(label, settle + values["time"] * unit, shared | changed)
+    return runner.run(label, settle + values["time"] * unit, shared | changed)
 
 
 def _lattice(values: Mapping[str, Value]) -> float:

@@ -7,18 +7,18 @@ from pathlib import Path
 
 from sphcloth.references.poiseuille import PoiseuilleStart
 from sphcloth.validation import channel
-from sphcloth.validation.bench import Bench
 from sphcloth.validation.case import Case, Parameter, Value
+from sphcloth.validation.runner import Runner
 
 PARAMETERS = channel.parameters(
     Parameter("drive", 1e-4, "m/s^2", "acceleration along the plates", 1e-9, 100.0),
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their profiles with the series."""
     flow = PoiseuilleStart(values["gap"], values["nu"], values["drive"])
-    return channel.measure(flow, values, bench)
+    return channel.measure(flow, values, runner)
 
 
 CASE = Case(

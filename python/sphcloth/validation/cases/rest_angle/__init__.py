@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references.rest_angle import hinge_angles
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 FRAMES = 20
 
@@ -37,14 +37,14 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Start at the rest angles, at a share of them, and flat."""
     rest = np.radians(np.linspace(-values["largest"], values["largest"], values["hinges"]))
-    held = _angles(_run(values, bench, "held", 1.0)) - rest
-    back = _run(values, bench, "returned", values["open"])
+    held = _angles(_run(values, runner, "held", 1.0)) - rest
+    back = _run(values, runner, "returned", values["open"])
     returned = _angles(back) - rest
-    unfolded = _angles(_run(values, bench, "unfolded", 0.0)) - rest
-    _plot(back, returned + rest, rest, bench.out / f"{bench.name}.png")
+    unfolded = _angles(_run(values, runner, "unfolded", 0.0)) - rest
+    _plot(back, returned + rest, rest, runner.picture)
     return {
         "held": float(np.max(np.abs(held))),
         "returned": float(np.max(np.abs(returned[-1]))),
@@ -53,10 +53,10 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
     }
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str, start: float) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, start: float) -> Run:
     shared = {name: values[name] for name in values if name != "time"}
     steps = cloth.stepping(values["time"], values["dt"], FRAMES)
-    return bench.run(label, values["time"], shared | steps | {"open": start})
+    return runner.run(label, values["time"], shared | steps | {"open": start})
 
 
 def _angles(run: Run) -> NDArray[np.float64]:

@@ -14,9 +14,9 @@ from scipy.optimize import curve_fit
 from sphcloth.errors import UserError
 from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the water settles, in c0 / H
 DAMPING = 0.64
@@ -74,17 +74,17 @@ class Oscillation:
         return compare.rms(left) / abs(float(self.strength[0]))
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their periods with linear theory."""
     wave = StandingWave(values["depth"], values["length"], values["gravity"])
     layers = [round(COARSE * values["layers"]), values["layers"]]
     labels = ("coarse", "fine")
     seen = [
-        _oscillation(_run(wave, values, bench, label, n), wave)
+        _oscillation(_run(wave, values, runner, label, n), wave)
         for label, n in zip(labels, layers, strict=True)
     ]
     errors = [each.period / wave.period - 1 for each in seen]
-    _plot(wave, dict(zip(labels, seen, strict=True)), bench.out / f"{bench.name}.png")
+    _plot(wave, dict(zip(labels, seen, strict=True)), runner.picture)
     return {
         "period": errors[-1],
         "period_measured": seen[-1].period,
@@ -97,7 +97,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
 
 
 def _run(
-    wave: StandingWave, values: Mapping[str, Value], bench: Bench, label: str, layers: int
+    wave: StandingWave, values: Mapping[str, Value], runner: Runner, label: str, layers: int
 ) -> Run:
     """Run the script with so many layers over the depth."""
     columns = _columns(values, layers)
@@ -106,7 +106,7 @@ def _run(
     width, height = wave.length / columns, wave.depth / layers
     derived = ("sound", "steepness", "settle", "periods")
     shared = {name: value for name, value in values.items() if name not in derived}
-    return bench.run(
+    return runner.run(
         label,
         t_settle + values["periods"] * wave.period,
         shared

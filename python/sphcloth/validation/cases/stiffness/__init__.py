@@ -12,8 +12,8 @@ from matplotlib.tri import Triangulation
 
 from sphcloth.references import stiffness
 from sphcloth.validation import cloth
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 STIFFNESSES = (0.0, 0.3, 1.0)
 FRAMES = (0, 5, 15)
@@ -43,17 +43,17 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run the sheet at each k, and a single edge at several numbers of sweeps."""
-    runs = {k: _sheet(values, bench, f"k_{k:g}", k) for k in STIFFNESSES}
+    runs = {k: _sheet(values, runner, f"k_{k:g}", k) for k in STIFFNESSES}
     sags = {k: _sag(run) for k, run in runs.items()}
-    halved = _sheet({**values, "dt": 0.5 * values["dt"]}, bench, "half_step", 0.3)
+    halved = _sheet({**values, "dt": 0.5 * values["dt"]}, runner, "half_step", 0.3)
     doubled = {**values, "iterations": 2 * values["iterations"]}
-    doubled = _sheet(doubled, bench, "twice_the_sweeps", 0.3)
+    doubled = _sheet(doubled, runner, "twice_the_sweeps", 0.3)
     step = cloth.substep(_stepped(values))
     steps = round(FRAMES[-1] * values["frame"] / step)
     fall = stiffness.free_fall(values["gravity"], step, steps, cloth.first_kick(values))
-    _picture(runs, values, bench.out / f"{bench.name}.png")
+    _picture(runs, values, runner.picture)
     return {
         "sag_middle": sags[0.3] / sags[0.0],
         "sag_stiff": sags[1.0] / sags[0.3],
@@ -61,7 +61,7 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
         "sag_0.3": sags[0.3],
         "sag_1": sags[1.0],
         "free": sags[0.0] / fall - 1,
-        "edge": max(_edge(values, bench, n) for n in SWEEPS),
+        "edge": max(_edge(values, runner, n) for n in SWEEPS),
         "step": _sag(halved) / sags[0.3],
         "sweeps": _sag(doubled) / sags[0.3],
     }
@@ -72,23 +72,23 @@ def _stepped(values: Mapping[str, Value]) -> dict[str, Value]:
     return {**values, **cloth.stepping(values["frame"], values["dt"])}
 
 
-def _sheet(values: Mapping[str, Value], bench: Bench, label: str, k: float) -> Run:
+def _sheet(values: Mapping[str, Value], runner: Runner, label: str, k: float) -> Run:
     shared = {name: value for name, value in _stepped(values).items() if name != "frame"}
-    return bench.run(label, FRAMES[-1] * values["frame"], shared | {"k": k})
+    return runner.run(label, FRAMES[-1] * values["frame"], shared | {"k": k})
 
 
 def _sag(run: Run) -> float:
     return -float(np.min(run.trajectory[-1].positions[:, 2]))
 
 
-def _edge(values: Mapping[str, Value], bench: Bench, sweeps: int, k: float = 0.3) -> float:
+def _edge(values: Mapping[str, Value], runner: Runner, sweeps: int, k: float = 0.3) -> float:
     """Return the relative error of the stretch of a single edge after one step."""
     step = values["dt"]
     shared = {name: value for name, value in values.items() if name != "frame"}
     changed = {"what": "edge", "k": k, "iterations": sweeps, "every": 1}
     # sweeps do not divide the step here, whatever the solver of the sheet
     changed["solver"] = "gs" if values["solver"] == "substeps" else values["solver"]
-    run = bench.run(f"edge_{sweeps}", step, shared | changed)
+    run = runner.run(f"edge_{sweeps}", step, shared | changed)
     exact = stiffness.first_stretch(k, values["gravity"], step, cloth.first_kick(values))
     stretch = -float(run.trajectory[-1].positions[1, 2]) - values["size"]
     return abs(stretch / exact - 1)

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from sphcloth.references.taylor_green import TaylorGreen
 from sphcloth.validation import compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.runner import Run, Runner
 
 # share of the particles over the side in the coarse run
 COARSE = 0.5
@@ -95,14 +95,14 @@ class Decay:
         return -float(np.polyfit(self.times, np.log(values), 1)[0])
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the decay of the finer one with the exact one."""
     flow = TaylorGreen(values["reynolds"])
     across = [round(COARSE * values["across"]), values["across"]]
     labels = ("coarse", "fine")
-    runs = [_run(flow, values, bench, label, n) for label, n in zip(labels, across, strict=True)]
+    runs = [_run(flow, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
     seen = [Decay.of(run, flow) for run in runs]
-    _plot(flow, dict(zip(labels, seen, strict=True)), bench.out / f"{bench.name}.png")
+    _plot(flow, dict(zip(labels, seen, strict=True)), runner.picture)
     fine, thermo = seen[-1], runs[-1].thermo
     errors = [each.rate(each.largest) / flow.rate - 1 for each in seen]
     return {
@@ -118,13 +118,13 @@ def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
 
 
 def _run(
-    flow: TaylorGreen, values: Mapping[str, Value], bench: Bench, label: str, across: int
+    flow: TaylorGreen, values: Mapping[str, Value], runner: Runner, label: str, across: int
 ) -> Run:
     """Run the script with so many particles over the side."""
     shared = {name: value for name, value in values.items() if name != "until"}
     summed = values["density"] == "summation"
     lattice = density_sum(values["kernel"], values["support"]) if summed else 1.0
-    return bench.run(
+    return runner.run(
         label,
         flow.time(values["until"]),
         shared | {"across": across, "lattice": lattice},

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sphcloth.references.xpbd_oscillator import Oscillator
 from sphcloth.validation import cloth, compare
-from sphcloth.validation.bench import Bench, Run
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.runner import Run, Runner
 
 # sweeps of the second run, in those of the first
 MORE = 10
@@ -34,19 +34,19 @@ QUANTITIES = (
 )
 
 
-def measure(values: Mapping[str, Value], bench: Bench) -> dict[str, float]:
+def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run few and more iterations, and for the order two smaller steps."""
-    run = _run(values, bench, "few")
+    run = _run(values, runner, "few")
     more = {**values, "iterations": MORE * values["iterations"]}
-    _plot(run, values, bench.out / f"{bench.name}.png")
+    _plot(run, values, runner.picture)
     finer = [
-        _distance(_run(each, bench, f"order_{refined}"), each)
+        _distance(_run(each, runner, f"order_{refined}"), each)
         for refined in (32, 64)
         for each in [_finer(values, refined)]
     ]
     return {
         "motion": _error(run, values),
-        "motion_more": _error(_run(more, bench, "more"), more),
+        "motion_more": _error(_run(more, runner, "more"), more),
         "magnitude": abs(_oscillator(values).eigenvalue),
         "numerical": _distance(run, values),
         "order": compare.order(finer, [1, 2]),
@@ -64,10 +64,10 @@ def _oscillator(values: Mapping[str, Value]) -> Oscillator:
     return Oscillator(values["mass"], values["compliance"], cloth.substep(values))
 
 
-def _run(values: Mapping[str, Value], bench: Bench, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
     shared = {name: values[name] for name in values if name != "steps"}
     start = {"start": values["start"] * values["length"]}
-    return bench.run(label, values["steps"] * values["dt"], shared | start | {"every": 1})
+    return runner.run(label, values["steps"] * values["dt"], shared | start | {"every": 1})
 
 
 def _elongation(run: Run, values: Mapping[str, Value]) -> NDArray[np.float64]:

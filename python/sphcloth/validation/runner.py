@@ -12,9 +12,9 @@ from rich.console import Console
 
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable, error_lines
+from sphcloth.results import Value, argument
 from sphcloth.run import LOG, SCREEN, lammps_command, run_lammps
 from sphcloth.trajectory import Trajectory
-from sphcloth.validation.case import Value
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Run:
 
 
 @dataclass
-class Bench:
+class Runner:
     """Where a case runs: its script, the number of ranks and the folder for all output.
 
     Attributes:
@@ -63,6 +63,11 @@ class Bench:
         """The case's name."""
         return self.script.name.removeprefix("in.")
 
+    @property
+    def picture(self) -> Path:
+        """Where the case draws what it has found."""
+        return self.out / f"{self.name}.png"
+
     def run(self, label: str, t_end: float, variables: Mapping[str, Value]) -> Run:
         """Run the script once.
 
@@ -77,7 +82,7 @@ class Bench:
         folder = self.out / label
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        texts = {name: _text(value) for name, value in {**variables, "t_end": t_end}.items()}
+        texts = {name: argument(value) for name, value in {**variables, "t_end": t_end}.items()}
         command = lammps_command(self.script.resolve(), self.ranks, texts)
         outcome = run_lammps(command, folder, t_end, self.console)
         if outcome.interrupted:
@@ -90,11 +95,6 @@ class Bench:
     def particle_updates(self) -> float:
         """Return how often a particle was stepped in all runs (thermo column v_updates)."""
         return float(sum(run.thermo["v_updates"][-1] for run in self.runs))
-
-
-def _text(value: Value) -> str:
-    """Return a value for the command line, a number with all of its digits."""
-    return repr(value) if isinstance(value, float) else str(value)
 
 
 def _what_went_wrong(folder: Path) -> str:

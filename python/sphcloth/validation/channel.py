@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -14,6 +15,7 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 # times of the profiles in gap^2 / nu; those of Morris, Fox and Zhu, and the end
@@ -22,8 +24,6 @@ TIMES = (0.0225, 0.045, 0.1125, 0.225, 1.0)
 FRAMES = 400
 # every how many frames the speed across the plates is looked at
 EVERY = 20
-# share of the particles across in the coarse run
-COARSE = 0.5
 # what the order of convergence must reach
 ORDER = 1.5
 
@@ -75,18 +75,16 @@ def parameters(*own: Parameter) -> tuple[Parameter, ...]:
 
 def measure(flow: Start, values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their profiles with the series."""
-    across = [round(COARSE * values["across"]), values["across"]]
-    labels = ("coarse", "fine")
-    runs = [_run(flow, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
-    errors = [[_error(flow, frame) for frame in _frames(flow, run)] for run in runs]
-    order = compare.order([compare.rms(each) for each in errors], across)
-    _plot(flow, runs[-1], dict(zip(labels, errors, strict=True)), runner.picture)
-    drag = runs[-1].thermo["v_lower"][-1]
+    pair = Refinement.of(partial(_run, flow, values, runner), coarse_and_fine(values["across"]))
+    errors = [[_error(flow, frame) for frame in _frames(flow, run)] for run in pair.runs]
+    order = pair.order([compare.rms(each) for each in errors])
+    _plot(flow, pair.fine, pair.labeled(errors), runner.picture)
+    drag = pair.fine.thermo["v_lower"][-1]
     return {
         "profile": max(errors[-1]),
         **{f"profile_{t:g}": error for t, error in zip(TIMES, errors[-1], strict=True)},
         "drag": drag / flow.drag(values["rho0"]) - 1,
-        "across": _largest_across(runs[-1]) / flow.fastest,
+        "across": _largest_across(pair.fine) / flow.fastest,
         "order": order,
         "order_missing": max(0.0, ORDER - order) if math.isfinite(order) else math.nan,
     }

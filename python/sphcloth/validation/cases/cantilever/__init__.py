@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,13 @@ from numpy.typing import NDArray
 from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 # of the lowest mode of a cantilever: omega = 3.516 sqrt(B / (mass per area * L^4))
 LOWEST_MODE = 3.516
 # rate of the drag in the lowest mode's angular frequency
 DRAG = 2.0
-# the coarse run of the order of convergence: share of the links
-COARSE = 0.5
 
 PARAMETERS = (
     Parameter("gamma", 5.0, "1", "w L^3 / B of weight and stiffness", 0.1, 100.0),
@@ -47,14 +47,11 @@ QUANTITIES = (
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two numbers of links to rest and compare with the elastica."""
     elastica = HeavyElastica(values["gamma"])
-    links = [round(COARSE * values["links"]), values["links"]]
-    coarse, fine = (
-        _run({**values, "links": n}, runner, label)
-        for n, label in zip(links, ("coarse", "fine"), strict=True)
-    )
+    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["links"]))
+    fine = pair.fine
     rows = _rows(fine, values)
     exact = _exact(elastica, values["links"])
-    drops = [-_rows(run, values)[-1, 1] for run in (coarse, fine)]
+    drops = [-_rows(run, values)[-1, 1] for run in pair.runs]
     _plot(elastica, rows, runner.picture)
     last = fine.trajectory[-1]
     return {
@@ -66,16 +63,16 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "twist": _twist(fine) / values["free"],
         "strain": float(fine.thermo["f_sheet[4]"][-1]),
         "speed": float(np.max(np.abs(last.velocities))),
-        "order": compare.order([drop / elastica.drop - 1 for drop in drops], links),
+        "order": pair.order([drop / elastica.drop - 1 for drop in drops]),
     }
 
 
-def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, links: int) -> Run:
     lowest = LOWEST_MODE * math.sqrt(values["gravity"] / (values["free"] * values["gamma"]))
     time = values["settle"] / lowest
     shared = {name: values[name] for name in values if name != "settle"}
     steps = cloth.stepping(time, values["dt"], frames=10)
-    return runner.run(label, time, shared | steps | {"drag": DRAG * lowest})
+    return runner.run(label, time, shared | steps | {"links": links, "drag": DRAG * lowest})
 
 
 def _rows(run: Run, values: Mapping[str, Value]) -> NDArray[np.float64]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from sphcloth.references.dam_break import Column
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.refinement import Refinement
 from sphcloth.validation.runner import Run, Runner
 
 # shares of the particles over the width, from the coarsest run to the finest
@@ -79,15 +81,15 @@ class Front:
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run three resolutions, compare the finest with experiments and the others with it."""
     column = Column(values["width"], values["gravity"])
-    across = [round(share * values["across"]) for share in SHARES.values()]
-    runs = [_run(column, values, runner, label, n) for label, n in zip(SHARES, across, strict=True)]
-    fronts = [Front.of(run, column) for run in runs]
+    across = {label: round(share * values["across"]) for label, share in SHARES.items()}
+    runs = Refinement.of(partial(_run, column, values, runner), across)
+    fronts = [Front.of(run, column) for run in runs.runs]
     coarse, middle, fine = fronts
     shift = dam_break.best_shift(fine.times, fine.places)
     excess = dam_break.outside(fine.times, fine.places, shift)
     unshifted = dam_break.outside(fine.times, fine.places, 0.0)
-    seen = dict(zip(SHARES, fronts, strict=True))
-    _plot(column, seen, runs[-1], shift, runner.picture)
+    _plot(column, runs.labeled(fronts), runs.fine, shift, runner.picture)
+    differences = [coarse.difference(middle), middle.difference(fine)]
     return {
         "front": _largest(excess),
         "front_rms": compare.rms(excess),
@@ -95,9 +97,9 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "shift": shift,
         "front_middle": middle.difference(fine),
         "front_coarse": coarse.difference(fine),
-        "energy_loss": _energy_loss(runs[-1], column),
-        "densest": float(np.max(_collapse(runs[-1], "v_densest"))),
-        "order": compare.order([coarse.difference(middle), middle.difference(fine)], across[:2]),
+        "energy_loss": _energy_loss(runs.fine, column),
+        "densest": float(np.max(_collapse(runs.fine, "v_densest"))),
+        "order": compare.order(differences, [across["coarse"], across["middle"]]),
     }
 
 

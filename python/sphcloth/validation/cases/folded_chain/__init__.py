@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.interpolate import CubicSpline
 from sphcloth.references import folded_chain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.refinement import Refinement
 from sphcloth.validation.runner import Run, Runner
 
 # the coarse run of the order of convergence: share of the links
@@ -42,28 +44,26 @@ QUANTITIES = (
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two numbers of links and find when the free end is lowest."""
-    links = [_odd(COARSE * values["links"]), _odd(values["links"])]
-    runs = [
-        _run({**values, "links": n}, runner, label)
-        for n, label in zip(links, ("coarse", "fine"), strict=True)
-    ]
+    links = {"coarse": _odd(COARSE * values["links"]), "fine": _odd(values["links"])}
+    pair = Refinement.of(partial(_run, values, runner), links)
+    fine = pair.fine
     free = folded_chain.free_fall(values["length"], values["gravity"])
-    falls = [_time_of_fall(run) / free for run in runs]
+    falls = [_time_of_fall(run) / free for run in pair.runs]
     ideal = folded_chain.fall_over_free_fall()
-    chain = folded_chain.folded(links[-1], values["length"], values["gravity"])
+    chain = folded_chain.folded(links["fine"], values["length"], values["gravity"])
     exact_fall = folded_chain.time_of_fall(chain)
-    fallen = runs[-1].trajectory.times <= exact_fall
-    exact = chain.positions(runs[-1].trajectory.times[fallen])[:, -1]
-    error = np.linalg.norm(_tip(runs[-1])[fallen] - exact, axis=1) / values["length"]
-    _plot(runs[-1], exact, free, values["length"], runner.picture)
+    fallen = fine.trajectory.times <= exact_fall
+    exact = chain.positions(fine.trajectory.times[fallen])[:, -1]
+    error = np.linalg.norm(_tip(fine)[fallen] - exact, axis=1) / values["length"]
+    _plot(fine, exact, free, values["length"], runner.picture)
     return {
         "fall": falls[-1] / ideal - 1,
         "fall_links": falls[-1] * free / exact_fall - 1,
         "fall_measured": falls[-1],
         "fall_reference": ideal,
         "path": float(np.max(error)),
-        "strain": float(np.max(runs[-1].thermo["f_chain[4]"])),
-        "order": compare.order([fall / ideal - 1 for fall in falls], links),
+        "strain": float(np.max(fine.thermo["f_chain[4]"])),
+        "order": pair.order([fall / ideal - 1 for fall in falls]),
     }
 
 
@@ -71,10 +71,11 @@ def _odd(links: float) -> int:
     return 2 * (round(links) // 2) + 1
 
 
-def _run(values: Mapping[str, Value], runner: Runner, label: str) -> Run:
+def _run(values: Mapping[str, Value], runner: Runner, label: str, links: int) -> Run:
     free = folded_chain.free_fall(values["length"], values["gravity"])
     time = UNTIL * folded_chain.fall_over_free_fall() * free
-    return runner.run(label, time, {**values, **cloth.stepping(time, values["dt"], FRAMES)})
+    changed = {"links": links, **cloth.stepping(time, values["dt"], FRAMES)}
+    return runner.run(label, time, {**values, **changed})
 
 
 def _tip(run: Run) -> NDArray[np.float64]:

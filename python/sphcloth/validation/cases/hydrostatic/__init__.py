@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,13 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the column settles, in c0 / H
 DAMPING = 3.2
-# the coarse run of the order of convergence: share of the layers, and its free time in s
-COARSE, COARSE_TIME = 0.5, 10.0
+# time without damping of the coarse run, s
+COARSE_TIME = 10.0
 # last share of the free time in which the column should be at rest
 LATE = 0.1
 
@@ -73,12 +75,9 @@ class State:
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the finer one with the Tait column."""
     column = _column(values)
-    layers = [round(COARSE * values["layers"]), values["layers"]]
-    coarse = _run(values, runner, "coarse", layers[0], min(COARSE_TIME, values["time"]))
-    fine = _run(values, runner, "fine", layers[1], values["time"])
-    rest = [
-        _state(run.trajectory[-1], values, n) for run, n in zip((coarse, fine), layers, strict=True)
-    ]
+    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["layers"]))
+    fine = pair.fine
+    rest = pair.each(lambda run, layers: _state(run.trajectory[-1], values, layers))
     errors = [compare.rms(state.error(column)[state.inside]) for state in rest]
     _plot(column, rest[-1], fine, runner.picture)
     return {
@@ -89,7 +88,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "drift": _drift(fine) / column.height,
         "settlement": _settlement(column, rest[-1]) / column.height,
         "settlement_reference": column.settlement / column.height,
-        "order": compare.order(errors, layers),
+        "order": pair.order(errors),
     }
 
 
@@ -98,8 +97,9 @@ def _column(values: Mapping[str, Value]) -> TaitColumn:
     return TaitColumn(values["height"], values["rho0"], values["gravity"], sound, values["gamma"])
 
 
-def _run(values: Mapping[str, Value], runner: Runner, label: str, layers: int, time: float) -> Run:
-    """Run the script with so many layers and so much time without damping."""
+def _run(values: Mapping[str, Value], runner: Runner, label: str, layers: int) -> Run:
+    """Run the script with so many layers; the coarse run is without damping for a shorter time."""
+    time = min(COARSE_TIME, values["time"]) if label == "coarse" else values["time"]
     sound = _column(values).sound
     t_settle = values["settle"] * math.sqrt(values["height"] / values["gravity"])
     shared = {name: values[name] for name in values if name not in ("sound", "settle", "time")}

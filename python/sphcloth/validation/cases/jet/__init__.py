@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,9 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
-# share of the particles over the thickness in the coarse run
-COARSE = 0.5
 # the flow counts as steady from this time after the first contact on, and the end of the jet is
 # not felt as long as it is this far away from the plate; B/U and B
 STARTED, BEFORE_END = 4.0, 2.0
@@ -53,13 +53,11 @@ QUANTITIES = (
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the mean force with the momentum that the jet brings."""
     jet = Jet(values["thickness"], values["speed"], values["angle"], values["rho0"])
-    across = [round(COARSE * values["across"]), values["across"]]
-    labels = ("coarse", "fine")
-    runs = [_run(jet, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
-    windows = [_window(jet, values, n) for n in across]
-    forces = [_steady(run, window) for run, window in zip(runs, windows, strict=True)]
+    pair = Refinement.of(partial(_run, jet, values, runner), coarse_and_fine(values["across"]))
+    forces = pair.each(lambda run, across: _steady(run, _window(jet, values, across)))
+    window = _window(jet, values, values["across"])
     errors = [float(np.mean(force)) / jet.force - 1 for force in forces]
-    _plot(jet, dict(zip(labels, runs, strict=True)), windows[-1], runner.picture)
+    _plot(jet, pair.labeled(pair.runs), window, runner.picture)
     first, second = np.array_split(forces[-1], 2)
     return {
         "force": errors[-1],
@@ -67,9 +65,9 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "force_reference": jet.force,
         "force_scatter": float(np.std(forces[-1])) / jet.force,
         "force_halves": float(np.mean(second) / np.mean(first) - 1),
-        **_flow_off(jet, runs[-1], windows[-1]),
+        **_flow_off(jet, pair.fine, window),
         "divided_reference": jet.sheets[0] / jet.thickness,
-        "order": compare.order(errors, across),
+        "order": pair.order(errors),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,9 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density_in_space, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
-# share of the particles over the thickness in the coarse run
-COARSE = 0.5
 # the flow counts as steady so long after the first contact, and until the end of the jet is so far
 # away from the place where the sheet was; B/v and B
 STARTED, BEFORE_END = 11.0, 2.0
@@ -75,24 +75,19 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     # on a lattice whose summed density is rho0 there is less mass per volume
     mass_per_volume = values["rho0"] / lattice_density_in_space(values)
     jet = TurnedJet(values["thickness"], values["speed"], mass_per_volume)
-    across = [max(4, round(COARSE * values["across"])), values["across"]]
-    labels = ("coarse", "fine")
-    runs = [_run(jet, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
-    windows = [_window(jet, values, n) for n in across]
-    found = [
-        _balance(jet, values, run, window, n)
-        for run, window, n in zip(runs, windows, across, strict=True)
-    ]
-    fine = runs[-1]
-    _plot(jet, values, dict(zip(labels, runs, strict=True)), windows[-1], found[-1], runner)
-    last = fine.trajectory[_steady_frames(fine, windows[-1])[-1]]
+    across = coarse_and_fine(values["across"], coarsest=4)
+    pair = Refinement.of(partial(_run, jet, values, runner), across)
+    found = pair.each(partial(_balance, jet, values))
+    fine, window = pair.fine, _window(jet, values, values["across"])
+    _plot(jet, values, pair.labeled(pair.runs), window, found[-1], runner)
+    last = fine.trajectory[_steady_frames(fine, window)[-1]]
     sheet = last.select(2).positions
     return {
         **found[-1],
         "passed_through": max(_below(frame) for frame in fine.trajectory),
         "sag": -float(np.min(sheet[:, 2])) / jet.thickness,
         "strain": float(np.max(fine.thermo["v_strain"])),
-        "order": compare.order([each["force"] for each in found], across),
+        "order": pair.order([each["force"] for each in found]),
     }
 
 
@@ -139,9 +134,10 @@ def _steady_frames(run: Run, window: tuple[float, float]) -> NDArray[np.intp]:
 
 
 def _balance(
-    jet: TurnedJet, values: Mapping[str, Value], run: Run, window: tuple[float, float], across: int
+    jet: TurnedJet, values: Mapping[str, Value], run: Run, across: int
 ) -> dict[str, float]:
     """Return force, turning and what follows from them, over the steady window."""
+    window = _window(jet, values, across)
     time = run.thermo["Time"]
     forces = _forces(run, values)[(time >= window[0]) & (time <= window[1])]
     edge = 0.5 * values["span"] * jet.thickness + OUTSIDE * jet.thickness / across

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 MODES = ("wall", "both", "contact", "pressure")
@@ -139,14 +141,11 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
             f"mesh {values['mesh']:g} with layers {values['layers']} makes fewer than {LEAST_ROWS} "
             "rows of vertices: take layers larger"
         )
-    across = coarse_and_fine(values)
-    runs = [
-        _run(values, runner, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
-    ]
-    pools = [pool_of(run, values, n) for run, n in zip(runs, across, strict=True)]
-    fine, pool = runs[-1], pools[-1]
-    _plot(exact, pools, fine, runner.picture)
-    order = compare.order([compare.rms(each.distances(exact)) for each in pools], across)
+    pair = Refinement.of(partial(_run, values, runner), resolutions(values))
+    pools = pair.each(lambda run, across: pool_of(run, values, across))
+    fine, pool = pair.fine, pools[-1]
+    _plot(exact, pair.labeled(pools), fine, runner.picture)
+    order = pair.order([compare.rms(each.distances(exact)) for each in pools])
     return {
         "lift": pool.pull[1] / exact.lift - 1,
         "tension": pool.tension(exact.light) / exact.tension - 1,
@@ -155,7 +154,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "sag": pool.sag / exact.sag - 1,
         "depth": pool.depth / exact.depth - 1,
         "shape": float(np.max(pool.distances(exact))) / pool.spacing,
-        "crossed": max(_crossed(run) for run in runs),
+        "crossed": max(_crossed(run) for run in pair.runs),
         "below": max(each.below for each in pools),
         "order": order,
         "order_missing": max(0.0, 1.0 - order) if math.isfinite(order) else math.nan,
@@ -167,9 +166,9 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     }
 
 
-def coarse_and_fine(values: Mapping[str, Value]) -> list[int]:
+def resolutions(values: Mapping[str, Value]) -> dict[str, int]:
     """Return particles over L of the two runs."""
-    return [max(round(COARSE * values["across"]), COARSEST), values["across"]]
+    return coarse_and_fine(values["across"], COARSE, COARSEST)
 
 
 def curve_of(values: Mapping[str, Value]) -> HeavyLintearia:
@@ -318,17 +317,17 @@ def _crossed(run: Run) -> int:
     return crossings(RingMesh(mesh.ids, mesh.triangles), run.trajectory).count
 
 
-def _plot(exact: HeavyLintearia, pools: list[Pool], run: Run, path: Path) -> None:
+def _plot(exact: HeavyLintearia, pools: Mapping[str, Pool], run: Run, path: Path) -> None:
     """Draw the pool, the distance of the sheet from the curve, and the force over time."""
     figure, (shape, error, force) = compare.panels(1, 3)
-    pool, water = pools[-1], run.trajectory[-1].select(1).positions
+    pool, water = pools["fine"], run.trajectory[-1].select(1).positions
     curve = exact.shape(pool.arc) - [0.0, exact.sag]
     shape.plot(water[:, 0], water[:, 2] - pool.pins, ".", ms=1, label="water")
     shape.plot(*curve.T, "k-", label="exact")
     shape.plot(*pool.sheet.T, ".", ms=3, label="sheet")
     shape.set(xlabel="x (m)", ylabel="z (m)", aspect="equal")
     shape.legend(loc="upper center")
-    for each, label in zip(pools, ("coarse", "fine"), strict=True):
+    for label, each in pools.items():
         error.plot(each.arc, each.distances(exact) / each.spacing, label=label)
     error.set(xlabel="length along the sheet (m)", ylabel="distance from the curve / spacing")
     error.legend()

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from sphcloth.validation.case import Value
-from sphcloth.validation.cases.lintearia import Pool, coarse_and_fine, curve_of, pool_of
+from sphcloth.validation.cases.lintearia import Pool, curve_of, pool_of, resolutions
 from sphcloth.validation.runner import Run
 
 # colours of the runs of one mode, the coarsest first
@@ -59,7 +59,7 @@ def _values(folder: Path) -> dict[str, Value]:
 def _runs(folder: Path, values: Mapping[str, Value]) -> list[tuple[int, tuple[Run, Pool]]]:
     """Return particles over L -> output and mean shape of the two runs of a folder."""
     runs = []
-    for label, across in zip(("coarse", "fine"), coarse_and_fine(values), strict=True):
+    for label, across in resolutions(values).items():
         run = Run(folder / label, "lintearia")
         runs.append((across, (run, pool_of(run, values, across))))
     return runs

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,11 @@ from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega
 DAMPING, SETTLE = 10.0, 2.0
-# share of the particles over the radius in the coarse run
-COARSE = 0.5
 # half the box over the largest semi-axis
 ROOM = 1.5
 FRAMES_PER_PERIOD = 50
@@ -89,23 +89,21 @@ class Motion:
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the finer one with the ideal drop."""
     drop = EllipticDrop(values["sigma"] * values["omega"], values["omega"])
-    across = [round(COARSE * values["across"]), values["across"]]
-    labels = ("coarse", "fine")
-    runs = [_run(drop, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
-    seen = [Motion.of(run) for run in runs]
+    pair = Refinement.of(partial(_run, drop, values, runner), coarse_and_fine(values["across"]))
+    seen = [Motion.of(run) for run in pair.runs]
     period = seen[-1].period(drop, values["periods"])
     rms = [compare.rms(each.errors(drop)) for each in seen]
-    _plot(drop, dict(zip(labels, seen, strict=True)), runner.picture)
+    _plot(drop, pair.labeled(seen), runner.picture)
     return {
         "semi_axis": float(np.max(np.abs(seen[-1].errors(drop)))),
         "semi_axis_rms": rms[-1],
         "period": period / drop.period - 1,
         "period_measured": period,
         "period_reference": drop.period,
-        "energy_loss": _energy_loss(runs[-1], drop, values),
-        "motion_loss": _motion_loss(runs[-1], drop, values),
+        "energy_loss": _energy_loss(pair.fine, drop, values),
+        "motion_loss": _motion_loss(pair.fine, drop, values),
         "rest_radius": seen[-1].rest_radius / values["radius"] - 1,
-        "order": compare.order(rms, across),
+        "order": pair.order(rms),
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,10 @@ from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import cubic_density_sum
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 MODES = ("both", "contact", "wall")
-# edges over the side in the coarse run, in those of the case
-COARSE = 0.5
 # last share of the time over which is averaged; there is no drag then
 LATE = 0.2
 
@@ -71,13 +71,10 @@ QUANTITIES = (
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions to rest and weigh them."""
     load = _load(values)
-    across = [round(COARSE * values["across"]), values["across"]]
-    runs = [
-        _run(values, runner, label, n) for label, n in zip(("coarse", "fine"), across, strict=True)
-    ]
-    coarse, fine = runs
+    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["across"]))
+    runs = coarse, fine = pair.runs
     errors = [_mean(run, "v_pins_z") / load.weight - 1 for run in runs]
-    _plot(load, runs, runner.picture)
+    _plot(load, pair, runner.picture)
     return {
         "pins": errors[-1],
         "pins_by_atom": _mean(fine, "v_atoms_z") / load.weight - 1,
@@ -88,7 +85,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         / load.weight,
         "scatter": float(np.std(fine.thermo["v_pins_z"][_late(fine)])) / load.weight,
         "pins_coarse": errors[0],
-        "order": compare.order(errors, across),
+        "order": pair.order(errors),
         "sag": _sag(fine),
         "sag_coarse": _sag(coarse),
         "strain": _mean(fine, "f_sheet[4]"),
@@ -150,17 +147,17 @@ def _sag(run: Run) -> float:
     return -float(np.min(run.trajectory[-1].select(2).positions[:, 2]))
 
 
-def _plot(load: Load, runs: list[Run], path: Path) -> None:
+def _plot(load: Load, pair: Refinement, path: Path) -> None:
     """Draw the force of the pins over time, and a cut through the middle of the fine run."""
     figure, (force, cut) = compare.panels(1, 2)
-    for run, label in zip(runs, ("coarse", "fine"), strict=True):
+    for label, run in pair.labeled(pair.runs).items():
         # the first row is printed before there is anything to average
         time, lift = run.thermo["Time"][1:], run.thermo["v_pins_z"][1:]
         force.plot(time, lift / load.weight, label=label)
     force.axhline(1, color="k", lw=0.5)
     force.set(xlabel="time (s)", ylabel="force of the pins / weight", ylim=(0.9, 1.1))
     force.legend()
-    frame = runs[-1].trajectory[-1]
+    frame = pair.fine.trajectory[-1]
     for kind, mark, label in ((1, ".", "water"), (2, "x", "sheet")):
         x, y, z = frame.select(kind).positions.T
         middle = np.abs(y) < load.side / 30

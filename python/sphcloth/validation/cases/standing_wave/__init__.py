@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the water settles, in c0 / H
@@ -77,14 +79,11 @@ class Oscillation:
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare their periods with linear theory."""
     wave = StandingWave(values["depth"], values["length"], values["gravity"])
-    layers = [round(COARSE * values["layers"]), values["layers"]]
-    labels = ("coarse", "fine")
-    seen = [
-        _oscillation(_run(wave, values, runner, label, n), wave)
-        for label, n in zip(labels, layers, strict=True)
-    ]
+    layers = coarse_and_fine(values["layers"], COARSE)
+    pair = Refinement.of(partial(_run, wave, values, runner), layers)
+    seen = [_oscillation(run, wave) for run in pair.runs]
     errors = [each.period / wave.period - 1 for each in seen]
-    _plot(wave, dict(zip(labels, seen, strict=True)), runner.picture)
+    _plot(wave, pair.labeled(seen), runner.picture)
     return {
         "period": errors[-1],
         "period_measured": seen[-1].period,
@@ -92,7 +91,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "second_order": wave.second_order(values["steepness"] / wave.number),
         "damping": seen[-1].fit[1],
         "residual": seen[-1].residual,
-        "order": compare.order(errors, layers),
+        "order": pair.order(errors),
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,8 @@ from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import density_sum
+from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
-
-# share of the particles over the side in the coarse run
-COARSE = 0.5
 
 PARAMETERS = (
     Parameter("reynolds", 100.0, "1", "U L / viscosity", 1.0, 1e4),
@@ -98,12 +97,10 @@ class Decay:
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the decay of the finer one with the exact one."""
     flow = TaylorGreen(values["reynolds"])
-    across = [round(COARSE * values["across"]), values["across"]]
-    labels = ("coarse", "fine")
-    runs = [_run(flow, values, runner, label, n) for label, n in zip(labels, across, strict=True)]
-    seen = [Decay.of(run, flow) for run in runs]
-    _plot(flow, dict(zip(labels, seen, strict=True)), runner.picture)
-    fine, thermo = seen[-1], runs[-1].thermo
+    pair = Refinement.of(partial(_run, flow, values, runner), coarse_and_fine(values["across"]))
+    seen = [Decay.of(run, flow) for run in pair.runs]
+    _plot(flow, pair.labeled(seen), runner.picture)
+    fine, thermo = seen[-1], pair.fine.thermo
     errors = [each.rate(each.largest) / flow.rate - 1 for each in seen]
     return {
         "decay": errors[-1],
@@ -113,7 +110,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "rate_reference": flow.rate,
         "velocity": float(np.max(fine.errors)),
         "density": float(max(np.max(thermo["v_most"]) - 1, 1 - np.min(thermo["v_least"]))),
-        "order": compare.order(errors, across),
+        "order": pair.order(errors),
     }
 
 

@@ -11,6 +11,7 @@ SIZE   ?= small
 WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
+CTEST = $(BIN)/ctest --output-on-failure -j $(WORKERS) --test-dir
 CMAKE_HERE = $(BIN)/cmake -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
 # $(call package_with,FOLDER,OPTION): the package in build/FOLDER/site, which goes before the installed
 # one where PYTHONPATH says so
@@ -30,8 +31,7 @@ demo: $(VENV)/installed
 	$(BIN)/sphcloth run pour --size $(SIZE) --ranks $(RANKS) --out demo
 
 test: $(VENV)/installed build/core/test_core
-	build/core/test_core
-	build/core/test_core_plain
+	$(CTEST) build/core
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 	$(BIN)/ruff check python tests
 	$(BIN)/ruff format --check python tests
@@ -95,8 +95,7 @@ tidy: $(VENV)/strict
 # the tests with a plugin that looks at every address and at undefined behaviour: an hour
 sanitize: $(VENV)/installed
 	$(call build_with,sanitize,SPHCLOTH_SANITIZE)
-	build/sanitize/core/test_core
-	build/sanitize/core/test_core_plain
+	$(CTEST) build/sanitize/core
 	$(BIN)/python tests/sanitize.py build/sanitize/site $(TESTS)
 
 # parallel scenes under valgrind: what is used before it has a value
@@ -107,8 +106,7 @@ memcheck: $(VENV)/installed
 coverage: $(VENV)/strict
 	$(call build_with,coverage,SPHCLOTH_COVERAGE)
 	find build/coverage -name '*.gcda' -delete
-	build/coverage/core/test_core
-	build/coverage/core/test_core_plain
+	$(CTEST) build/coverage/core
 	PYTHONPATH=$(abspath build/coverage/site) $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile $(TESTS)
 	$(BIN)/gcovr --root src --object-directory build/coverage --exclude-throw-branches --merge-lines \
 	  --gcov-ignore-errors=source_not_found --gcov-ignore-parse-errors=suspicious_hits.warn \

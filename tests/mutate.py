@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -29,6 +30,7 @@ BIN = Path(sys.executable).parent
 # second each, since a machine may stop all of us for longer
 PATIENCE = 300
 CORE = "tests/core"  # the part of it that needs no library
+TEST_FAILURE = 201  # exit code of a program of Boost.Test
 
 
 @dataclass(frozen=True)
@@ -265,8 +267,8 @@ class Tree:
         """Return the case of ``test_core_plain`` that fails first."""
         self.make_core()
         code, out = self._run(self.core / "test_core_plain", patience=PATIENCE)
-        failed = [line for line in out.splitlines() if line.startswith("FAILED ")]
-        return failed[0].removeprefix("FAILED ") if code == 1 and failed else ""
+        failed = re.search(r"error: in \"(\S+)\"", out)
+        return failed[1] if code == TEST_FAILURE and failed else ""
 
     def _style_test(self, tests: str) -> str:
         """Return the test that fails first, if it passes with the right plugin."""

@@ -1,6 +1,8 @@
-#include "check.h"
 #include "core/sph/gradient.h"
 
+#include <boost/test/unit_test.hpp>
+
+#include <array>
 #include <random>
 
 using namespace sphcloth;
@@ -9,7 +11,7 @@ namespace {
 
 constexpr double SLOPE[3] = {3.0, -2.0, 0.5};
 
-// neighbours at d = x_j - x_i with weights; the field is linear
+// neighbors at d = x_j - x_i with weights; the field is linear
 
 void add(Differences &s, double dx, double dy, double dz, double weight)
 {
@@ -27,7 +29,9 @@ void add(Differences &s, double dx, double dy, double dz, double weight)
 
 }    // namespace
 
-CASE("gradient: exact for a linear field, all around and in a corner")
+BOOST_AUTO_TEST_SUITE(gradient)
+
+BOOST_AUTO_TEST_CASE(exact_for_a_linear_field_all_around_and_in_a_corner)
 {
   std::mt19937 generator(5);
   std::uniform_real_distribution<> u(0.0, 1.0);
@@ -40,37 +44,39 @@ CASE("gradient: exact for a linear field, all around and in a corner")
         add(s, x, y, dim == 3 ? z : 0.0, 0.1 + u(generator));
       }
       const std::array<double, 3> g = s.gradient(dim);
-      CHECK_NEAR(g[0], SLOPE[0], 1e-13);
-      CHECK_NEAR(g[1], SLOPE[1], 1e-13);
-      CHECK_NEAR(g[2], dim == 3 ? SLOPE[2] : 0.0, 1e-13);
+      BOOST_CHECK_SMALL(g[0] - SLOPE[0], 1e-13);
+      BOOST_CHECK_SMALL(g[1] - SLOPE[1], 1e-13);
+      BOOST_CHECK_SMALL(g[2] - (dim == 3 ? SLOPE[2] : 0.0), 1e-13);
     }
 }
 
-CASE("gradient: none for a lone particle, on a line, in a plane; nor does scale matter")
+BOOST_AUTO_TEST_CASE(none_for_one_particle_on_a_line_or_in_a_plane_at_any_scale)
 {
   const std::array<double, 3> none{0.0, 0.0, 0.0};
-  for (int dim : {2, 3}) CHECK(Differences().gradient(dim) == none);
+  for (int dim : {2, 3}) BOOST_CHECK(Differences().gradient(dim) == none);
   Differences line, plane;
   for (double d : {-1.0, 0.3, 1.0}) {
     add(line, d, 0.7 * d, 0.0, 1.0);
     add(plane, d, d * d, 0.0, 1.0);
   }
-  for (int dim : {2, 3}) CHECK(line.gradient(dim) == none);
-  CHECK(plane.gradient(3) == none);
-  CHECK_NEAR(plane.gradient(2)[1], SLOPE[1], 1e-13);
+  for (int dim : {2, 3}) BOOST_CHECK(line.gradient(dim) == none);
+  BOOST_CHECK(plane.gradient(3) == none);
+  BOOST_CHECK_SMALL(plane.gradient(2)[1] - SLOPE[1], 1e-13);
   for (double size : {1e-8, 1e8}) {
     Differences s;
     for (double d : {-1.0, 0.3, 1.0}) add(s, d, d * d, 0.0, size);
-    CHECK_NEAR(s.gradient(2)[0], SLOPE[0], 1e-13);
+    BOOST_CHECK_SMALL(s.gradient(2)[0] - SLOPE[0], 1e-13);
   }
 }
 
-CASE("gradient: none from a layer that is nearly flat")
+BOOST_AUTO_TEST_CASE(none_from_a_layer_that_is_nearly_flat)
 {
   for (double height : {0.05, 0.3}) {
     Differences s;
     for (int x : {-1, 0, 1})
       for (int y : {-1, 0, 1}) add(s, x, y, (x + y) % 2 ? -height : height, 1.0);
-    CHECK((s.gradient(3)[0] != 0.0) == (height > 0.2));
+    BOOST_CHECK((s.gradient(3)[0] != 0.0) == (height > 0.2));
   }
 }
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,5 +1,8 @@
-#include "check.h"
 #include "core/sph/kernel.h"
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 
 using namespace sphcloth;
 
@@ -29,44 +32,48 @@ template <class K> double integral(double support, int dim)
 template <class K> void check_kernel()
 {
   for (int dim : {2, 3}) {
-    CHECK_NEAR(integral<K>(0.37, dim), 1.0, 1e-10);
+    BOOST_CHECK_SMALL(integral<K>(0.37, dim) - 1.0, 1e-10);
     const KernelScale s = kernel_scale<K>(0.37, dim);
     const double peak = value<K>(s, 0.0), d = 1e-6 * 0.37;
     for (double r : {0.02, 0.1, 0.184, 0.186, 0.3, 0.36}) {
       const double slope = (value<K>(s, r + d) - value<K>(s, r - d)) / (2.0 * d);
-      CHECK_NEAR(r * s.f * K::slope_over_q(r * s.inv_support) / peak, slope / peak, 1e-7);
-      CHECK(K::slope_over_q(r * s.inv_support) < 0.0);
+      BOOST_CHECK_SMALL(r * s.f * K::slope_over_q(r * s.inv_support) / peak - slope / peak, 1e-7);
+      BOOST_CHECK(K::slope_over_q(r * s.inv_support) < 0.0);
     }
-    CHECK(K::shape(1.0) == 0.0);
-    CHECK(K::slope_over_q(1.0) == 0.0);
-    CHECK(K::shape(1.3) == 0.0);
-    CHECK(K::slope_over_q(1.3) == 0.0);
-    CHECK(std::isfinite(K::slope_over_q(0.0)));
+    BOOST_CHECK(K::shape(1.0) == 0.0);
+    BOOST_CHECK(K::slope_over_q(1.0) == 0.0);
+    BOOST_CHECK(K::shape(1.3) == 0.0);
+    BOOST_CHECK(K::slope_over_q(1.3) == 0.0);
+    BOOST_CHECK(std::isfinite(K::slope_over_q(0.0)));
   }
 }
 
 }    // namespace
 
-CASE("every kernel: integral, gradient, support")
+BOOST_AUTO_TEST_SUITE(kernel)
+
+BOOST_AUTO_TEST_CASE(integral_gradient_and_support_of_each_kernel)
 {
   for (KernelName name : ALL_KERNELS)
     with_kernel(name, [](auto kernel) { check_kernel<decltype(kernel)>(); });
 }
 
-CASE("a kernel is found by its name and only by its own")
+BOOST_AUTO_TEST_CASE(a_kernel_is_found_by_its_own_name_only)
 {
   for (KernelName a : ALL_KERNELS)
-    for (KernelName b : ALL_KERNELS) CHECK((kernel_word(a) == kernel_word(b)) == (a == b));
+    for (KernelName b : ALL_KERNELS) BOOST_CHECK((kernel_word(a) == kernel_word(b)) == (a == b));
 }
 
-CASE("kernels in single precision agree with double")
+BOOST_AUTO_TEST_CASE(single_precision_agrees_with_double)
 {
   for (KernelName name : ALL_KERNELS)
     with_kernel(name, [](auto kernel) {
       using K = decltype(kernel);
       for (double q = 0.0; q < 1.2; q += 0.013) {
-        CHECK_NEAR(K::shape(static_cast<float>(q)), K::shape(q), 2e-6 * K::shape(0.0));
-        CHECK_NEAR(K::slope_over_q(static_cast<float>(q)), K::slope_over_q(q), 4e-5);
+        BOOST_CHECK_SMALL(K::shape(static_cast<float>(q)) - K::shape(q), 2e-6 * K::shape(0.0));
+        BOOST_CHECK_SMALL(K::slope_over_q(static_cast<float>(q)) - K::slope_over_q(q), 4e-5);
       }
     });
 }
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,7 +1,9 @@
-#include "check.h"
 #include "core/util/simd.h"
 
+#include <boost/test/unit_test.hpp>
+
 #include <random>
+#include <vector>
 
 using namespace sphcloth;
 
@@ -30,9 +32,9 @@ template <class Compact> void check_compact(const Compact &compaction)
         expected_index[m++] = index[k];
       }
     const auto agrees = [&](int count) {
-      CHECK(count == m);
+      BOOST_CHECK(count == m);
       for (int k = 0; k < m; k++)
-        CHECK(found[k] == expected[k] && found_index[k] == expected_index[k]);
+        BOOST_CHECK(found[k] == expected[k] && found_index[k] == expected_index[k]);
     };
     agrees(compaction(key.data(), index.data(), n, limit, found.data(), found_index.data()));
     // in place
@@ -51,7 +53,7 @@ template <class Pick> void check_pick(const Pick &pick)
       if (value[each] != 1) expected.push_back(each);
     }
     found.resize(pick(value.data(), 1, index.data(), n, found.data()));
-    CHECK(found == expected);
+    BOOST_CHECK(found == expected);
   }
 }
 
@@ -71,9 +73,9 @@ template <class Partition> void check_partition(const Partition &part)
     const std::vector<float> before = key;
     const int m = part(key.data(), index.data(), n, limit, spare.data());
     kept.insert(kept.end(), others.begin(), others.end());
-    CHECK(m == n - static_cast<int>(others.size()));
-    for (int k = 0; k < n + 32; k++) CHECK(index[k] == (k < n ? kept[k] : 100 + k));
-    for (int k = 0; k < m; k++) CHECK(key[k] == before[kept[k] - 100]);
+    BOOST_CHECK(m == n - static_cast<int>(others.size()));
+    for (int k = 0; k < n + 32; k++) BOOST_CHECK(index[k] == (k < n ? kept[k] : 100 + k));
+    for (int k = 0; k < m; k++) BOOST_CHECK(key[k] == before[kept[k] - 100]);
   }
 }
 
@@ -97,20 +99,22 @@ template <class Lane, class Last> void check_columns()
     columns(&records[0].x, index.data(), x.data(), y.data(), z.data(), w.data());
     for (int k = 0; k < N; k++) {
       const Record &r = records[index[k]];
-      CHECK(x[k] == r.x && y[k] == r.y && z[k] == r.z && w[k] == r.w);
+      BOOST_CHECK(x[k] == r.x && y[k] == r.y && z[k] == r.z && w[k] == r.w);
     }
-    for (int k = N; k < N + 2; k++) CHECK(x[k] == 0 && y[k] == 0 && z[k] == 0 && w[k] == 0);
+    for (int k = N; k < N + 2; k++) BOOST_CHECK(x[k] == 0 && y[k] == 0 && z[k] == 0 && w[k] == 0);
     std::vector<Lane> x_alone(N), y_alone(N), z_alone(N);
     columns(&records[0].x, index.data(), x_alone.data(), y_alone.data(), z_alone.data(),
             static_cast<Last *>(nullptr));
     for (int k = 0; k < N; k++)
-      CHECK(x[k] == x_alone[k] && y[k] == y_alone[k] && z[k] == z_alone[k]);
+      BOOST_CHECK(x[k] == x_alone[k] && y[k] == y_alone[k] && z[k] == z_alone[k]);
   }
 }
 
 }    // namespace
 
-CASE("compaction keeps what is below the limit, in order")
+BOOST_AUTO_TEST_SUITE(simd)
+
+BOOST_AUTO_TEST_CASE(compaction_keeps_what_is_below_the_limit_in_order)
 {
   check_compact([](auto... a) { return compact(a...); });
   check_compact([](auto... a) { return compact_plain(a...); });
@@ -119,7 +123,7 @@ CASE("compaction keeps what is below the limit, in order")
 #endif
 }
 
-CASE("those who have another value are picked, in order")
+BOOST_AUTO_TEST_CASE(particles_with_another_value_are_picked_in_order)
 {
   check_pick([](auto... a) { return pick_others(a...); });
   check_pick([](auto... a) { return pick_others_plain(a...); });
@@ -128,7 +132,7 @@ CASE("those who have another value are picked, in order")
 #endif
 }
 
-CASE("partition of a list in place")
+BOOST_AUTO_TEST_CASE(partition_of_a_list_in_place)
 {
   check_partition([](auto... a) { return partition(a...); });
   check_partition([](auto... a) { return partition_plain(a...); });
@@ -137,7 +141,7 @@ CASE("partition of a list in place")
 #endif
 }
 
-CASE("rows to columns and back")
+BOOST_AUTO_TEST_CASE(rows_to_columns_and_back)
 {
   double numbers[4][4], column[4][4];
   for (auto &row : numbers)
@@ -146,20 +150,22 @@ CASE("rows to columns and back")
   for (int k = 0; k < 4; k++) rows[k] = *reinterpret_cast<const Row *>(numbers[k]);
   to_columns(rows, column[0], column[1], column[2], column[3]);
   for (int k = 0; k < 4; k++)
-    for (int lane = 0; lane < 4; lane++) CHECK(column[lane][k] == numbers[k][lane]);
+    for (int lane = 0; lane < 4; lane++) BOOST_CHECK(column[lane][k] == numbers[k][lane]);
   Row back[4];
   to_rows(column[0], column[1], column[2], back);
   for (int k = 0; k < 4; k++) {
-    for (int lane = 0; lane < 3; lane++) CHECK(back[k][lane] == numbers[k][lane]);
-    CHECK(back[k][3] == 0.0);
+    for (int lane = 0; lane < 3; lane++) BOOST_CHECK(back[k][lane] == numbers[k][lane]);
+    BOOST_CHECK(back[k][3] == 0.0);
     take_last(back[k], rows[k]);
-    for (int lane = 0; lane < 4; lane++) CHECK(back[k][lane] == numbers[k][lane]);
+    for (int lane = 0; lane < 4; lane++) BOOST_CHECK(back[k][lane] == numbers[k][lane]);
   }
 }
 
-CASE("columns of records")
+BOOST_AUTO_TEST_CASE(columns_of_records)
 {
   check_columns<double, double>();
   check_columns<float, float>();
   check_columns<std::int32_t, float>();
 }
+
+BOOST_AUTO_TEST_SUITE_END()

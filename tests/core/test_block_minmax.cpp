@@ -1,7 +1,10 @@
-#include "check.h"
 #include "core/neighbor/block_minmax.h"
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 #include <random>
+#include <vector>
 
 using namespace sphcloth;
 
@@ -35,30 +38,33 @@ struct Scattered {
 
 }    // namespace
 
-CASE("blocks: each particle is in one, by its type, and many are in each")
+BOOST_AUTO_TEST_SUITE(block_minmax)
+
+BOOST_AUTO_TEST_CASE(each_particle_is_in_one_block_of_its_type)
 {
   const Scattered s(9000);
-  CHECK(s.blocks.count() > 100);
-  CHECK(s.n >= 32 * (s.blocks.count() - 1));
+  BOOST_CHECK(s.blocks.count() > 100);
+  BOOST_CHECK(s.n >= 32 * (s.blocks.count() - 1));
   std::vector<int> found(s.n);
   for (int b = 0; b < s.blocks.count(); b++)
     for (int t = 1; t <= TYPES; t++)
       for (const int i : s.blocks.in(s.blocks.row(b, t))) {
         found[i]++;
-        CHECK(s.type[i] == t);
-        CHECK(s.block(i) == b);
+        BOOST_CHECK(s.type[i] == t);
+        BOOST_CHECK(s.block(i) == b);
       }
-  for (const int times : found) CHECK(times == 1);
+  for (const int times : found) BOOST_CHECK(times == 1);
 }
 
-CASE("a survey tells what neighbours have, whatever their block")
+BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)
 {
   Scattered s(9000);
   s.value.assign(s.n, 3);
   Survey survey(s.blocks);
   survey.take(s.value.data());
   for (int b = 0; b < s.blocks.count(); b++)
-    for (int t = 1; t <= TYPES; t++) CHECK(survey.all_have(3, b, t) && survey.greatest(b, t) == 3);
+    for (int t = 1; t <= TYPES; t++)
+      BOOST_CHECK(survey.all_have(3, b, t) && survey.greatest(b, t) == 3);
 
   // two others, of one type
   const int low = 100, high = 200;
@@ -70,18 +76,18 @@ CASE("a survey tells what neighbours have, whatever their block")
     const int b = s.block(i), t = s.type[low];
     if (s.near(i, low) || s.near(i, high)) {
       beside++;
-      CHECK(!survey.all_have(3, b, t));
-      if (s.near(i, high)) CHECK(survey.greatest(b, t) == 7);
+      BOOST_CHECK(!survey.all_have(3, b, t));
+      if (s.near(i, high)) BOOST_CHECK(survey.greatest(b, t) == 7);
     }
-    CHECK(!survey.all_have(1, b, t));
-    CHECK(survey.all_have(3, b, 3 - t));    // of the other type nobody has changed
+    BOOST_CHECK(!survey.all_have(1, b, t));
+    BOOST_CHECK(survey.all_have(3, b, 3 - t));    // no particle of the other type has changed
     quiet += survey.all_have(3, b, t);
   }
-  CHECK(beside > 20);
-  CHECK(quiet > s.n / 2);
+  BOOST_CHECK(beside > 20);
+  BOOST_CHECK(quiet > s.n / 2);
 }
 
-CASE("a survey of nobody finds nothing")
+BOOST_AUTO_TEST_CASE(no_particles_have_no_minimum_or_maximum)
 {
   const std::vector<double> x{0.5, 0.5, 0.5};
   const std::vector<int> type{1}, value{4};
@@ -89,7 +95,9 @@ CASE("a survey of nobody finds nothing")
   blocks.divide(x.data(), type.data(), 1, TYPES, WIDTH);
   Survey survey(blocks);
   survey.take(value.data());
-  CHECK(survey.all_have(4, 0, 1) && !survey.all_have(5, 0, 1));
-  CHECK(survey.all_have(5, 0, 2));
-  CHECK(survey.greatest(0, 2) < -1000000);
+  BOOST_CHECK(survey.all_have(4, 0, 1) && !survey.all_have(5, 0, 1));
+  BOOST_CHECK(survey.all_have(5, 0, 2));
+  BOOST_CHECK(survey.greatest(0, 2) < -1000000);
 }
+
+BOOST_AUTO_TEST_SUITE_END()

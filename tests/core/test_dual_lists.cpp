@@ -1,7 +1,11 @@
-#include "check.h"
 #include "core/neighbor/dual_lists.h"
 
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
 #include <random>
+#include <vector>
 
 using namespace sphcloth;
 
@@ -77,7 +81,7 @@ struct Watched {
     }
     return n;
   }
-  // the largest number of neighbours that the fronts hold, and whether none is missing
+  // the largest number of neighbors that the fronts hold, and whether none is missing
   int check(int every)
   {
     int longest = 0;
@@ -85,7 +89,7 @@ struct Watched {
       lists.refresh(lists.slot(i));
       for (int t = 1; t <= 2; t++) {
         if (walk.type[i] == 2 && t == 2) continue;
-        CHECK(missing(lists, walk, i, t) == 0);
+        BOOST_CHECK(missing(lists, walk, i, t) == 0);
         longest = std::max(longest, lists(lists.slot(i), t).n);
       }
     }
@@ -95,7 +99,9 @@ struct Watched {
 
 }    // namespace
 
-CASE("the front of a list holds everyone inside the support while particles move")
+BOOST_AUTO_TEST_SUITE(dual_lists)
+
+BOOST_AUTO_TEST_CASE(inner_list_holds_all_within_the_support_while_particles_move)
 {
   Watched w;
   for (int step = 0; step < 30; step++) {
@@ -103,10 +109,10 @@ CASE("the front of a list holds everyone inside the support while particles move
     w.follow();
     w.check(1);
   }
-  CHECK(w.inner_skin(1, 1) > 0.0 && w.inner_skin(1, 1) < 0.5 * SKIN);
+  BOOST_CHECK(w.inner_skin(1, 1) > 0.0 && w.inner_skin(1, 1) < 0.5 * SKIN);
 }
 
-CASE("a list that is refreshed late is as good as one refreshed at once")
+BOOST_AUTO_TEST_CASE(a_list_that_is_pruned_late_is_as_good_as_one_pruned_at_once)
 {
   Watched w;
   for (int step = 0; step < 40; step++) {
@@ -116,7 +122,7 @@ CASE("a list that is refreshed late is as good as one refreshed at once")
   }
 }
 
-CASE("an inner skin lasts longer the slower particles move, and is gone where they are fast")
+BOOST_AUTO_TEST_CASE(inner_skin_is_wider_the_slower_particles_move)
 {
   double before = 1.0;
   for (double by : {8e-3, 1e-3, 1e-5}) {
@@ -125,42 +131,42 @@ CASE("an inner skin lasts longer the slower particles move, and is gone where th
       if (step) w.walk.move(by);
       w.follow();
     }
-    CHECK(w.inner_skin(1, 1) < before);
+    BOOST_CHECK(w.inner_skin(1, 1) < before);
     w.check(1);
     before = by > 5e-3 ? 1.0 : w.inner_skin(1, 1);
-    if (by > 5e-3) CHECK(w.inner_skin(1, 1) == 0.0);
+    if (by > 5e-3) BOOST_CHECK(w.inner_skin(1, 1) == 0.0);
   }
 }
 
-CASE("types that do not interact have an empty front")
+BOOST_AUTO_TEST_CASE(types_that_do_not_interact_have_an_empty_inner_list)
 {
   Watched w;
   w.follow();
   w.lists.refresh(w.lists.slot(1));
-  CHECK(w.walk.type[1] == 2);
-  CHECK(w.lists(w.lists.slot(1), 2).n == 0);
-  CHECK(w.lists(w.lists.slot(1), 1).n > 0);
+  BOOST_CHECK(w.walk.type[1] == 2);
+  BOOST_CHECK(w.lists(w.lists.slot(1), 2).n == 0);
+  BOOST_CHECK(w.lists(w.lists.slot(1), 1).n > 0);
 }
 
-CASE("the front is right as soon as lists are built, and as wide as particles will need it")
+BOOST_AUTO_TEST_CASE(inner_list_is_right_as_soon_as_lists_are_built)
 {
   Watched slow, fast;
   slow.build(1e-5, {1.0, 1.0, 1.0});
   fast.build(1e-3, {1.0, 1.0, 1.0});
   slow.check(1);
-  CHECK(slow.inner_skin(1, 1) > 0.0);
-  CHECK(fast.inner_skin(1, 1) > slow.inner_skin(1, 1));
-  CHECK(fast.in_fronts(1, 1) > slow.in_fronts(1, 1));
+  BOOST_CHECK(slow.inner_skin(1, 1) > 0.0);
+  BOOST_CHECK(fast.inner_skin(1, 1) > slow.inner_skin(1, 1));
+  BOOST_CHECK(fast.in_fronts(1, 1) > slow.in_fronts(1, 1));
 }
 
-CASE("those who are evaluated seldom have a wider inner skin")
+BOOST_AUTO_TEST_CASE(inner_skin_is_wider_for_particles_that_are_evaluated_seldom)
 {
   Watched w;
   w.build(1e-4, {1.0, 4.0, 1.0});
-  CHECK(w.inner_skin(1, 1) > w.inner_skin(2, 1));
+  BOOST_CHECK(w.inner_skin(1, 1) > w.inner_skin(2, 1));
 }
 
-CASE("what moves together stays as it is")
+BOOST_AUTO_TEST_CASE(particles_that_move_together_keep_their_lists)
 {
   Watched w(0.5 * SUPPORT);
   const double resting = w.inner_skin(1, 1);
@@ -169,15 +175,13 @@ CASE("what moves together stays as it is")
     for (double &x : w.walk.x) x += 0.01;
     w.follow();
     w.check(5);
-    CHECK(w.in_fronts(1, 1) == fronts);
+    BOOST_CHECK(w.in_fronts(1, 1) == fronts);
   }
-  CHECK(w.inner_skin(1, 1) == resting);
+  BOOST_CHECK(w.inner_skin(1, 1) == resting);
 }
 
-// As far as somebody else, who builds lists anew, lets them go: all of them by half the skin at most.
-
-CASE(
-    "lists that are narrower than they have to last are made anew where particles have come nearer")
+// No list is built anew from outside: particles go as far as they may, half the skin at most.
+BOOST_AUTO_TEST_CASE(lists_are_rebuilt_where_particles_have_come_nearer)
 {
   for (double by : {5e-3, 2e-2}) {
     Watched w(1.5 * SUPPORT);
@@ -187,13 +191,12 @@ CASE(
       w.follow();
       w.check(1);
     }
-    CHECK(w.lists.bytes() > before);
+    BOOST_CHECK(w.lists.bytes() > before);
   }
 }
 
-// In a long thin box stripes go towards each other, so that nobody near most particles moves another way.
-
-CASE("who comes from a block beside is seen, and from farther away when lists have been renewed")
+// In a long thin box stripes go towards each other: most particles have neighbors that move alike.
+BOOST_AUTO_TEST_CASE(particles_from_a_block_beside_are_seen)
 {
   constexpr double LENGTH = 12.0;
   for (double stripe : {0.55, 1.1, 1.3, 1.5, 1.7}) {
@@ -217,7 +220,7 @@ CASE("who comes from a block beside is seen, and from farther away when lists ha
 
 // Type 2 moves on and on, type 1 rests.
 
-CASE("fronts of those who rest among each other stay while others move")
+BOOST_AUTO_TEST_CASE(inner_lists_of_particles_at_rest_stay_while_others_move)
 {
   Watched w;
   const double resting = w.inner_skin(1, 1);
@@ -227,7 +230,9 @@ CASE("fronts of those who rest among each other stay while others move")
       for (int i = 1; i < w.walk.n; i += 2) w.walk.x[3 * i] += 4e-4;
     w.follow();
     w.check(1 + step % 3);
-    CHECK(w.in_fronts(1, 1) == among_each_other);
+    BOOST_CHECK(w.in_fronts(1, 1) == among_each_other);
   }
-  CHECK(w.inner_skin(1, 1) == resting);
+  BOOST_CHECK(w.inner_skin(1, 1) == resting);
 }
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,8 +1,11 @@
-#include "check.h"
 #include "core/neighbor/cell_lists.h"
 
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
 #include <random>
 #include <set>
+#include <vector>
 
 using namespace sphcloth;
 
@@ -37,7 +40,7 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
     for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
       const int i = lists.at(slot);
       seen.insert(i);
-      CHECK(p.type[i] == t && i < n_owned);
+      BOOST_CHECK(p.type[i] == t && i < n_owned);
       for (int other = 1; other <= n_types; other++) {
         const double far = reach[t * (n_types + 1) + other];
         std::multiset<int> listed;
@@ -49,42 +52,44 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
           const std::size_t count = listed.count(j);
           const bool candidate = j != i && p.type[j] == other && far > 0.0;
           if (candidate && std::sqrt(r_sq) < far)
-            CHECK(count == 1);
+            BOOST_CHECK(count == 1);
           else if (!candidate || std::sqrt(r_sq) > far * 1.0001 + 1e-5)
-            CHECK(count == 0);
+            BOOST_CHECK(count == 0);
         }
       }
     }
-  CHECK(static_cast<int>(seen.size()) == n_owned);
+  BOOST_CHECK(static_cast<int>(seen.size()) == n_owned);
 }
 
 }    // namespace
 
-CASE("lists of one type against all pairs")
+BOOST_AUTO_TEST_SUITE(cell_lists)
+
+BOOST_AUTO_TEST_CASE(lists_of_one_type_against_all_pairs)
 {
   const std::vector<double> reach{0, 0, 0, 0.21};
   for (unsigned seed : {1u, 2u, 3u}) check_lists(cloud(400, 1, 1, 1, 1, seed), 300, 1, reach);
   check_lists(cloud(300, 1, 1, 1, 0, 4), 300, 1, reach);         // a plane
   check_lists(cloud(200, 1, 300, 2, 0.1, 5), 150, 1, reach);     // far apart
   check_lists(cloud(1, 1, 1, 1, 1, 6), 1, 1, reach);
-  check_lists(cloud(60, 1, 0.01, 0.01, 0.01, 7), 60, 1, reach);    // everyone everyone's neighbour
+  check_lists(cloud(60, 1, 0.01, 0.01, 0.01, 7), 60, 1, reach);    // all are neighbors of all
 }
 
-CASE("lists of several types, each pair with its reach")
+BOOST_AUTO_TEST_CASE(lists_of_several_types_each_pair_with_its_reach)
 {
   // type 3 lists type 1 but not itself, type 2 and 3 never meet
   const std::vector<double> reach{0, 0, 0, 0, 0, 0.1, 0.15, 0.2, 0, 0.15, 0.25, 0, 0, 0.2, 0, 0};
   check_lists(cloud(500, 3, 1, 1, 1, 8), 400, 3, reach);
 }
 
-CASE("no particle of one's own, or none at all")
+BOOST_AUTO_TEST_CASE(no_owned_particle_or_none_at_all)
 {
   const std::vector<double> reach{0, 0, 0, 0.21};
   check_lists(cloud(50, 1, 1, 1, 1, 9), 0, 1, reach);
   check_lists(Cloud(), 0, 1, reach);
 }
 
-CASE("lists: who is parted by a sheet is not there, all others are")
+BOOST_AUTO_TEST_CASE(pairs_parted_by_a_sheet_are_left_out_and_no_others)
 {
   const Cloud p = cloud(600, 1, 1.0, 1.0, 1.0, 11);
   std::vector<Sides> sides(600, 0);
@@ -105,8 +110,10 @@ CASE("lists: who is parted by a sheet is not there, all others are")
         left_out++;
       else
         expected.insert(one.of[k]);
-    CHECK(all.at(slot) == parts.at(slot));
-    CHECK(listed == expected);
+    BOOST_CHECK(all.at(slot) == parts.at(slot));
+    BOOST_CHECK(listed == expected);
   }
-  CHECK(left_out > 500);
+  BOOST_CHECK(left_out > 500);
 }
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -135,7 +135,7 @@ def test_pixels_belong_to_the_triangle_that_holds_their_middle() -> None:
     np.testing.assert_allclose(visible.nearness, best)
 
 
-def test_neighbours_leave_no_gap_and_no_overlap() -> None:
+def test_neighbors_leave_no_gap_and_no_overlap() -> None:
     sheet = SHEET[:, :2] @ [[17.0, 4.0], [-5.0, 13.0]] + [9.0, 2.0]
     places = sheet[MESH.triangles]
     parts = triangle_fragments(places, np.ones(places.shape[:2]), (24, 32))
@@ -339,17 +339,17 @@ def test_water_goes_on_across_a_periodic_boundary() -> None:
     np.testing.assert_allclose(water.points[inner, 2], 3, atol=0.1)
 
 
-def test_colours_show_a_quantity_with_a_scale() -> None:
+def test_colors_show_a_quantity_with_a_scale() -> None:
     frame = frames()[1]
     speed = dict(zip(("vx", "vy", "vz"), np.tile(frame.positions[:, 0], (3, 1)), strict=True))
     fast = replace(frame, columns=frame.columns | speed)
-    stage = scene_of([fast], Choice(colour_by="speed"))
+    stage = scene_of([fast], Choice(color_by="speed"))
     assert stage.scale is not None
     assert stage.scale.low == 0 < stage.scale.high
     green = [share_of(picture(one, fast), 0.3, 0.3) for one in (stage, scene_of([fast]))]
     assert green[0] > 0.002 > green[1]
     with pytest.raises(UserError, match="no column vx vy vz"):
-        scene_of(frames(), Choice(colour_by="speed"))
+        scene_of(frames(), Choice(color_by="speed"))
 
 
 def test_a_lost_drop_changes_nothing() -> None:

@@ -92,7 +92,7 @@ class Cloth:
         """Return the largest numbers that one atom stores with ``newton on``.
 
         Bonds are stored with their first atom, angles and dihedrals with their second. Special
-        neighbours are those up to three bonds away.
+        neighbors are those up to three bonds away.
         """
         n = len(self.types)
         owners = {"bond": self.bonds[:, 1], "angle": self.angles[:, 2]}

@@ -1,6 +1,8 @@
 """Reads a triangle mesh of any format that trimesh knows, and repairs it.
 
 What can be repaired without a change of the shape is repaired and reported; all else is an error.
+The repairs of trimesh do not do: it merges vertices by rounding, which leaves two apart that are
+close on the two sides of a step, and drops flat triangles, which opens cracks.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from trimesh.grouping import unique_rows
 
 from sphcloth.errors import UserError
 from sphcloth.meshing.surface import Surface, clusters
@@ -65,7 +68,7 @@ def repair(surface: Surface, merge: float | None = None) -> tuple[Surface, list[
         (merged, "vertices at the same place merged"),
         (collapsed, "triangles with an edge of length zero removed"),
         (repeated, "repeated triangles removed"),
-        (flat, "flat triangles removed, their neighbours cut anew"),
+        (flat, "flat triangles removed, their neighbors cut anew"),
         (unused + left, "vertices without a triangle removed"),
     ]
     return surface, [f"{count:,} {what}" for count, what in counts if count]
@@ -108,18 +111,18 @@ def drop_collapsed(surface: Surface) -> tuple[Surface, int]:
 
 def drop_repeated(surface: Surface) -> tuple[Surface, int]:
     """Remove triangles whose corners another one has, in any order; return also how many."""
-    _, first = np.unique(np.sort(surface.triangles, axis=1), axis=0, return_index=True)
+    first, _ = unique_rows(np.sort(surface.triangles, axis=1))
     return surface.select(np.sort(first)), len(surface.triangles) - len(first)
 
 
 def mend_flat(surface: Surface) -> tuple[Surface, int]:
     """Remove triangles whose corners lie on a line, without opening a crack; return how many.
 
-    The longest side of a flat triangle has the third corner on it. The neighbour there is cut in
-    two at this corner. At a border there is no neighbour.
+    The longest side of a flat triangle has the third corner on it. The neighbor there is cut in
+    two at this corner. At a border there is no neighbor.
 
     Raises:
-        UserError: flat triangles that only have flat neighbours there.
+        UserError: flat triangles that only have flat neighbors there.
     """
     removed = 0
     for _ in range(FLAT_PASSES):
@@ -127,7 +130,7 @@ def mend_flat(surface: Surface) -> tuple[Surface, int]:
         flat = height <= FLAT * surface.side_lengths.max(axis=1)
         if not flat.any():
             return surface, removed
-        mended, count = _cut_neighbours(surface, flat)
+        mended, count = _cut_neighbors(surface, flat)
         if not count:
             break
         removed += count
@@ -139,10 +142,10 @@ def mend_flat(surface: Surface) -> tuple[Surface, int]:
     )
 
 
-def _cut_neighbours(surface: Surface, flat: NDArray[np.bool_]) -> tuple[Surface, int]:
-    """Replace flat triangles and their neighbours by the neighbours' halves; return how many.
+def _cut_neighbors(surface: Surface, flat: NDArray[np.bool_]) -> tuple[Surface, int]:
+    """Replace flat triangles and their neighbors by the neighbors' halves; return how many.
 
-    A neighbour that is flat itself, or was cut already, is left for the next pass.
+    A neighbor that is flat itself, or was cut already, is left for the next pass.
     """
     triangles = surface.triangles.copy()
     gone = np.zeros(len(triangles), bool)
@@ -158,12 +161,12 @@ def _cut_neighbours(surface: Surface, flat: NDArray[np.bool_]) -> tuple[Surface,
         if not others:
             gone[t] = True
         elif len(others) == 1 and not touched[others[0] // 3]:
-            neighbour, corner = others[0] // 3, surface.triangles[t, (longest[t] + 2) % 3]
+            neighbor, corner = others[0] // 3, surface.triangles[t, (longest[t] + 2) % 3]
             start, end = surface.half_edges[others[0]]
-            tip = surface.triangles[neighbour, (others[0] + 2) % 3]
+            tip = surface.triangles[neighbor, (others[0] + 2) % 3]
             triangles[t] = start, corner, tip
-            triangles[neighbour] = corner, end, tip
-            touched[neighbour] = True
+            triangles[neighbor] = corner, end, tip
+            touched[neighbor] = True
             cut += 1
     kept = Surface(surface.vertices, triangles[~gone], surface.part[~gone])
     return kept, cut + int(np.count_nonzero(gone))

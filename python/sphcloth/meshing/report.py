@@ -39,7 +39,7 @@ class MeshSummary:
         longest_edge: length of the longest edge.
         worst_quality: 4 sqrt(3) area / sum of squared sides of the worst triangle; 1 is best.
         thin_triangles: number of triangles with a quality below 0.1.
-        room_per_atom: bonds, angles, dihedrals and special neighbours that one atom stores at
+        room_per_atom: bonds, angles, dihedrals and special neighbors that one atom stores at
             most, with ``newton on``.
         types: largest type number of each kind.
     """
@@ -141,8 +141,8 @@ def script_for_molecule(cloth: Cloth, molecule: Path, mass_per_atom: bool) -> li
     lines = ["fix mass all property/atom rmass ghost yes"] if mass_per_atom else []
     lines.append(f"create_box {types['atom']} BOX {' '.join(words)}")
     lines.append(f"molecule cloth {_word(molecule)}")
-    centre = " ".join(f"{x:.10g}" for x in cloth.surface.vertices.mean(axis=0))
-    lines.append(f"create_atoms 0 single {centre} mol cloth 1 rotate 0 0 0 1 units box")
+    center = " ".join(f"{x:.10g}" for x in cloth.surface.vertices.mean(axis=0))
+    lines.append(f"create_atoms 0 single {center} mol cloth 1 rotate 0 0 0 1 units box")
     if not mass_per_atom:
         lines += [f"mass {t} {mass:.10g}" for t, mass in cloth.mass_of_type.items()]
     for name, chosen in (("cloth", cloth.types), ("pins", cloth.types[cloth.pinned])):

@@ -78,7 +78,7 @@ def write_sequence(
 class Unwrapper:
     """Undoes the periodic wrapping of a cloth, frame after frame.
 
-    With the columns ix, iy and iz the dump says where each vertex is. Without them neighbours are
+    With the columns ix, iy and iz the dump says where each vertex is. Without them neighbors are
     put side by side along a tree of edges, and each piece's root goes on from where it was.
     """
 

@@ -58,11 +58,11 @@ class Seams:
         )
 
     def middle(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the positions, shape (V, 3), with joined vertices at the centre of each other."""
+        """Return the positions, shape (V, 3), with joined vertices at the center of each other."""
         joined = clusters(self.pairs, len(positions))
         count = np.bincount(joined)
-        centre = np.stack([np.bincount(joined, axis) / count for axis in positions.T], axis=1)
-        return np.where((count[joined] > 1)[:, None], centre[joined], positions)
+        center = np.stack([np.bincount(joined, axis) / count for axis in positions.T], axis=1)
+        return np.where((count[joined] > 1)[:, None], center[joined], positions)
 
     def unpaired_note(self) -> list[str]:
         """Return a line about border vertices without a partner, or none."""

@@ -2,6 +2,11 @@
 
 A half-edge is a side of a triangle with the triangle's sense: number ``3 t + k`` runs from corner
 ``k`` to corner ``k + 1`` of triangle ``t`` and lies opposite of corner ``k + 2``.
+
+Half-edges and connected pieces are those of trimesh. Edges and hinges are not: their order is that
+of the bonds and dihedrals in the files, while trimesh sorts edges and adjacent triangles by a hash
+whose order may change, and counts no triangles at an edge. Its areas differ in the last bit, and
+with them the masses.
 """
 
 from __future__ import annotations
@@ -11,8 +16,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from trimesh.geometry import faces_to_edges
+from trimesh.graph import connected_component_labels
 
 from sphcloth.errors import UserError
 
@@ -43,9 +48,7 @@ class Surface:
     @cached_property
     def half_edges(self) -> NDArray[np.int64]:
         """Start and end of each half-edge, shape (3T, 2)."""
-        return np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2).reshape(
-            -1, 2
-        )
+        return faces_to_edges(self.triangles)
 
     @cached_property
     def _numbered(self) -> tuple[NDArray, NDArray, NDArray]:
@@ -141,8 +144,7 @@ class Surface:
 
 def clusters(links: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Return the connected component of each of ``n`` nodes under ``links``, shape (L, 2)."""
-    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(n, n))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return connected_component_labels(links, n).astype(np.int64)
 
 
 def lengths(positions: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.float64]:

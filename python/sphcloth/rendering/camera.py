@@ -131,13 +131,13 @@ class ParallelView:
 
     Attributes:
         direction: towards the light, a unit vector, shape (3,).
-        centre: the point in the middle, shape (3,).
+        center: the point in the middle, shape (3,).
         radius: half of the side of the square.
         pixels: number of pixels along a side.
     """
 
     direction: NDArray[np.float64]
-    centre: NDArray[np.float64]
+    center: NDArray[np.float64]
     radius: float
     pixels: int
 
@@ -158,5 +158,5 @@ class ParallelView:
 
     def project(self, points: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return places in pixels, shape (N, 2), and how near the light points are, (N,)."""
-        offset = in_axes(points - self.centre, self.axes)
+        offset = in_axes(points - self.center, self.axes)
         return offset[:, :2] / self.pixel + self.pixels / 2, offset[:, 2]

@@ -31,13 +31,13 @@ class Choice:
         fluid: types of water.
         cloth: types of the vertices of cloth; other triangles are obstacles.
         spacing: of the particles of water.
-        colour_by: a key of ``QUANTITIES``.
+        color_by: a key of ``QUANTITIES``.
     """
 
     fluid: frozenset[int] | None = None
     cloth: frozenset[int] | None = None
     spacing: float | None = None
-    colour_by: str | None = None
+    color_by: str | None = None
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Cast:
         cloth: which of the mesh's triangles are cloth, shape (T,); empty without a mesh.
         spacing: of each type of water and wall.
         is_flat: whether the scene is two-dimensional, in the plane of x and y.
-        colour_by: a key of ``QUANTITIES``, or None.
+        color_by: a key of ``QUANTITIES``, or None.
     """
 
     fluid: frozenset[int]
@@ -60,7 +60,7 @@ class Cast:
     cloth: NDArray[np.bool_]
     spacing: dict[int, float]
     is_flat: bool
-    colour_by: str | None
+    color_by: str | None
 
     @classmethod
     def of(cls, frames: Sequence[Frame], roles: Roles, choice: Choice) -> Cast:
@@ -90,7 +90,7 @@ class Cast:
             cloth & ~_resting(frames, roles.mesh),
             spacing,
             is_flat,
-            choice.colour_by,
+            choice.color_by,
         )
 
     @property
@@ -106,7 +106,7 @@ class Cast:
         """Return the water of a frame, with what looks over from across a periodic boundary.
 
         Raises:
-            UserError: a position that is not finite, or no column for the colours.
+            UserError: a position that is not finite, or no column for the colors.
         """
         return self._drops(frame, self.fluid, self.values(frame))
 
@@ -115,10 +115,10 @@ class Cast:
         return self._drops(frame, self.walls, None)
 
     def values(self, frame: Frame) -> NDArray[np.float64] | None:
-        """Return the quantity of all atoms that gives water its colour, shape (N,), or None."""
-        if self.colour_by is None:
+        """Return the quantity of all atoms that gives water its color, shape (N,), or None."""
+        if self.color_by is None:
             return None
-        values = frame.vectors(*QUANTITIES[self.colour_by])
+        values = frame.vectors(*QUANTITIES[self.color_by])
         return np.linalg.norm(values, axis=1) if values.shape[1] > 1 else values[:, 0]
 
     def _drops(self, frame: Frame, kinds: frozenset[int], values: NDArray | None) -> Drops:
@@ -189,7 +189,7 @@ def _resting(frames: Sequence[Frame], mesh: ClothMesh | None) -> NDArray[np.bool
 def _spacing(
     kind: int, frames: Sequence[Frame], roles: Roles, choice: Choice, is_flat: bool
 ) -> float:
-    """Return the spacing of a type: the user's, the data file's, or that of its neighbours."""
+    """Return the spacing of a type: the user's, the data file's, or that of its neighbors."""
     if choice.spacing is not None:
         return choice.spacing
     if kind in roles.volume:

@@ -110,22 +110,22 @@ def evenly_spaced(total: int, wanted: int) -> list[int]:
 
 
 def make_choice(
-    fluid: str | None, cloth: str | None, spacing: float | None, colour_by: str
+    fluid: str | None, cloth: str | None, spacing: float | None, color_by: str
 ) -> Choice:
-    """Turn options into a choice of atoms and colours.
+    """Turn options into a choice of atoms and colors.
 
     Raises:
         UserError: a value that is none.
     """
     if spacing is not None and not 0 < spacing < np.inf:
         raise UserError(f"--spacing {spacing:g}: must be positive")
-    if colour_by not in ("none", *QUANTITIES):
-        raise UserError(f"--colour-by {colour_by}: use {', '.join(('none', *QUANTITIES))}")
+    if color_by not in ("none", *QUANTITIES):
+        raise UserError(f"--colour-by {color_by}: use {', '.join(('none', *QUANTITIES))}")
     return Choice(
         None if fluid is None else parse_types(fluid, "--fluid"),
         None if cloth is None else parse_types(cloth, "--cloth"),
         spacing,
-        None if colour_by == "none" else colour_by,
+        None if color_by == "none" else color_by,
     )
 
 
@@ -187,7 +187,7 @@ def render(
         data: data file of the scene; None takes that of the dump's name, if there is one.
         log: log of the run; None takes ``log.lammps`` beside the dump, if there is one.
         frames: which frames.
-        choice: which atoms are what, and the colours.
+        choice: which atoms are what, and the colors.
         view: camera and size.
         form: ``png``, ``gif`` or ``mp4``.
         console: where progress and the result appear.

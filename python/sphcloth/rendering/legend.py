@@ -1,4 +1,4 @@
-"""A scale of colours, and its drawing in the corner of a picture."""
+"""A scale of colors, and its drawing in the corner of a picture."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from matplotlib import colormaps
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-COLOUR_MAP = "viridis"
+COLOR_MAP = "viridis"
 # of the picture's height: bar, its distance from the corner, and text
 BAR_WIDTH, BAR_HEIGHT, MARGIN, TEXT = 0.22, 0.018, 0.04, 0.026
 
 
 @dataclass(frozen=True)
 class Scale:
-    """The values at the two ends of the colours.
+    """The values at the two ends of the colors.
 
     Attributes:
         name: what is shown.
-        low: the value of the first colour.
+        low: the value of the first color.
         high: that of the last one.
     """
 
@@ -29,12 +29,12 @@ class Scale:
     high: float
 
     def shades(self, values: NDArray) -> NDArray[np.float64]:
-        """Return the sRGB colours of values, shape (N, 4)."""
-        return colormaps[COLOUR_MAP]((values - self.low) / (self.high - self.low))
+        """Return the sRGB colors of values, shape (N, 4)."""
+        return colormaps[COLOR_MAP]((values - self.low) / (self.high - self.low))
 
 
 def add_scale(picture: NDArray[np.uint8], scale: Scale) -> NDArray[np.uint8]:
-    """Return a picture, shape (height, width, 3), with a bar of the colours and their values."""
+    """Return a picture, shape (height, width, 3), with a bar of the colors and their values."""
     image = Image.fromarray(picture)
     height = image.height
     left, bottom = int(MARGIN * height), int((1 - MARGIN) * height)

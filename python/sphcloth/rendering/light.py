@@ -28,23 +28,23 @@ WATER_SHADE, WATER_SKY_SHADE = 0.45, 0.35
 # cosines of the angles from the sun in which the lamp that water mirrors fades
 SOFTBOX_EDGE = (0.93, 0.965)
 GROUND, HORIZON, ZENITH = (
-    np.array(colour) for colour in ((0.42, 0.43, 0.46), (0.86, 0.90, 0.95), (0.34, 0.52, 0.78))
+    np.array(color) for color in ((0.42, 0.43, 0.46), (0.86, 0.90, 0.95), (0.34, 0.52, 0.78))
 )
 
 
 @dataclass(frozen=True)
 class Balls:
-    """Balls of one or many colours.
+    """Balls of one or many colors.
 
     Attributes:
-        centres: shape (N, 3).
+        centers: shape (N, 3).
         radius: shape (N,).
-        colours: linear, shape (N, 3).
+        colors: linear, shape (N, 3).
     """
 
-    centres: NDArray[np.float64]
+    centers: NDArray[np.float64]
     radius: NDArray[np.float64]
-    colours: NDArray[np.float64]
+    colors: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,10 @@ class Light:
         sun: NDArray[np.float64],
         room: tuple[NDArray[np.float64], float],
     ) -> Light:
-        """Cast light on surfaces and balls in a room: a ball, its centre and radius."""
+        """Cast light on surfaces and balls in a room: a ball, its center and radius."""
         view = ParallelView(sun, *room, SUN_PIXELS)
         maps = (_ShadowMap.of(view, solids, balls), _ShadowMap.of(view, [water], []))
-        parts = [*(solid.points for solid in solids), *(part.centres for part in balls)]
+        parts = [*(solid.points for solid in solids), *(part.centers for part in balls)]
         grains = np.concatenate([np.zeros((0, 3)), *parts])
         sky = []
         for direction in sky_directions(SKY_DIRECTIONS):
@@ -122,7 +122,7 @@ class _ShadowMap:
             parts = triangle_fragments(places[corners], near[corners], view.shape)
             np.maximum(nearness, nearest(parts, len(nearness)).nearness, out=nearness)
         for part in balls:
-            places, near = view.project(part.centres)
+            places, near = view.project(part.centers)
             for discs in disc_fragments(places, part.radius / view.pixel, view.shape):
                 top = near[discs.disc] + part.radius[discs.disc] * discs.bulge
                 np.maximum.at(nearness, discs.pixel, top)
@@ -184,7 +184,7 @@ def _spiral(count: int) -> NDArray[np.float64]:
 
 
 def surroundings(directions: NDArray, sun: NDArray) -> NDArray[np.float64]:
-    """Return the light that comes from unit directions, shape (N, 3), in linear colour (N, 3).
+    """Return the light that comes from unit directions, shape (N, 3), in linear color (N, 3).
 
     A studio: ground, horizon and sky, a large bright lamp around the sun and a long faint one
     opposite, for water to mirror.

@@ -64,7 +64,7 @@ def _clear(out: Path) -> None:
 
 
 def _write_gif(pictures: Pictures, path: Path) -> Path:
-    """Write a GIF that runs for ever; its pictures have 256 colours, each its own."""
+    """Write a GIF that runs for ever; its pictures have 256 colors, each its own."""
     images = (Image.fromarray(picture).quantize(256) for picture in pictures)
     first = next(images)
     first.save(

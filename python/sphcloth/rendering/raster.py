@@ -1,7 +1,7 @@
 """Triangles and balls to pixels, line by line, in whole arrays.
 
 A triangle becomes the rows of pixels between its lowest and highest corner, a row the pixels
-between the two edges there. Pixels belong to the triangle that holds their middle; neighbours
+between the two edges there. Pixels belong to the triangle that holds their middle; neighbors
 compute the common edge from the same two corners, so that no pixel falls between or counts twice.
 """
 
@@ -97,7 +97,7 @@ def disc_fragments(
     """Yield the fragments of discs that face the camera.
 
     Args:
-        places: of the centres in pixels, shape (N, 2); a disc at NaN is left out.
+        places: of the centers in pixels, shape (N, 2); a disc at NaN is left out.
         reach: radius in pixels, shape (N,).
         shape: rows and columns of the picture.
     """

@@ -22,9 +22,9 @@ from sphcloth.rendering.surface import Drops, Surface, smoothed, water_surface
 from sphcloth.trajectory import Frame
 
 # front and back of each piece of cloth, in turn; then of obstacles, pins and balls of water
-CLOTH_COLOURS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
-OBSTACLE_COLOUR, PIN_COLOUR = "#b9bcc2", "#8c2f25"
-BALL_COLOUR = "#2f7fd0"
+CLOTH_COLORS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
+OBSTACLE_COLOR, PIN_COLOR = "#b9bcc2", "#8c2f25"
+BALL_COLOR = "#2f7fd0"
 
 PIN_RADIUS = 0.006  # of the scene
 # from the scene to the camera; of a two-dimensional scene almost straight in front of it
@@ -52,7 +52,7 @@ class Scene:
         camera: the view; a turntable turns it.
         stage: the floor, the room and the sun.
         pinned: indices of the vertices that never move, shape (K,).
-        scale: values of the colours of water, or None for water's own.
+        scale: values of the colors of water, or None for water's own.
         as_balls: whether water is drawn as balls.
     """
 
@@ -71,15 +71,15 @@ class Scene:
         size: tuple[int, int] = (1280, 960),
         as_balls: bool = False,
     ) -> Scene:
-        """Choose one view, floor and colour scale for a dump, from some of its frames."""
+        """Choose one view, floor and color scale for a dump, from some of its frames."""
         points, floor = _framed(frames, cast)
         low, high = points.min(axis=0), points.max(axis=0)
-        centre = (low + high) / 2
+        center = (low + high) / 2
         radius = float(np.linalg.norm(high - low)) / 2 or 1.0
         camera = Camera.framing(points, FLAT_VIEW if cast.is_flat else VIEW, size)
         sun = SUN @ camera.axes
         sun[2] = max(sun[2], LEAST_SUN_HEIGHT)
-        stage = Stage(floor, centre, radius, sun / np.linalg.norm(sun))
+        stage = Stage(floor, center, radius, sun / np.linalg.norm(sun))
         return cls(cast, camera, stage, _pins(frames, cast), _scale(frames, cast), as_balls)
 
     def look_from(
@@ -99,7 +99,7 @@ class Scene:
 
     def seen_all_around(self) -> Scene:
         """Return the scene with the camera so far back that a turntable shows all of it."""
-        middle, radius = self.stage.centre, self.stage.radius
+        middle, radius = self.stage.center, self.stage.radius
         camera = self.camera
         distance = 1.02 * radius / np.sin(camera.half_angle)
         return replace(
@@ -119,7 +119,7 @@ class Artist:
         self._scene = scene
         mesh = scene.cast.mesh
         self._unwrap = None if mesh is None else Unwrapper(mesh)
-        self._parts = _coloured_parts(scene.cast)
+        self._parts = _colored_parts(scene.cast)
         self._walls: tuple[Drops, Surface] | None = None
 
     def stand_up(self, frame: Frame) -> Props:
@@ -139,7 +139,7 @@ class Artist:
             water = _held_back(water_surface(drops), drops, solids, scene.cast.largest_spacing)
             tint = None if scene.scale is None else _linear(scene.scale.shades(water.values))
         surfaces = [solid.surface for solid in solids]
-        room = (scene.stage.centre, LIT_ROOM * scene.stage.radius)
+        room = (scene.stage.center, LIT_ROOM * scene.stage.radius)
         light = Light.on(surfaces, water, balls, scene.stage.sun, room)
         return Props(solids, balls, water, tint, self._glass(frame), light)
 
@@ -166,16 +166,16 @@ class Artist:
 
     def _pins(self, frame: Frame) -> Balls:
         scene = self._scene
-        centres = scene.cast.upright(scene.cast.mesh.positions(frame)[scene.pinned])
-        radius = np.full(len(centres), PIN_RADIUS * scene.stage.radius)
-        return Balls(centres, radius, np.tile(_linear(PIN_COLOUR), (len(centres), 1)))
+        centers = scene.cast.upright(scene.cast.mesh.positions(frame)[scene.pinned])
+        radius = np.full(len(centers), PIN_RADIUS * scene.stage.radius)
+        return Balls(centers, radius, np.tile(_linear(PIN_COLOR), (len(centers), 1)))
 
     def _water_balls(self, drops: Drops) -> Balls:
         if self._scene.scale is None:
-            colours = np.tile(_linear(BALL_COLOUR), (len(drops.positions), 1))
+            colors = np.tile(_linear(BALL_COLOR), (len(drops.positions), 1))
         else:
-            colours = _linear(self._scene.scale.shades(drops.values))
-        return Balls(drops.positions, 0.55 * drops.spacing, colours)
+            colors = _linear(self._scene.scale.shades(drops.values))
+        return Balls(drops.positions, 0.55 * drops.spacing, colors)
 
     def _glass(self, frame: Frame) -> Surface:
         """Return the surface of boundary particles, which is made anew only if they moved."""
@@ -185,21 +185,21 @@ class Artist:
         return self._walls[1]
 
 
-def _coloured_parts(cast: Cast) -> list[tuple[Refinement, NDArray, NDArray]]:
-    """Return smooth meshes of all cloth and obstacles, one for each pair of colours."""
+def _colored_parts(cast: Cast) -> list[tuple[Refinement, NDArray, NDArray]]:
+    """Return smooth meshes of all cloth and obstacles, one for each pair of colors."""
     if cast.mesh is None:
         return []
     triangles = cast.mesh.triangles
-    colour = cast.mesh.pieces[triangles[:, 0]] % len(CLOTH_COLOURS)
-    colour[~cast.cloth] = -1
-    colours = dict(enumerate(CLOTH_COLOURS)) | {-1: (OBSTACLE_COLOUR, OBSTACLE_COLOUR)}
+    color = cast.mesh.pieces[triangles[:, 0]] % len(CLOTH_COLORS)
+    color[~cast.cloth] = -1
+    colors = dict(enumerate(CLOTH_COLORS)) | {-1: (OBSTACLE_COLOR, OBSTACLE_COLOR)}
     return [
         (
-            Refinement.of(triangles[colour == number], len(cast.mesh.ids), FINE_TRIANGLES),
+            Refinement.of(triangles[color == number], len(cast.mesh.ids), FINE_TRIANGLES),
             *map(_linear, pair),
         )
-        for number, pair in colours.items()
-        if (colour == number).any()
+        for number, pair in colors.items()
+        if (color == number).any()
     ]
 
 
@@ -259,20 +259,20 @@ def _pins(frames: Sequence[Frame], cast: Cast) -> NDArray[np.int64]:
 
 
 def _scale(frames: Sequence[Frame], cast: Cast) -> Scale | None:
-    """Return the range of the coloured quantity that few particles leave."""
-    if cast.colour_by is None:
+    """Return the range of the colored quantity that few particles leave."""
+    if cast.color_by is None:
         return None
     values = [cast.values(frame)[np.isin(frame.types, list(cast.fluid))] for frame in frames]
     values = np.concatenate(values)
     low, high = np.quantile(values, [0.02, 0.98]) if len(values) else (0.0, 1.0)
-    if cast.colour_by == "speed":
+    if cast.color_by == "speed":
         low = 0.0
-    return Scale(cast.colour_by, float(low), float(max(high, low + 1e-12)))
+    return Scale(cast.color_by, float(low), float(max(high, low + 1e-12)))
 
 
 def _within(drops: Drops, stage: Stage) -> Drops:
     """Leave out what is far away: a lost drop would stretch the grid of the surface."""
-    away = np.abs(drops.positions - stage.centre).max(axis=1)
+    away = np.abs(drops.positions - stage.center).max(axis=1)
     near = away < DRAWN_ROOM * stage.radius
     values = None if drops.values is None else drops.values[near]
     return replace(
@@ -315,8 +315,8 @@ def _cells(surface: Surface) -> NDArray[np.float64]:
     return longest
 
 
-def _linear(colour: object) -> NDArray[np.float64]:
-    """Return sRGB colours of any form that matplotlib knows as linear ones, shape (..., 3)."""
-    encoded = colors.to_rgba_array(colour)[:, :3]
+def _linear(color: object) -> NDArray[np.float64]:
+    """Return sRGB colors of any form that matplotlib knows as linear ones, shape (..., 3)."""
+    encoded = colors.to_rgba_array(color)[:, :3]
     linear = np.where(encoded < 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return linear[0] if isinstance(colour, str) else linear
+    return linear[0] if isinstance(color, str) else linear

@@ -1,6 +1,6 @@
 """From surfaces to a picture: cloth, then water in front of it with refraction, then a tone curve.
 
-Colours are linear until the last step.
+Colors are linear until the last step.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ SAMPLES = 2
 PART, THREADS = 32_768, 2
 SUNLIGHT = np.array([1.0, 0.94, 0.84]) * 1.55
 SKYLIGHT_UP, SKYLIGHT_DOWN = np.array([0.50, 0.60, 0.74]), np.array([0.36, 0.33, 0.30])
-FLOOR_COLOUR = np.array([0.31, 0.36, 0.40])
+FLOOR_COLOR = np.array([0.31, 0.36, 0.40])
 BACKDROP_LOW, BACKDROP_HIGH = np.array([0.40, 0.50, 0.57]), np.array([0.10, 0.15, 0.21])
 # its light is looked up in maps of a square around the scene, whose half side is in radii of it,
 # and it fades into the background from a distance on
 SHADOW_TEXELS, SKYLIGHT_TEXELS, FLOOR_REACH = 360, 90, 1.5
 FADE_FROM, FADE_WIDTH = 0.6, 1.6
-# the floor is a little less bright than its colour says: it is the background
+# the floor is a little less bright than its color says: it is the background
 FLOOR_SUN = 0.75
 # light that cloth lets through from its other side
 TRANSMISSION = 0.35
-# of water: share of light that is mirrored at a right angle, refractive index; colour of deep
+# of water: share of light that is mirrored at a right angle, refractive index; color of deep
 # water; and how fast red, green and blue are lost, over the length of the scene
 MIRRORED, INDEX = 0.02, 1.33
 DEEP = np.array([0.012, 0.12, 0.32])
 ABSORPTION = np.array([14.0, 6.0, 2.6])
 # light that grazes cloth, and light of the sun that balls mirror
 SHEEN, GLOSS = 0.10, 0.7
-# walls: their colour, and the share of it seen from in front and added from aside
-GLASS_COLOUR, GLASS_SHARE = np.array([0.75, 0.85, 0.93]), (0.10, 0.6)
+# walls: their color, and the share of it seen from in front and added from aside
+GLASS_COLOR, GLASS_SHARE = np.array([0.75, 0.85, 0.93]), (0.10, 0.6)
 EXPOSURE = 0.72
-# colours of a quantity cover what is behind more than water does
+# colors of a quantity cover what is behind more than water does
 TINT_POWER = 3
 # what is behind all, in distances of the camera
 FAR = 10.0
@@ -58,7 +58,7 @@ FAR = 10.0
 
 @dataclass(frozen=True)
 class Solid:
-    """Something opaque: a surface with a colour on each side, linear, shape (3,) each."""
+    """Something opaque: a surface with a color on each side, linear, shape (3,) each."""
 
     surface: Surface
     front: NDArray[np.float64]
@@ -73,7 +73,7 @@ class Props:
         solids: cloth and obstacles.
         balls: pins, and the water if it is drawn as balls.
         water: its surface.
-        tint: linear colours of its vertices, shape (V, 3); None for water's own.
+        tint: linear colors of its vertices, shape (V, 3); None for water's own.
         walls: the surface of boundary particles, drawn as clear as glass; they cast no shadow.
         light: what reaches all these.
     """
@@ -92,22 +92,22 @@ class Stage:
 
     Attributes:
         floor: height of the floor.
-        centre: the middle of all that is to be seen, shape (3,).
+        center: the middle of all that is to be seen, shape (3,).
         radius: of a ball around it that holds all.
         sun: towards the sun, a unit vector, shape (3,).
     """
 
     floor: float
-    centre: NDArray[np.float64]
+    center: NDArray[np.float64]
     radius: float
     sun: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class _Layer:
-    """Colours, shape (P, 3), and depths, shape (P,), of all pixels; what is added overwrites."""
+    """Colors, shape (P, 3), and depths, shape (P,), of all pixels; what is added overwrites."""
 
-    colour: NDArray[np.float32]
+    color: NDArray[np.float32]
     depth: NDArray[np.float64]
 
 
@@ -124,7 +124,7 @@ def draw(camera: Camera, stage: Stage, props: Props) -> NDArray[np.uint8]:
         _add_water(layer, fine, stage, props)
     if len(props.walls.triangles):
         _add_glass(layer, fine, props.walls)
-    return _develop(layer.colour, camera)
+    return _develop(layer.color, camera)
 
 
 def _backdrop(camera: Camera, stage: Stage, light: Light) -> _Layer:
@@ -133,23 +133,23 @@ def _backdrop(camera: Camera, stage: Stage, light: Light) -> _Layer:
         _floor_map(share, texels, stage)
         for share, texels in ((light.sunshine, SHADOW_TEXELS), (light.skylight, SKYLIGHT_TEXELS))
     ]
-    colour = np.empty((camera.size[0] * camera.size[1], 3), np.float32)
-    depth = np.full(len(colour), np.inf)
+    color = np.empty((camera.size[0] * camera.size[1], 3), np.float32)
+    depth = np.full(len(color), np.inf)
 
     def fill(part: slice) -> None:
-        rays = camera.rays(np.arange(len(colour))[part])
+        rays = camera.rays(np.arange(len(color))[part])
         up = np.clip(0.45 + rays[:, 2] / 0.8, 0, 1)[:, None] ** 2
-        colour[part] = BACKDROP_LOW + up * (BACKDROP_HIGH - BACKDROP_LOW)
+        color[part] = BACKDROP_LOW + up * (BACKDROP_HIGH - BACKDROP_LOW)
         height = stage.floor - camera.position[2]
         hits = np.flatnonzero(rays[:, 2] * height > 0)
         depth[part][hits] = height / rays[hits, 2]
         points = camera.position + depth[part][hits, None] * rays[hits]
-        away = np.linalg.norm(points[:, :2] - stage.centre[:2], axis=1) / stage.radius
+        away = np.linalg.norm(points[:, :2] - stage.center[:2], axis=1) / stage.radius
         fade = np.exp(-((np.maximum(away - FADE_FROM, 0) / FADE_WIDTH) ** 2))[:, None]
-        colour[part][hits] += fade * (_floor(points, maps, stage) - colour[part][hits])
+        color[part][hits] += fade * (_floor(points, maps, stage) - color[part][hits])
 
-    _in_parts(fill, len(colour))
-    return _Layer(_refined(colour, camera), _refined(depth, camera))
+    _in_parts(fill, len(color))
+    return _Layer(_refined(color, camera), _refined(depth, camera))
 
 
 def _in_parts(work: Callable[[slice], None], total: int) -> None:
@@ -166,10 +166,10 @@ def _refined(values: NDArray, camera: Camera) -> NDArray:
 
 
 def _floor(points: NDArray, maps: list[NDArray], stage: Stage) -> NDArray[np.float64]:
-    """Return the colour of the floor at points, shape (N, 3), from maps of its light."""
+    """Return the color of the floor at points, shape (N, 3), from maps of its light."""
     sun, sky = (_between_texels(texels, points, stage)[:, None] for texels in maps)
     # more than half of the sky is dark where something stands: contact shadows
-    return FLOOR_COLOUR * (SUNLIGHT * FLOOR_SUN * stage.sun[2] * sun + SKYLIGHT_UP * sky**1.4)
+    return FLOOR_COLOR * (SUNLIGHT * FLOOR_SUN * stage.sun[2] * sun + SKYLIGHT_UP * sky**1.4)
 
 
 def _floor_map(
@@ -177,7 +177,7 @@ def _floor_map(
 ) -> NDArray[np.float64]:
     """Return a share of light on a square of the floor, shape (texels, texels)."""
     line = np.linspace(-FLOOR_REACH, FLOOR_REACH, texels) * stage.radius
-    x, y = np.meshgrid(line + stage.centre[0], line + stage.centre[1], indexing="ij")
+    x, y = np.meshgrid(line + stage.center[0], line + stage.center[1], indexing="ij")
     places = np.stack([x.ravel(), y.ravel(), np.full(x.size, stage.floor)], axis=1)
     shares = share(places, np.broadcast_to([0.0, 0.0, 1.0], places.shape)).reshape(x.shape)
     # the light comes from a few directions: without a blur each would have an edge of its own
@@ -186,7 +186,7 @@ def _floor_map(
 
 def _between_texels(texels: NDArray, points: NDArray, stage: Stage) -> NDArray[np.float64]:
     """Return the values of a map of the floor at points, shape (N,)."""
-    places = 0.5 + 0.5 * (points[:, :2] - stage.centre[:2]) / (FLOOR_REACH * stage.radius)
+    places = 0.5 + 0.5 * (points[:, :2] - stage.center[:2]) / (FLOOR_REACH * stage.radius)
     return ndimage.map_coordinates(texels, places.T * (len(texels) - 1), order=1, mode="nearest")
 
 
@@ -244,15 +244,15 @@ def _barycentric(points: NDArray, *corners: NDArray) -> tuple[NDArray, NDArray, 
 def _paint(
     layer: _Layer, camera: Camera, visible: Visible, shade: Callable[[_Patch], NDArray]
 ) -> None:
-    """Give the pixels in which something is nearest the colours that ``shade`` returns."""
+    """Give the pixels in which something is nearest the colors that ``shade`` returns."""
     pixel = np.flatnonzero(visible.nearness * layer.depth > 1)
-    colour = np.empty((len(pixel), 3), np.float32)
+    color = np.empty((len(pixel), 3), np.float32)
 
     def fill(part: slice) -> None:
-        colour[part] = shade(_Patch.of(visible, pixel[part], camera))
+        color[part] = shade(_Patch.of(visible, pixel[part], camera))
 
     _in_parts(fill, len(pixel))
-    layer.colour[pixel] = colour
+    layer.color[pixel] = color
     layer.depth[pixel] = 1 / visible.nearness[pixel]
 
 
@@ -273,9 +273,9 @@ def _add_solid(layer: _Layer, camera: Camera, solid: Solid, light: Light) -> Non
         facing = -_dot(_unit(normals), patch.rays)
         front = (facing > 0)[:, None]
         here, beyond = np.where(front, *arriving), np.where(front, *arriving[::-1])
-        colour = np.where(front, solid.front, solid.back)
+        color = np.where(front, solid.front, solid.back)
         sheen = SHEEN * ((1 - np.abs(facing)) ** 4)[:, None]
-        return (colour + sheen) * here + TRANSMISSION * colour**2 * beyond
+        return (color + sheen) * here + TRANSMISSION * color**2 * beyond
 
     _paint(layer, camera, nearest(_triangles(surface, camera), len(layer.depth)), shade)
 
@@ -297,24 +297,24 @@ def _mixed(sun: NDArray, sky: NDArray, normals: NDArray) -> NDArray[np.float64]:
 
 def _add_balls(layer: _Layer, camera: Camera, balls: Balls, light: Light) -> None:
     """Draw balls; the light that reaches a ball is that at its top, the shade follows its shape."""
-    up = np.broadcast_to([0.0, 0.0, 1.0], balls.centres.shape)
-    top = balls.centres + balls.radius[:, None] * up
+    up = np.broadcast_to([0.0, 0.0, 1.0], balls.centers.shape)
+    top = balls.centers + balls.radius[:, None] * up
     sun, sky = light.sunshine(top, up), light.skylight(top, up)
 
     def shade(patch: _Patch) -> NDArray:
-        normals = _unit(patch.points - balls.centres[patch.face])
+        normals = _unit(patch.points - balls.centers[patch.face])
         bright = sun[patch.face]
         toward = bright * np.clip(_along(normals, light.sun), 0, 1)
         gloss = bright * np.clip(_along(_bounced(patch.rays, normals), light.sun), 0, 1) ** 40
         arriving = _mixed(toward, sky[patch.face], normals)
-        return balls.colours[patch.face] * arriving + GLOSS * gloss[:, None]
+        return balls.colors[patch.face] * arriving + GLOSS * gloss[:, None]
 
     _paint(layer, camera, nearest(_discs(balls, camera), len(layer.depth)), shade)
 
 
 def _discs(balls: Balls, camera: Camera) -> Iterator[Fragments]:
     """Yield the fragments of balls as a camera sees them."""
-    places, near = camera.project(balls.centres)
+    places, near = camera.project(balls.centers)
     reach = np.nan_to_num(camera.focal * balls.radius * near)
     for discs in disc_fragments(places, reach, camera.shape):
         depth = 1 / near[discs.disc] - balls.radius[discs.disc] * discs.bulge
@@ -322,7 +322,7 @@ def _discs(balls: Balls, camera: Camera) -> Iterator[Fragments]:
 
 
 def _add_water(layer: _Layer, camera: Camera, stage: Stage, props: Props) -> None:
-    """Draw water: what is behind, bent and dimmed by it, its own colour, and what it mirrors."""
+    """Draw water: what is behind, bent and dimmed by it, its own color, and what it mirrors."""
     water, thickness = props.water, np.zeros(len(layer.depth))
     visible = nearest(_measured(water, camera, layer.depth, thickness), len(layer.depth))
 
@@ -366,7 +366,7 @@ def _measured(
 def _refracted(
     layer: _Layer, camera: Camera, patch: _Patch, normals: NDArray, path: NDArray
 ) -> NDArray[np.float32]:
-    """Return the colours behind water, looked up where refraction leads."""
+    """Return the colors behind water, looked up where refraction leads."""
     aside = (1 / INDEX - 1) * in_axes(normals, camera.axes[:2]) * path[:, None]
     shift = aside * (camera.focal / (patch.depth + path))[:, None]
     row, column = np.divmod(patch.pixel, camera.size[0])
@@ -374,7 +374,7 @@ def _refracted(
     row = np.clip(row - np.round(shift[:, 1]).astype(np.int64), 0, camera.size[1] - 1)
     there = row * camera.size[0] + column
     # what is nearer than the water does not show through it
-    return layer.colour[np.where(layer.depth[there] > patch.depth, there, patch.pixel)]
+    return layer.color[np.where(layer.depth[there] > patch.depth, there, patch.pixel)]
 
 
 def _glow(normals: NDArray, stage: Stage) -> NDArray[np.float64]:
@@ -390,15 +390,15 @@ def _add_glass(layer: _Layer, camera: Camera, walls: Surface) -> None:
         (normals,) = patch.interpolated(walls, walls.normals)
         aside = 1 - np.abs(_dot(_unit(normals), patch.rays))
         share = (GLASS_SHARE[0] + GLASS_SHARE[1] * aside**3)[:, None]
-        colour = layer.colour[patch.pixel]
-        return colour + share * (GLASS_COLOUR - colour)
+        color = layer.color[patch.pixel]
+        return color + share * (GLASS_COLOR - color)
 
     _paint(layer, camera, nearest(_triangles(walls, camera), len(layer.depth)), shade)
 
 
-def _develop(colour: NDArray, camera: Camera) -> NDArray[np.uint8]:
-    """Return a picture from linear colours: a tone curve that keeps highlights, then sRGB."""
-    rows = colour.reshape(*camera.shape[:1], -1)
+def _develop(color: NDArray, camera: Camera) -> NDArray[np.uint8]:
+    """Return a picture from linear colors: a tone curve that keeps highlights, then sRGB."""
+    rows = color.reshape(*camera.shape[:1], -1)
     # a grain of less than a step of the 256 hides the steps in the sky
     grain = np.random.default_rng(0).random((*camera.shape, 1), np.float32) - 0.5
     picture = np.empty((*camera.shape, 3), np.uint8)

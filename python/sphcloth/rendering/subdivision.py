@@ -61,7 +61,7 @@ def _divide(triangles: NDArray, n: int) -> tuple[sparse.csr_array, NDArray[np.in
 
 
 def _vertex_weights(edges: NDArray, sides: NDArray, n: int) -> sparse.csr_array:
-    """Return the weights of the old vertices: each moves towards the mean of its neighbours."""
+    """Return the weights of the old vertices: each moves towards the mean of its neighbors."""
     start, end = np.concatenate([edges, edges[:, ::-1]]).T
     links = sparse.coo_array((np.ones(len(start)), (start, end)), shape=(n, n)).tocsr()
     valence = np.maximum(links.sum(axis=1), 1)

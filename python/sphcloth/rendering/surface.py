@@ -7,7 +7,7 @@ water ends, and gives a single particle the volume that it stands for.
 
 Sums over particles are moments on a grid: deposited on the eight nodes around each particle, then
 smoothed one axis after another. That takes time in proportion to particles and nodes, and none
-for searching neighbours.
+for searching neighbors.
 """
 
 from __future__ import annotations
@@ -337,21 +337,21 @@ def _contour(distance: NDArray[np.float32], grid: _Grid) -> Surface:
 
 
 def smoothed(surface: Surface, rounds: int = SMOOTHING_ROUNDS) -> Surface:
-    """Return the surface with its vertices drawn towards their neighbours and back, in turn.
+    """Return the surface with its vertices drawn towards their neighbors and back, in turn.
 
     Every other round goes back by a little more, so that drops do not shrink (Taubin, SIGGRAPH
     1995).
     """
     n = len(surface.points)
-    mean = _neighbour_mean(surface.triangles, n)
+    mean = _neighbor_mean(surface.triangles, n)
     points = surface.points
     for number in range(rounds):
         points = points + (0.55, -0.57)[number % 2] * (mean @ points - points)
     return replace(surface, points=points, normals=vertex_normals(points, surface.triangles))
 
 
-def _neighbour_mean(triangles: NDArray, n: int) -> sparse.csr_array:
-    """Return the matrix that takes the mean over the neighbours of each of n vertices."""
+def _neighbor_mean(triangles: NDArray, n: int) -> sparse.csr_array:
+    """Return the matrix that takes the mean over the neighbors of each of n vertices."""
     start = triangles.ravel()
     end = np.roll(triangles, -1, axis=1).ravel()
     ones = np.ones(2 * len(start))

@@ -14,9 +14,9 @@ from sphcloth import metrics, plots
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.log import ThermoTable
-from sphcloth.rendering.cast import Cast, Choice
 from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
 from sphcloth.rendering.movie import write_pictures
+from sphcloth.rendering.scene_roles import Choice, SceneRoles
 from sphcloth.results import text, versions, write_json
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
@@ -127,9 +127,9 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
     table = ThermoTable.read(folder / "log.lammps")
     trajectory = Trajectory(folder / f"{name}.lammpstrj", folder / "log.lammps")
     roles = Roles.read(folder / f"{name}.data")
-    cast = Cast.of(samples(trajectory), roles, Choice())
+    scene_roles = SceneRoles.of(samples(trajectory), roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
-    water = Water.of(trajectory, cast, table if can_balance else None, roles.rest_density)
+    water = Water.of(trajectory, scene_roles, table if can_balance else None, roles.rest_density)
     poured = _last_count(table, "v_poured")
     can_count = "v_updates" in table or "v_fluid" in table
     updates = metrics.particle_updates(table) if can_count else None
@@ -148,7 +148,7 @@ def summarise(folder: Path, name: str, frames: int | None) -> Summary:
         contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
         particle_updates=updates,
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
-        pictures=[] if frames is None else draw(trajectory, cast, table, folder, frames),
+        pictures=[] if frames is None else draw(trajectory, scene_roles, table, folder, frames),
         versions=versions(),
         unused=unused(Evidence.of_log(folder / "log.lammps")),
     )
@@ -175,19 +175,19 @@ class Water:
     def of(
         cls,
         trajectory: Trajectory,
-        cast: Cast,
+        scene_roles: SceneRoles,
         table: ThermoTable | None,
         rest_density: Mapping[int, float],
     ) -> Water:
         """Follow all water through a dump; with a table, check that all of it is there."""
-        if cast.mesh is None or not cast.fluid:
+        if scene_roles.mesh is None or not scene_roles.fluid:
             return cls()
-        last, mesh = trajectory[-1], cast.mesh
-        above = [metrics.above_sheet(mesh, last, kind) for kind in cast.fluid]
+        last, mesh = trajectory[-1], scene_roles.mesh
+        above = [metrics.above_sheet(mesh, last, kind) for kind in scene_roles.fluid]
         densities = Densities(rest_density)
         passes = []
-        for kind in cast.fluid:
-            frames = _counted(trajectory, table, cast.fluid)
+        for kind in scene_roles.fluid:
+            frames = _counted(trajectory, table, scene_roles.fluid)
             seen = frames if passes else densities.watch(frames)
             passes.append(metrics.crossings(mesh, seen, kind))
         steps = np.unique(np.concatenate([one.steps for one in passes]))
@@ -235,11 +235,11 @@ def _counted(
 
 
 def draw(
-    trajectory: Trajectory, cast: Cast, table: ThermoTable, folder: Path, frames: int
+    trajectory: Trajectory, scene_roles: SceneRoles, table: ThermoTable, folder: Path, frames: int
 ) -> list[str]:
     """Draw the contact sheet, the plot and evenly spaced frames; return the paths as text."""
     chosen = evenly_spaced(len(trajectory), frames)
-    scene = make_scene(samples(trajectory), cast)
+    scene = make_scene(samples(trajectory), scene_roles)
     images = draw_frames(trajectory, scene, chosen)
     pictures = list(write_pictures(images, "png", folder / "pictures", ""))
     sheet, history = folder / "contact_sheet.png", folder / "history.png"

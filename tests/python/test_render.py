@@ -20,12 +20,12 @@ from sphcloth.errors import UserError
 from sphcloth.plots import contact_sheet
 from sphcloth.rendering import command, light, movie, scene, shading
 from sphcloth.rendering.camera import Camera, ParallelView
-from sphcloth.rendering.cast import Cast, Choice
-from sphcloth.rendering.light import Balls, Light
+from sphcloth.rendering.light import Light, Spheres
 from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
 from sphcloth.rendering.scene import Scene
+from sphcloth.rendering.scene_roles import Choice, SceneRoles
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Drops, Surface, water_surface
+from sphcloth.rendering.surface import Particles, Surface, water_surface
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame
 
@@ -51,7 +51,7 @@ def block(
 
 def surface_of(positions: np.ndarray, spacing: float = 1.0) -> Surface:
     positions = np.asarray(positions, float)
-    return water_surface(Drops(positions, np.full(len(positions), spacing)))
+    return water_surface(Particles(positions, np.full(len(positions), spacing)))
 
 
 def volume(surface: Surface) -> float:
@@ -101,14 +101,14 @@ def test_bodies_of_water_that_are_apart_stay_so(gap: float, parts: int) -> None:
 def test_water_of_two_resolutions_is_one_body() -> None:
     coarse, fine = block(6), block(12, 0.5, (6, 0, 0))
     spacing = np.repeat([1.0, 0.5], [len(coarse), len(fine)])
-    surface = water_surface(Drops(np.concatenate([coarse, fine]), spacing))
+    surface = water_surface(Particles(np.concatenate([coarse, fine]), spacing))
     assert bodies(surface) == 1
     assert volume(surface) == pytest.approx(432, rel=0.08)
 
 
 def test_values_are_carried_to_the_surface() -> None:
     positions = block(8)
-    surface = water_surface(Drops(positions, np.ones(512), positions[:, 0]))
+    surface = water_surface(Particles(positions, np.ones(512), positions[:, 0]))
     x = surface.points[:, 0]
     inner = abs(x - 4) < 2
     np.testing.assert_allclose(surface.values[inner], x[inner], atol=0.3)
@@ -118,7 +118,7 @@ def test_no_particles_no_surface() -> None:
     assert len(surface_of(np.zeros((0, 3))).triangles) == 0
 
 
-# triangles and balls to pixels
+# triangles and spheres to pixels
 
 
 def test_pixels_belong_to_the_triangle_that_holds_their_middle() -> None:
@@ -186,21 +186,21 @@ def test_a_turned_camera_keeps_its_distance_and_height() -> None:
     np.testing.assert_allclose(turned.position, [-3, 6, 2])
 
 
-def lit(solids: list[Surface], balls: list[Balls]) -> Light:
+def lit(solids: list[Surface], spheres: list[Spheres]) -> Light:
     sun = np.array([0.0, 0.0, 1.0])
-    return Light.on(solids, Surface.empty(), balls, sun, (np.array([0.5, 0.5, 0]), 3.0))
+    return Light.on(solids, Surface.empty(), spheres, sun, (np.array([0.5, 0.5, 0]), 3.0))
 
 
-@pytest.mark.parametrize("as_ball", [False, True])
-def test_things_cast_shadows(as_ball: bool) -> None:
+@pytest.mark.parametrize("as_sphere", [False, True])
+def test_things_cast_shadows(as_sphere: bool) -> None:
     fine = Refinement.of(MESH.triangles, len(SHEET), 100_000)
     sheet = Surface.of(fine.weights @ SHEET + [0, 0, 1], fine.triangles)
-    ball = Balls(np.array([[0.5, 0.5, 1.0]]), np.array([0.5]), np.ones((1, 3)))
-    lamp = lit([], [ball]) if as_ball else lit([sheet], [])
+    ball = Spheres(np.array([[0.5, 0.5, 1.0]]), np.array([0.5]), np.ones((1, 3)))
+    lamp = lit([], [ball]) if as_sphere else lit([sheet], [])
     points = np.array([[0.5, 0.5, 0], [2.0, 0.5, 0]])
     up = np.tile([0.0, 0.0, 1.0], (2, 1))
     np.testing.assert_allclose(lamp.sunshine(points, up), [0, 1])
-    if not as_ball:
+    if not as_sphere:
         dark, bright = lamp.skylight(points, up)
         assert dark < 0.8 < bright
     # beyond the map there is nothing in the way
@@ -248,13 +248,13 @@ def frames() -> list[Frame]:
 def scene_of(
     shown: list[Frame], choice: Choice | None = None, mesh: object = MESH, **options: object
 ) -> Scene:
-    cast = Cast.of(shown, Roles(mesh=mesh), choice or Choice())
-    return Scene.of(shown, cast, SIZE, **options)
+    roles = SceneRoles.of(shown, Roles(mesh=mesh), choice or Choice())
+    return Scene.of(shown, roles, SIZE, **options)
 
 
-def picture(stage: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
-    artist = stage.artist()
-    return artist.picture(artist.stand_up(frame), angle)
+def picture(whole: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
+    renderer = whole.renderer()
+    return renderer.picture(renderer.geometry_of(frame), angle)
 
 
 def share_of(image: np.ndarray, hue: float, least_saturation: float = 0.25) -> float:
@@ -266,19 +266,19 @@ def share_of(image: np.ndarray, hue: float, least_saturation: float = 0.25) -> f
 BLUE, SAND, RUST = 0.53, 0.1, 0.04
 
 
-@pytest.mark.parametrize("as_balls", [False, True])
-def test_cloth_and_water_are_in_the_picture(as_balls: bool) -> None:
-    stage = scene_of(frames(), as_balls=as_balls)
-    dry, wet = (picture(stage, frame) for frame in frames())
+@pytest.mark.parametrize("as_spheres", [False, True])
+def test_cloth_and_water_are_in_the_picture(as_spheres: bool) -> None:
+    whole = scene_of(frames(), as_spheres=as_spheres)
+    dry, wet = (picture(whole, frame) for frame in frames())
     assert dry.shape == wet.shape == (*SIZE[::-1], 3)
     assert share_of(dry, SAND, 0.05) > 0.1
     assert share_of(wet, BLUE, 0.35) > share_of(dry, BLUE, 0.35) + 0.01
 
 
 def test_the_two_sides_of_cloth_differ() -> None:
-    stage = scene_of(frames())
-    above = picture(stage, frames()[0])
-    low = stage.look_from(np.array([0.5, 0.4, -0.09]), np.array([0.5, 0.5, 0.0]))
+    whole = scene_of(frames())
+    above = picture(whole, frames()[0])
+    low = whole.look_from(np.array([0.5, 0.4, -0.09]), np.array([0.5, 0.5, 0.0]))
     assert share_of(picture(low, frames()[0]), RUST, 0.5) > 0.3 > share_of(above, RUST, 0.5)
 
 
@@ -289,7 +289,7 @@ def test_pins_are_the_vertices_that_never_move() -> None:
 
 def test_water_ends_at_the_sheet() -> None:
     flat = make_frame(0, block(5, 0.08, (0.3, 0.3, 0.0)), SHEET)
-    surface = scene_of([flat]).artist().stand_up(flat).water
+    surface = scene_of([flat]).renderer().geometry_of(flat).water
     # nodes of the grid are a quarter of the spacing apart, and the last smoothing moves them
     assert surface.points[:, 2].min() > -0.005
     assert surface.points[:, 2].max() > 0.38
@@ -297,29 +297,29 @@ def test_water_ends_at_the_sheet() -> None:
 
 def test_a_piece_that_rests_is_an_obstacle_unless_it_is_said_to_be_cloth() -> None:
     still = [replace(frames()[0], step=step) for step in (0, 1)]
-    cast = Cast.of(still, Roles(mesh=MESH), Choice(fluid=frozenset({2})))
-    assert not cast.cloth.any()
-    assert scene_of(frames()).cast.cloth.all()
+    roles = SceneRoles.of(still, Roles(mesh=MESH), Choice(fluid=frozenset({2})))
+    assert not roles.cloth.any()
+    assert scene_of(frames()).roles.cloth.all()
 
 
 def test_particles_that_never_move_are_walls() -> None:
     wall = np.stack([np.linspace(0, 1, 12), np.zeros(12), np.zeros(12)], axis=1)
     first = make_frame(0, block(3, 0.1), wall)
     second = make_frame(1, block(3, 0.1) + 0.01, wall)
-    cast = Cast.of([first, second], Roles(), Choice())
-    assert (cast.fluid, cast.walls) == (frozenset({1}), frozenset({2}))
-    stage = Scene.of([first, second], cast, SIZE)
-    artist = stage.artist()
-    assert len(artist.stand_up(first).walls.triangles)
-    assert picture(stage, first).shape
+    roles = SceneRoles.of([first, second], Roles(), Choice())
+    assert (roles.fluid, roles.walls) == (frozenset({1}), frozenset({2}))
+    whole = Scene.of([first, second], roles, SIZE)
+    renderer = whole.renderer()
+    assert len(renderer.geometry_of(first).walls.triangles)
+    assert picture(whole, first).shape
 
 
 def test_a_scene_of_two_dimensions_stands_upright() -> None:
     x, y = np.meshgrid(np.arange(8) * 0.1, np.arange(4) * 0.1)
     flat = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
-    stage = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
-    assert stage.cast.is_flat
-    water = stage.artist().stand_up(make_frame(0, flat, np.zeros((0, 3)))).water
+    whole = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
+    assert whole.roles.is_flat
+    water = whole.renderer().geometry_of(make_frame(0, flat, np.zeros((0, 3)))).water
     low, high = water.points.min(axis=0), water.points.max(axis=0)
     np.testing.assert_allclose(high[2] - low[2], 0.4, atol=0.04)
     np.testing.assert_allclose(high[0] - low[0], 0.8, atol=0.04)
@@ -331,8 +331,8 @@ def test_water_goes_on_across_a_periodic_boundary() -> None:
     layer = layer[layer[:, 2] < 3]
     frame = make_frame(0, layer, np.zeros((0, 3)))
     frame = replace(frame, box=np.array([[0.0] * 3, [6.0] * 3]), periodic=(True, True, False))
-    stage = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
-    water = stage.artist().stand_up(frame).water
+    whole = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
+    water = whole.renderer().geometry_of(frame).water
     np.testing.assert_allclose(water.points[:, 0].min(), 0, atol=0.1)
     near_the_end = abs(water.points[:, 0] - 0.6) < 0.2
     inner = near_the_end & (abs(water.points[:, 1] - 3) < 2) & (water.points[:, 2] > 1.5)
@@ -343,10 +343,10 @@ def test_colors_show_a_quantity_with_a_scale() -> None:
     frame = frames()[1]
     speed = dict(zip(("vx", "vy", "vz"), np.tile(frame.positions[:, 0], (3, 1)), strict=True))
     fast = replace(frame, columns=frame.columns | speed)
-    stage = scene_of([fast], Choice(color_by="speed"))
-    assert stage.scale is not None
-    assert stage.scale.low == 0 < stage.scale.high
-    green = [share_of(picture(one, fast), 0.3, 0.3) for one in (stage, scene_of([fast]))]
+    whole = scene_of([fast], Choice(color_by="speed"))
+    assert whole.scale is not None
+    assert whole.scale.low == 0 < whole.scale.high
+    green = [share_of(picture(one, fast), 0.3, 0.3) for one in (whole, scene_of([fast]))]
     assert green[0] > 0.002 > green[1]
     with pytest.raises(UserError, match="no column vx vy vz"):
         scene_of(frames(), Choice(color_by="speed"))
@@ -357,14 +357,14 @@ def test_a_lost_drop_changes_nothing() -> None:
     lost, kept = (
         replace(make_frame(1, part, SHEET), periodic=(False,) * 3) for part in (water, water[:-1])
     )
-    stage = scene_of([frames()[0], lost])
-    np.testing.assert_array_equal(picture(stage, lost), picture(stage, kept))
+    whole = scene_of([frames()[0], lost])
+    np.testing.assert_array_equal(picture(whole, lost), picture(whole, kept))
 
 
 @pytest.mark.parametrize("fluid", [[[np.nan, 0, 0]], [[0, np.inf, 0]]])
 def test_positions_must_be_finite(fluid: list[list[float]]) -> None:
     with pytest.raises(UserError, match="not finite at step 3"):
-        scene_of(frames()).artist().stand_up(make_frame(3, fluid, SHEET))
+        scene_of(frames()).renderer().geometry_of(make_frame(3, fluid, SHEET))
 
 
 # the command

@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.progress import track
 
 from sphcloth.errors import UserError
-from sphcloth.rendering.cast import QUANTITIES, Cast, Choice
 from sphcloth.rendering.movie import check_format, write_pictures
 from sphcloth.rendering.scene import Scene
+from sphcloth.rendering.scene_roles import QUANTITIES, Choice, SceneRoles
 from sphcloth.roles import Roles, parse_types
 from sphcloth.trajectory import Frame, Trajectory
 
@@ -81,7 +81,7 @@ class View:
         target: ``x,y,z`` of the middle of the picture.
         turntable: whether the camera walks around the scene once.
         size: ``WIDTHxHEIGHT`` in pixels.
-        spheres: whether water is drawn as balls.
+        spheres: whether water is drawn as spheres.
     """
 
     camera: str | None = None
@@ -134,7 +134,7 @@ def samples(trajectory: Trajectory) -> list[Frame]:
     return [trajectory[index] for index in evenly_spaced(len(trajectory), SAMPLE)]
 
 
-def make_scene(frames: Sequence[Frame], cast: Cast, view: View | None = None) -> Scene:
+def make_scene(frames: Sequence[Frame], roles: SceneRoles, view: View | None = None) -> Scene:
     """Choose what all pictures of a dump share, from some of its frames.
 
     Raises:
@@ -142,7 +142,7 @@ def make_scene(frames: Sequence[Frame], cast: Cast, view: View | None = None) ->
     """
     view = view or View()
     camera, target = _parse_place(view.camera, "--camera"), _parse_place(view.target, "--target")
-    scene = Scene.of(frames, cast, parse_size(view.size), view.spheres)
+    scene = Scene.of(frames, roles, parse_size(view.size), view.spheres)
     if camera is None and target is None:
         return scene.seen_all_around() if view.turntable else scene
     if view.turntable:
@@ -157,14 +157,14 @@ def draw_frames(
 
     On a turntable the camera goes once around; a single frame gives ``TURNTABLE_VIEWS`` pictures.
     """
-    artist = scene.artist()
+    renderer = scene.renderer()
     views = TURNTABLE_VIEWS if turntable and len(numbers) == 1 else 1
     total = views * len(numbers)
     for place, number in enumerate(numbers):
-        props = artist.stand_up(trajectory[number])
+        geometry = renderer.geometry_of(trajectory[number])
         for view in range(views):
             angle = 2 * np.pi * (place * views + view) / total if turntable else 0.0
-            yield artist.picture(props, angle)
+            yield renderer.picture(geometry, angle)
 
 
 def render(
@@ -200,7 +200,7 @@ def render(
     numbers = frames.choose(trajectory)
     roles = Roles.read(data) if data else Roles.beside(dump)
     some = samples(trajectory)
-    scene = make_scene(some, Cast.of(some, roles, choice), view)
+    scene = make_scene(some, SceneRoles.of(some, roles, choice), view)
     total = TURNTABLE_VIEWS if view.turntable and len(numbers) == 1 else len(numbers)
     start = time.perf_counter()
     pictures = track(

@@ -33,8 +33,8 @@ GROUND, HORIZON, ZENITH = (
 
 
 @dataclass(frozen=True)
-class Balls:
-    """Balls of one or many colors.
+class Spheres:
+    """Spheres of one or many colors.
 
     Attributes:
         centers: shape (N, 3).
@@ -66,14 +66,14 @@ class Light:
         cls,
         solids: Sequence[Surface],
         water: Surface,
-        balls: Sequence[Balls],
+        spheres: Sequence[Spheres],
         sun: NDArray[np.float64],
         room: tuple[NDArray[np.float64], float],
     ) -> Light:
-        """Cast light on surfaces and balls in a room: a ball, its center and radius."""
+        """Cast light on surfaces and spheres in a room: a sphere, its center and radius."""
         view = ParallelView(sun, *room, SUN_PIXELS)
-        maps = (_ShadowMap.of(view, solids, balls), _ShadowMap.of(view, [water], []))
-        parts = [*(solid.points for solid in solids), *(part.centers for part in balls)]
+        maps = (_ShadowMap.of(view, solids, spheres), _ShadowMap.of(view, [water], []))
+        parts = [*(solid.points for solid in solids), *(part.centers for part in spheres)]
         grains = np.concatenate([np.zeros((0, 3)), *parts])
         sky = []
         for direction in sky_directions(SKY_DIRECTIONS):
@@ -113,7 +113,7 @@ class _ShadowMap:
 
     @classmethod
     def of(
-        cls, view: ParallelView, surfaces: Sequence[Surface], balls: Sequence[Balls]
+        cls, view: ParallelView, surfaces: Sequence[Surface], spheres: Sequence[Spheres]
     ) -> _ShadowMap:
         nearness = np.full(view.pixels**2, -np.inf)
         for surface in surfaces:
@@ -121,7 +121,7 @@ class _ShadowMap:
             corners = surface.triangles
             parts = triangle_fragments(places[corners], near[corners], view.shape)
             np.maximum(nearness, nearest(parts, len(nearness)).nearness, out=nearness)
-        for part in balls:
+        for part in spheres:
             places, near = view.project(part.centers)
             for discs in disc_fragments(places, part.radius / view.pixel, view.shape):
                 top = near[discs.disc] + part.radius[discs.disc] * discs.bulge

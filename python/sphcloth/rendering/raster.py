@@ -1,4 +1,4 @@
-"""Triangles and balls to pixels, line by line, in whole arrays.
+"""Triangles and spheres to pixels, line by line, in whole arrays.
 
 A triangle becomes the rows of pixels between its lowest and highest corner, a row the pixels
 between the two edges there. Pixels belong to the triangle that holds their middle; neighbors
@@ -22,7 +22,7 @@ class Fragments:
     """Pixels that faces cover; F of them, a pixel as often as there are faces over it.
 
     Attributes:
-        face: which triangle or ball, shape (F,).
+        face: which triangle or sphere, shape (F,).
         pixel: numbered by rows, shape (F,).
         nearness: larger is nearer, shape (F,).
     """
@@ -83,7 +83,7 @@ class Discs:
     Attributes:
         disc: which one, shape (F,).
         pixel: numbered by rows, shape (F,).
-        bulge: how far a ball stands out there over the disc, of its radius, shape (F,).
+        bulge: how far a sphere stands out there over the disc, of its radius, shape (F,).
     """
 
     disc: NDArray[np.int64]

@@ -13,18 +13,18 @@ from scipy.spatial import cKDTree
 from sphcloth.errors import UserError
 from sphcloth.meshing.sequence import Unwrapper
 from sphcloth.rendering.camera import Camera
-from sphcloth.rendering.cast import Cast, check_positions
 from sphcloth.rendering.legend import Scale, add_scale
-from sphcloth.rendering.light import Balls, Light
-from sphcloth.rendering.shading import Props, Solid, Stage, draw
+from sphcloth.rendering.light import Light, Spheres
+from sphcloth.rendering.scene_roles import SceneRoles, check_positions
+from sphcloth.rendering.shading import Environment, Geometry, Solid, draw
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Drops, Surface, smoothed, water_surface
+from sphcloth.rendering.surface import Particles, Surface, smoothed, water_surface
 from sphcloth.trajectory import Frame
 
-# front and back of each piece of cloth, in turn; then of obstacles, pins and balls of water
+# front and back of each piece of cloth, in turn; then of obstacles, pins and spheres of water
 CLOTH_COLORS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
 OBSTACLE_COLOR, PIN_COLOR = "#b9bcc2", "#8c2f25"
-BALL_COLOR = "#2f7fd0"
+SPHERE_COLOR = "#2f7fd0"
 
 PIN_RADIUS = 0.006  # of the scene
 # from the scene to the camera; of a two-dimensional scene almost straight in front of it
@@ -35,7 +35,7 @@ SUN, LEAST_SUN_HEIGHT = np.array([-0.5, 0.8, 0.3]), 1.05
 MOST_WATER = (0.1, 0.9)
 # triangles of cloth, after they have been made smooth by subdivision
 FINE_TRIANGLES = 100_000
-# how far around what is to be seen water is drawn, and light is followed, in radii of the stage
+# how far around the scene water is drawn, and light is followed, in radii of the scene
 DRAWN_ROOM, LIT_ROOM = 3.0, 1.25
 # of a sheet, in spacings of the water: water keeps this distance, and is looked for so far
 SKIN, GRIP = 0.03, 1.0
@@ -48,39 +48,41 @@ class Scene:
     """What all pictures of a dump share.
 
     Attributes:
-        cast: who plays what.
+        roles: what each atom is drawn as.
         camera: the view; a turntable turns it.
-        stage: the floor, the room and the sun.
+        environment: the floor, the room and the sun.
         pinned: indices of the vertices that never move, shape (K,).
         scale: values of the colors of water, or None for water's own.
-        as_balls: whether water is drawn as balls.
+        as_spheres: whether water is drawn as spheres.
     """
 
-    cast: Cast
+    roles: SceneRoles
     camera: Camera
-    stage: Stage
+    environment: Environment
     pinned: NDArray[np.int64]
     scale: Scale | None
-    as_balls: bool
+    as_spheres: bool
 
     @classmethod
     def of(
         cls,
         frames: Sequence[Frame],
-        cast: Cast,
+        roles: SceneRoles,
         size: tuple[int, int] = (1280, 960),
-        as_balls: bool = False,
+        as_spheres: bool = False,
     ) -> Scene:
         """Choose one view, floor and color scale for a dump, from some of its frames."""
-        points, floor = _framed(frames, cast)
+        points, floor = _framed(frames, roles)
         low, high = points.min(axis=0), points.max(axis=0)
         center = (low + high) / 2
         radius = float(np.linalg.norm(high - low)) / 2 or 1.0
-        camera = Camera.framing(points, FLAT_VIEW if cast.is_flat else VIEW, size)
+        camera = Camera.framing(points, FLAT_VIEW if roles.is_flat else VIEW, size)
         sun = SUN @ camera.axes
         sun[2] = max(sun[2], LEAST_SUN_HEIGHT)
-        stage = Stage(floor, center, radius, sun / np.linalg.norm(sun))
-        return cls(cast, camera, stage, _pins(frames, cast), _scale(frames, cast), as_balls)
+        environment = Environment(floor, center, radius, sun / np.linalg.norm(sun))
+        return cls(
+            roles, camera, environment, _pins(frames, roles), _scale(frames, roles), as_spheres
+        )
 
     def look_from(
         self, position: NDArray[np.float64] | None, target: NDArray[np.float64] | None
@@ -99,30 +101,30 @@ class Scene:
 
     def seen_all_around(self) -> Scene:
         """Return the scene with the camera so far back that a turntable shows all of it."""
-        middle, radius = self.stage.center, self.stage.radius
+        middle, radius = self.environment.center, self.environment.radius
         camera = self.camera
         distance = 1.02 * radius / np.sin(camera.half_angle)
         return replace(
             self, camera=replace(camera, position=middle + distance * camera.axes[2], target=middle)
         )
 
-    def artist(self) -> Artist:
+    def renderer(self) -> Renderer:
         """Return what draws frames, in the order of the dump."""
-        return Artist(self)
+        return Renderer(self)
 
 
-class Artist:
+class Renderer:
     """Draws frames of a scene, one after another."""
 
     def __init__(self, scene: Scene) -> None:
         """Take the scene; sheets that reach through a periodic boundary are followed."""
         self._scene = scene
-        mesh = scene.cast.mesh
+        mesh = scene.roles.mesh
         self._unwrap = None if mesh is None else Unwrapper(mesh)
-        self._parts = _colored_parts(scene.cast)
-        self._walls: tuple[Drops, Surface] | None = None
+        self._parts = _colored_parts(scene.roles)
+        self._walls: tuple[Particles, Surface] | None = None
 
-    def stand_up(self, frame: Frame) -> Props:
+    def geometry_of(self, frame: Frame) -> Geometry:
         """Make the surfaces of a frame.
 
         Raises:
@@ -130,72 +132,74 @@ class Artist:
         """
         scene = self._scene
         solids = self._solids(frame)
-        balls = [self._pins(frame)] if len(scene.pinned) else []
-        drops = _within(scene.cast.water(frame), scene.stage)
+        spheres = [self._pins(frame)] if len(scene.pinned) else []
+        particles = _within(scene.roles.water(frame), scene.environment)
         water, tint = Surface.empty(), None
-        if scene.as_balls:
-            balls.append(self._water_balls(drops))
+        if scene.as_spheres:
+            spheres.append(self._water_spheres(particles))
         else:
-            water = _held_back(water_surface(drops), drops, solids, scene.cast.largest_spacing)
+            water = _held_back(
+                water_surface(particles), particles, solids, scene.roles.largest_spacing
+            )
             tint = None if scene.scale is None else _linear(scene.scale.shades(water.values))
         surfaces = [solid.surface for solid in solids]
-        room = (scene.stage.center, LIT_ROOM * scene.stage.radius)
-        light = Light.on(surfaces, water, balls, scene.stage.sun, room)
-        return Props(solids, balls, water, tint, self._glass(frame), light)
+        room = (scene.environment.center, LIT_ROOM * scene.environment.radius)
+        light = Light.on(surfaces, water, spheres, scene.environment.sun, room)
+        return Geometry(solids, spheres, water, tint, self._glass(frame), light)
 
-    def picture(self, props: Props, angle: float = 0.0) -> NDArray[np.uint8]:
+    def picture(self, geometry: Geometry, angle: float = 0.0) -> NDArray[np.uint8]:
         """Draw surfaces with the camera walked around by an angle, in radians.
 
         Returns:
             The picture, shape (height, width, 3).
         """
         scene = self._scene
-        picture = draw(scene.camera.turned(angle), scene.stage, props)
+        picture = draw(scene.camera.turned(angle), scene.environment, geometry)
         return picture if scene.scale is None else add_scale(picture, scene.scale)
 
     def _solids(self, frame: Frame) -> list[Solid]:
         """Return cloth and obstacles of a frame."""
         if self._unwrap is None:
             return []
-        points = self._scene.cast.upright(self._unwrap(frame))
+        points = self._scene.roles.upright(self._unwrap(frame))
         check_positions(points, frame)
         return [
             Solid(Surface.of(fine.weights @ points, fine.triangles), front, back)
             for fine, front, back in self._parts
         ]
 
-    def _pins(self, frame: Frame) -> Balls:
+    def _pins(self, frame: Frame) -> Spheres:
         scene = self._scene
-        centers = scene.cast.upright(scene.cast.mesh.positions(frame)[scene.pinned])
-        radius = np.full(len(centers), PIN_RADIUS * scene.stage.radius)
-        return Balls(centers, radius, np.tile(_linear(PIN_COLOR), (len(centers), 1)))
+        centers = scene.roles.upright(scene.roles.mesh.positions(frame)[scene.pinned])
+        radius = np.full(len(centers), PIN_RADIUS * scene.environment.radius)
+        return Spheres(centers, radius, np.tile(_linear(PIN_COLOR), (len(centers), 1)))
 
-    def _water_balls(self, drops: Drops) -> Balls:
+    def _water_spheres(self, particles: Particles) -> Spheres:
         if self._scene.scale is None:
-            colors = np.tile(_linear(BALL_COLOR), (len(drops.positions), 1))
+            colors = np.tile(_linear(SPHERE_COLOR), (len(particles.positions), 1))
         else:
-            colors = _linear(self._scene.scale.shades(drops.values))
-        return Balls(drops.positions, 0.55 * drops.spacing, colors)
+            colors = _linear(self._scene.scale.shades(particles.values))
+        return Spheres(particles.positions, 0.55 * particles.spacing, colors)
 
     def _glass(self, frame: Frame) -> Surface:
         """Return the surface of boundary particles, which is made anew only if they moved."""
-        drops = _within(self._scene.cast.wall_particles(frame), self._scene.stage)
-        if self._walls is None or not np.array_equal(self._walls[0].positions, drops.positions):
-            self._walls = drops, water_surface(drops)
+        particles = _within(self._scene.roles.wall_particles(frame), self._scene.environment)
+        if self._walls is None or not np.array_equal(self._walls[0].positions, particles.positions):
+            self._walls = particles, water_surface(particles)
         return self._walls[1]
 
 
-def _colored_parts(cast: Cast) -> list[tuple[Refinement, NDArray, NDArray]]:
+def _colored_parts(roles: SceneRoles) -> list[tuple[Refinement, NDArray, NDArray]]:
     """Return smooth meshes of all cloth and obstacles, one for each pair of colors."""
-    if cast.mesh is None:
+    if roles.mesh is None:
         return []
-    triangles = cast.mesh.triangles
-    color = cast.mesh.pieces[triangles[:, 0]] % len(CLOTH_COLORS)
-    color[~cast.cloth] = -1
+    triangles = roles.mesh.triangles
+    color = roles.mesh.pieces[triangles[:, 0]] % len(CLOTH_COLORS)
+    color[~roles.cloth] = -1
     colors = dict(enumerate(CLOTH_COLORS)) | {-1: (OBSTACLE_COLOR, OBSTACLE_COLOR)}
     return [
         (
-            Refinement.of(triangles[color == number], len(cast.mesh.ids), FINE_TRIANGLES),
+            Refinement.of(triangles[color == number], len(roles.mesh.ids), FINE_TRIANGLES),
             *map(_linear, pair),
         )
         for number, pair in colors.items()
@@ -203,17 +207,17 @@ def _colored_parts(cast: Cast) -> list[tuple[Refinement, NDArray, NDArray]]:
     ]
 
 
-def _framed(frames: Sequence[Frame], cast: Cast) -> tuple[NDArray[np.float64], float]:
+def _framed(frames: Sequence[Frame], roles: SceneRoles) -> tuple[NDArray[np.float64], float]:
     """Return points that are to be seen, shape (N, 3), and the height of the floor."""
     cloth, water = np.zeros((0, 3)), [np.zeros((0, 3))]
-    if cast.mesh is not None:
-        cloth = np.concatenate([cast.upright(cast.mesh.positions(frame)) for frame in frames])
+    if roles.mesh is not None:
+        cloth = np.concatenate([roles.upright(roles.mesh.positions(frame)) for frame in frames])
     for frame in frames:
-        positions = cast.upright(frame.positions[np.isin(frame.types, list(cast.fluid))])
+        positions = roles.upright(frame.positions[np.isin(frame.types, list(roles.fluid))])
         water.append(positions[np.isfinite(positions).all(axis=1)])
     wet = np.concatenate(water)
-    walls = cast.upright(frames[0].positions[np.isin(frames[0].types, list(cast.walls))])
-    radius = cast.largest_spacing / 2
+    walls = roles.upright(frames[0].positions[np.isin(frames[0].types, list(roles.walls))])
+    radius = roles.largest_spacing / 2
     if len(cloth):
         low, high = cloth.min(axis=0), cloth.max(axis=0)
         extent = float((high - low).max())
@@ -247,40 +251,39 @@ def _corners(low: NDArray, high: NDArray, margin: float) -> NDArray[np.float64]:
     return np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
-def _pins(frames: Sequence[Frame], cast: Cast) -> NDArray[np.int64]:
+def _pins(frames: Sequence[Frame], roles: SceneRoles) -> NDArray[np.int64]:
     """Return the vertices of cloth that never move, shape (K,)."""
-    if cast.mesh is None or len(frames) < 2:
+    if roles.mesh is None or len(frames) < 2:
         return np.zeros(0, np.int64)
-    first, *rest = (cast.mesh.positions(frame) for frame in frames)
+    first, *rest = (roles.mesh.positions(frame) for frame in frames)
     still = ~np.any([later != first for later in rest], axis=(0, 2))
     of_cloth = np.zeros(len(still), bool)
-    of_cloth[cast.mesh.triangles[cast.cloth]] = True
+    of_cloth[roles.mesh.triangles[roles.cloth]] = True
     return np.flatnonzero(still & of_cloth)
 
 
-def _scale(frames: Sequence[Frame], cast: Cast) -> Scale | None:
+def _scale(frames: Sequence[Frame], roles: SceneRoles) -> Scale | None:
     """Return the range of the colored quantity that few particles leave."""
-    if cast.color_by is None:
+    if roles.color_by is None:
         return None
-    values = [cast.values(frame)[np.isin(frame.types, list(cast.fluid))] for frame in frames]
+    values = [roles.values(frame)[np.isin(frame.types, list(roles.fluid))] for frame in frames]
     values = np.concatenate(values)
     low, high = np.quantile(values, [0.02, 0.98]) if len(values) else (0.0, 1.0)
-    if cast.color_by == "speed":
+    if roles.color_by == "speed":
         low = 0.0
-    return Scale(cast.color_by, float(low), float(max(high, low + 1e-12)))
+    return Scale(roles.color_by, float(low), float(max(high, low + 1e-12)))
 
 
-def _within(drops: Drops, stage: Stage) -> Drops:
+def _within(particles: Particles, environment: Environment) -> Particles:
     """Leave out what is far away: a lost drop would stretch the grid of the surface."""
-    away = np.abs(drops.positions - stage.center).max(axis=1)
-    near = away < DRAWN_ROOM * stage.radius
-    values = None if drops.values is None else drops.values[near]
-    return replace(
-        drops, positions=drops.positions[near], spacing=drops.spacing[near], values=values
-    )
+    away = np.abs(particles.positions - environment.center).max(axis=1)
+    near = away < DRAWN_ROOM * environment.radius
+    return particles.select(near)
 
 
-def _held_back(water: Surface, drops: Drops, solids: Sequence[Solid], spacing: float) -> Surface:
+def _held_back(
+    water: Surface, particles: Particles, solids: Sequence[Solid], spacing: float
+) -> Surface:
     """Return water that ends at sheets: its surface, a radius from the particles, reaches through.
 
     A vertex beyond a sheet, seen from the nearest particle, goes back on that particle's side.
@@ -299,8 +302,8 @@ def _held_back(water: Surface, drops: Drops, solids: Sequence[Solid], spacing: f
     )
     near, place, normal = near[over], place[over], normal[over]
     points = water.points.copy()
-    _, particle = cKDTree(drops.positions).query(points[near])
-    side = np.sign(np.einsum("ij,ij->i", drops.positions[particle] - place, normal))
+    _, particle = cKDTree(particles.positions).query(points[near])
+    side = np.sign(np.einsum("ij,ij->i", particles.positions[particle] - place, normal))
     height = side * np.einsum("ij,ij->i", points[near] - place, normal)
     points[near] += (side * np.maximum(SKIN * spacing - height, 0))[:, None] * normal
     return smoothed(replace(water, points=points), 2)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from sphcloth.rendering.camera import Camera, in_axes
-from sphcloth.rendering.light import Balls, Light, surroundings
+from sphcloth.rendering.light import Light, Spheres, surroundings
 from sphcloth.rendering.raster import (
     Fragments,
     Visible,
@@ -45,7 +45,7 @@ TRANSMISSION = 0.35
 MIRRORED, INDEX = 0.02, 1.33
 DEEP = np.array([0.012, 0.12, 0.32])
 ABSORPTION = np.array([14.0, 6.0, 2.6])
-# light that grazes cloth, and light of the sun that balls mirror
+# light that grazes cloth, and light of the sun that spheres mirror
 SHEEN, GLOSS = 0.10, 0.7
 # walls: their color, and the share of it seen from in front and added from aside
 GLASS_COLOR, GLASS_SHARE = np.array([0.75, 0.85, 0.93]), (0.10, 0.6)
@@ -66,12 +66,12 @@ class Solid:
 
 
 @dataclass(frozen=True)
-class Props:
+class Geometry:
     """All that stands on the floor.
 
     Attributes:
         solids: cloth and obstacles.
-        balls: pins, and the water if it is drawn as balls.
+        spheres: pins, and the water if it is drawn as spheres.
         water: its surface.
         tint: linear colors of its vertices, shape (V, 3); None for water's own.
         walls: the surface of boundary particles, drawn as clear as glass; they cast no shadow.
@@ -79,7 +79,7 @@ class Props:
     """
 
     solids: Sequence[Solid]
-    balls: Sequence[Balls]
+    spheres: Sequence[Spheres]
     water: Surface
     tint: NDArray[np.float64] | None
     walls: Surface
@@ -87,13 +87,13 @@ class Props:
 
 
 @dataclass(frozen=True)
-class Stage:
-    """What surrounds the props.
+class Environment:
+    """What surrounds the geometry.
 
     Attributes:
         floor: height of the floor.
         center: the middle of all that is to be seen, shape (3,).
-        radius: of a ball around it that holds all.
+        radius: of a sphere around it that holds all.
         sun: towards the sun, a unit vector, shape (3,).
     """
 
@@ -111,26 +111,26 @@ class _Layer:
     depth: NDArray[np.float64]
 
 
-def draw(camera: Camera, stage: Stage, props: Props) -> NDArray[np.uint8]:
+def draw(camera: Camera, environment: Environment, geometry: Geometry) -> NDArray[np.uint8]:
     """Return a picture, shape (height, width, 3)."""
     fine = camera.enlarged(SAMPLES)
-    light = props.light
-    layer = _backdrop(camera, stage, light)
-    for solid in props.solids:
+    light = geometry.light
+    layer = _backdrop(camera, environment, light)
+    for solid in geometry.solids:
         _add_solid(layer, fine, solid, light)
-    for balls in props.balls:
-        _add_balls(layer, fine, balls, light)
-    if len(props.water.triangles):
-        _add_water(layer, fine, stage, props)
-    if len(props.walls.triangles):
-        _add_glass(layer, fine, props.walls)
+    for spheres in geometry.spheres:
+        _add_spheres(layer, fine, spheres, light)
+    if len(geometry.water.triangles):
+        _add_water(layer, fine, environment, geometry)
+    if len(geometry.walls.triangles):
+        _add_glass(layer, fine, geometry.walls)
     return _develop(layer.color, camera)
 
 
-def _backdrop(camera: Camera, stage: Stage, light: Light) -> _Layer:
+def _backdrop(camera: Camera, environment: Environment, light: Light) -> _Layer:
     """Return the floor, which fades into the background, and its shadows."""
     maps = [
-        _floor_map(share, texels, stage)
+        _floor_map(share, texels, environment)
         for share, texels in ((light.sunshine, SHADOW_TEXELS), (light.skylight, SKYLIGHT_TEXELS))
     ]
     color = np.empty((camera.size[0] * camera.size[1], 3), np.float32)
@@ -140,13 +140,13 @@ def _backdrop(camera: Camera, stage: Stage, light: Light) -> _Layer:
         rays = camera.rays(np.arange(len(color))[part])
         up = np.clip(0.45 + rays[:, 2] / 0.8, 0, 1)[:, None] ** 2
         color[part] = BACKDROP_LOW + up * (BACKDROP_HIGH - BACKDROP_LOW)
-        height = stage.floor - camera.position[2]
+        height = environment.floor - camera.position[2]
         hits = np.flatnonzero(rays[:, 2] * height > 0)
         depth[part][hits] = height / rays[hits, 2]
         points = camera.position + depth[part][hits, None] * rays[hits]
-        away = np.linalg.norm(points[:, :2] - stage.center[:2], axis=1) / stage.radius
+        away = np.linalg.norm(points[:, :2] - environment.center[:2], axis=1) / environment.radius
         fade = np.exp(-((np.maximum(away - FADE_FROM, 0) / FADE_WIDTH) ** 2))[:, None]
-        color[part][hits] += fade * (_floor(points, maps, stage) - color[part][hits])
+        color[part][hits] += fade * (_floor(points, maps, environment) - color[part][hits])
 
     _in_parts(fill, len(color))
     return _Layer(_refined(color, camera), _refined(depth, camera))
@@ -165,28 +165,32 @@ def _refined(values: NDArray, camera: Camera) -> NDArray:
     return grid.reshape(-1, *values.shape[1:])
 
 
-def _floor(points: NDArray, maps: list[NDArray], stage: Stage) -> NDArray[np.float64]:
+def _floor(points: NDArray, maps: list[NDArray], environment: Environment) -> NDArray[np.float64]:
     """Return the color of the floor at points, shape (N, 3), from maps of its light."""
-    sun, sky = (_between_texels(texels, points, stage)[:, None] for texels in maps)
+    sun, sky = (_between_texels(texels, points, environment)[:, None] for texels in maps)
     # more than half of the sky is dark where something stands: contact shadows
-    return FLOOR_COLOR * (SUNLIGHT * FLOOR_SUN * stage.sun[2] * sun + SKYLIGHT_UP * sky**1.4)
+    return FLOOR_COLOR * (SUNLIGHT * FLOOR_SUN * environment.sun[2] * sun + SKYLIGHT_UP * sky**1.4)
 
 
 def _floor_map(
-    share: Callable[[NDArray, NDArray], NDArray], texels: int, stage: Stage
+    share: Callable[[NDArray, NDArray], NDArray], texels: int, environment: Environment
 ) -> NDArray[np.float64]:
     """Return a share of light on a square of the floor, shape (texels, texels)."""
-    line = np.linspace(-FLOOR_REACH, FLOOR_REACH, texels) * stage.radius
-    x, y = np.meshgrid(line + stage.center[0], line + stage.center[1], indexing="ij")
-    places = np.stack([x.ravel(), y.ravel(), np.full(x.size, stage.floor)], axis=1)
+    line = np.linspace(-FLOOR_REACH, FLOOR_REACH, texels) * environment.radius
+    x, y = np.meshgrid(line + environment.center[0], line + environment.center[1], indexing="ij")
+    places = np.stack([x.ravel(), y.ravel(), np.full(x.size, environment.floor)], axis=1)
     shares = share(places, np.broadcast_to([0.0, 0.0, 1.0], places.shape)).reshape(x.shape)
     # the light comes from a few directions: without a blur each would have an edge of its own
     return ndimage.gaussian_filter(shares, 1.5)
 
 
-def _between_texels(texels: NDArray, points: NDArray, stage: Stage) -> NDArray[np.float64]:
+def _between_texels(
+    texels: NDArray, points: NDArray, environment: Environment
+) -> NDArray[np.float64]:
     """Return the values of a map of the floor at points, shape (N,)."""
-    places = 0.5 + 0.5 * (points[:, :2] - stage.center[:2]) / (FLOOR_REACH * stage.radius)
+    places = 0.5 + 0.5 * (points[:, :2] - environment.center[:2]) / (
+        FLOOR_REACH * environment.radius
+    )
     return ndimage.map_coordinates(texels, places.T * (len(texels) - 1), order=1, mode="nearest")
 
 
@@ -295,52 +299,54 @@ def _mixed(sun: NDArray, sky: NDArray, normals: NDArray) -> NDArray[np.float64]:
     return SUNLIGHT * sun[:, None] + half * sky[:, None]
 
 
-def _add_balls(layer: _Layer, camera: Camera, balls: Balls, light: Light) -> None:
-    """Draw balls; the light that reaches a ball is that at its top, the shade follows its shape."""
-    up = np.broadcast_to([0.0, 0.0, 1.0], balls.centers.shape)
-    top = balls.centers + balls.radius[:, None] * up
+def _add_spheres(layer: _Layer, camera: Camera, spheres: Spheres, light: Light) -> None:
+    """Draw spheres, each in the light at its top; the shade follows its shape."""
+    up = np.broadcast_to([0.0, 0.0, 1.0], spheres.centers.shape)
+    top = spheres.centers + spheres.radius[:, None] * up
     sun, sky = light.sunshine(top, up), light.skylight(top, up)
 
     def shade(patch: _Patch) -> NDArray:
-        normals = _unit(patch.points - balls.centers[patch.face])
+        normals = _unit(patch.points - spheres.centers[patch.face])
         bright = sun[patch.face]
         toward = bright * np.clip(_along(normals, light.sun), 0, 1)
         gloss = bright * np.clip(_along(_bounced(patch.rays, normals), light.sun), 0, 1) ** 40
         arriving = _mixed(toward, sky[patch.face], normals)
-        return balls.colors[patch.face] * arriving + GLOSS * gloss[:, None]
+        return spheres.colors[patch.face] * arriving + GLOSS * gloss[:, None]
 
-    _paint(layer, camera, nearest(_discs(balls, camera), len(layer.depth)), shade)
+    _paint(layer, camera, nearest(_discs(spheres, camera), len(layer.depth)), shade)
 
 
-def _discs(balls: Balls, camera: Camera) -> Iterator[Fragments]:
-    """Yield the fragments of balls as a camera sees them."""
-    places, near = camera.project(balls.centers)
-    reach = np.nan_to_num(camera.focal * balls.radius * near)
+def _discs(spheres: Spheres, camera: Camera) -> Iterator[Fragments]:
+    """Yield the fragments of spheres as a camera sees them."""
+    places, near = camera.project(spheres.centers)
+    reach = np.nan_to_num(camera.focal * spheres.radius * near)
     for discs in disc_fragments(places, reach, camera.shape):
-        depth = 1 / near[discs.disc] - balls.radius[discs.disc] * discs.bulge
+        depth = 1 / near[discs.disc] - spheres.radius[discs.disc] * discs.bulge
         yield Fragments(discs.disc, discs.pixel, 1 / depth)
 
 
-def _add_water(layer: _Layer, camera: Camera, stage: Stage, props: Props) -> None:
+def _add_water(layer: _Layer, camera: Camera, environment: Environment, geometry: Geometry) -> None:
     """Draw water: what is behind, bent and dimmed by it, its own color, and what it mirrors."""
-    water, thickness = props.water, np.zeros(len(layer.depth))
+    water, thickness = geometry.water, np.zeros(len(layer.depth))
     visible = nearest(_measured(water, camera, layer.depth, thickness), len(layer.depth))
 
     def shade(patch: _Patch) -> NDArray:
         normals, *tint = patch.interpolated(
-            water, water.normals, *([] if props.tint is None else [props.tint])
+            water, water.normals, *([] if geometry.tint is None else [geometry.tint])
         )
         normals = _unit(normals)
         normals *= -np.sign(_dot(normals, patch.rays))[:, None]
         path = np.maximum(thickness[patch.pixel], 0) * patch.stretch
-        loss, own = np.exp(-path[:, None] * ABSORPTION / (2 * stage.radius)), DEEP
+        loss, own = np.exp(-path[:, None] * ABSORPTION / (2 * environment.radius)), DEEP
         if tint:
             loss, own = loss.mean(axis=1, keepdims=True) ** TINT_POWER, tint[0]
         inside = _refracted(layer, camera, patch, normals, path) * loss
-        inside += own * (1 - loss) * _glow(normals, stage)
+        inside += own * (1 - loss) * _glow(normals, environment)
         steep = 1 - np.clip(-_dot(normals, patch.rays), 0, 1)
         mirrored = (MIRRORED + (1 - MIRRORED) * steep**5)[:, None]
-        return inside + mirrored * (surroundings(_bounced(patch.rays, normals), stage.sun) - inside)
+        return inside + mirrored * (
+            surroundings(_bounced(patch.rays, normals), environment.sun) - inside
+        )
 
     _paint(layer, camera, visible, shade)
 
@@ -377,9 +383,9 @@ def _refracted(
     return layer.color[np.where(layer.depth[there] > patch.depth, there, patch.pixel)]
 
 
-def _glow(normals: NDArray, stage: Stage) -> NDArray[np.float64]:
+def _glow(normals: NDArray, environment: Environment) -> NDArray[np.float64]:
     """Return the light that water scatters under its surface, shape (N, 3)."""
-    sun = np.clip(0.35 + 0.65 * _along(normals, stage.sun), 0, 1)[:, None]
+    sun = np.clip(0.35 + 0.65 * _along(normals, environment.sun), 0, 1)[:, None]
     return 0.75 * SUNLIGHT * sun + 0.8 * SKYLIGHT_UP
 
 

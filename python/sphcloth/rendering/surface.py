@@ -47,7 +47,7 @@ BLOCK_NODES, THREADS = 64, 2
 
 
 @dataclass(frozen=True)
-class Drops:
+class Particles:
     """Particles of water to find the surface of.
 
     Attributes:
@@ -64,6 +64,13 @@ class Drops:
     room: NDArray[np.float64] = field(
         default_factory=lambda: np.array([[-np.inf] * 3, [np.inf] * 3])
     )
+
+    def select(self, chosen: NDArray) -> Particles:
+        """Return copies of some particles, by mask or index."""
+        values = None if self.values is None else self.values[chosen]
+        return replace(
+            self, positions=self.positions[chosen], spacing=self.spacing[chosen], values=values
+        )
 
 
 @dataclass(frozen=True)
@@ -102,11 +109,11 @@ class _Grid:
     shape: tuple[int, int, int]
 
     @classmethod
-    def around(cls, drops: Drops) -> _Grid:
+    def around(cls, particles: Particles) -> _Grid:
         """Lay a grid around the particles that their weights do not leave."""
-        low, high = drops.positions.min(axis=0), drops.positions.max(axis=0)
-        finest = float(drops.spacing.min())
-        room = REACH * WIDTH * float(drops.spacing.max())
+        low, high = particles.positions.min(axis=0), particles.positions.max(axis=0)
+        finest = float(particles.spacing.min())
+        room = REACH * WIDTH * float(particles.spacing.max())
         extent = high - low + 2 * room
         cell = max(
             finest / MOST_NODES_PER_SPACING,
@@ -128,17 +135,17 @@ def _cell(extent: NDArray, nodes: int) -> float:
     return float(np.prod(extent) / nodes) ** (1 / 3)
 
 
-def water_surface(drops: Drops) -> Surface:
+def water_surface(particles: Particles) -> Surface:
     """Return the surface of some water; without particles a surface without triangles."""
-    if not len(drops.positions):
+    if not len(particles.positions):
         return Surface.empty()
-    grid = _Grid.around(drops)
-    far = RADIUS * float(drops.spacing.max()) / grid.cell
+    grid = _Grid.around(particles)
+    far = RADIUS * float(particles.spacing.max()) / grid.cell
     distance = np.full(grid.shape, far, np.float32)
-    values = None if drops.values is None else np.zeros(grid.shape, np.float32)
+    values = None if particles.values is None else np.zeros(grid.shape, np.float32)
 
     def fill(block: _Block) -> None:
-        inner, near = block.inner, _picked(drops, block.particles)
+        inner, near = block.inner, particles.select(block.particles)
         moments = _Moments.of(near, block.grid)
         # empty nodes are not to divide by zero; what they get is never looked at
         share = 1 / np.maximum(moments.weight, LEAST_WEIGHT)
@@ -148,8 +155,8 @@ def water_surface(drops: Drops) -> Surface:
 
     # matrices as small as these are slower by many threads each than one after another
     with threadpool_limits(1), ThreadPoolExecutor(THREADS) as pool:
-        list(pool.map(fill, _blocks(drops, grid)))
-    surface = smoothed(_contour(_ended(distance, drops.room, grid), grid))
+        list(pool.map(fill, _blocks(particles, grid)))
+    surface = smoothed(_contour(_ended(distance, particles.room, grid), grid))
     return surface if values is None else replace(surface, values=_sample(values, grid, surface))
 
 
@@ -170,24 +177,24 @@ class _Block:
     particles: NDArray[np.int64]
 
 
-def _blocks(drops: Drops, grid: _Grid) -> Iterator[_Block]:
+def _blocks(particles: Particles, grid: _Grid) -> Iterator[_Block]:
     """Yield the blocks of a grid that particles reach into."""
-    kernel = int(np.ceil(REACH * WIDTH * float(drops.spacing.max()) / grid.cell))
+    kernel = int(np.ceil(REACH * WIDTH * float(particles.spacing.max()) / grid.cell))
     # one more, as a particle between two nodes is shared out to both
     reach = kernel + BLUR_NODES + 1
     side = max(BLOCK_NODES, 2 * reach)
-    places = (drops.positions - grid.origin) / grid.cell
-    for number, particles in _reached(places, reach, side):
+    places = (particles.positions - grid.origin) / grid.cell
+    for number, near in _reached(places, reach, side):
         start, end = number * side, np.minimum((number + 1) * side, grid.shape)
         shape = end - start + 2 * reach
-        offset = places[particles] - (start - reach)
+        offset = places[near] - (start - reach)
         held = np.all((offset >= 0) & (offset < shape - 1), axis=1)
         if held.any() and np.all(start >= 0) and np.all(end > start):
             yield _Block(
                 _Grid(grid.origin + (start - reach) * grid.cell, grid.cell, tuple(shape.tolist())),
                 tuple(slice(reach, n - reach) for n in shape.tolist()),
                 tuple(map(slice, start.tolist(), end.tolist())),
-                particles[held],
+                near[held],
             )
 
 
@@ -206,13 +213,6 @@ def _reached(places: NDArray, reach: int, side: int) -> Iterator[tuple[NDArray, 
     order = np.argsort(owner.ravel(), kind="stable")
     ends = np.cumsum(np.bincount(owner.ravel()))
     return zip(cubes, np.split(np.concatenate(particles)[order], ends[:-1]), strict=True)
-
-
-def _picked(drops: Drops, chosen: NDArray) -> Drops:
-    values = None if drops.values is None else drops.values[chosen]
-    return replace(
-        drops, positions=drops.positions[chosen], spacing=drops.spacing[chosen], values=values
-    )
 
 
 @dataclass(frozen=True)
@@ -234,20 +234,20 @@ class _Moments:
     values: NDArray[np.float32] | None
 
     @classmethod
-    def of(cls, drops: Drops, grid: _Grid) -> _Moments:
+    def of(cls, particles: Particles, grid: _Grid) -> _Moments:
         """Sum over particles; each spacing has weights of its own width."""
         total: list[NDArray[np.float32]] = []
-        for spacing in np.unique(drops.spacing):
-            chosen = drops.spacing == spacing
-            places = (drops.positions[chosen] - grid.origin) / grid.cell
+        for spacing in np.unique(particles.spacing):
+            chosen = particles.spacing == spacing
+            places = (particles.positions[chosen] - grid.origin) / grid.cell
             amounts = [np.ones(len(places)), *places.T, (places**2).sum(axis=1)]
-            if drops.values is not None:
-                amounts.append(drops.values[chosen])
+            if particles.values is not None:
+                amounts.append(particles.values[chosen])
             width = WIDTH * spacing / grid.cell
             fields = [_blur(field, width) for field in _deposit(places, amounts, grid.shape)]
             fields.append(fields[0] * np.float32(RADIUS * spacing / grid.cell))
             total = [a + b for a, b in zip(total, fields, strict=True)] if total else fields
-        values = total[5] if drops.values is not None else None
+        values = total[5] if particles.values is not None else None
         return cls(total[0], total[1:4], total[4], total[-1], values)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.errors import UserError
-from sphcloth.rendering.cast import Cast, Choice, check_positions
 from sphcloth.rendering.command import evenly_spaced, samples
+from sphcloth.rendering.scene_roles import Choice, SceneRoles, check_positions
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
 
@@ -65,25 +65,25 @@ def pack(dump: Path) -> Packed:
     """
     trajectory = _open(dump)
     few = samples(trajectory)
-    cast = Cast.of(few, Roles.beside(dump), Choice())
-    every = _every(max(np.count_nonzero(_is(frame, cast.fluid)) for frame in few))
-    shows_mesh = cast.mesh is not None and len(cast.mesh.ids) <= VERTICES
+    scene_roles = SceneRoles.of(few, Roles.beside(dump), Choice())
+    every = _every(max(np.count_nonzero(_is(frame, scene_roles.fluid)) for frame in few))
+    shows_mesh = scene_roles.mesh is not None and len(scene_roles.mesh.ids) <= VERTICES
     chosen = evenly_spaced(len(trajectory), FRAMES)
-    views = [_view(trajectory[n], cast, every, shows_mesh) for n in chosen]
+    views = [_view(trajectory[n], scene_roles, every, shows_mesh) for n in chosen]
     low, size = _bounds(views)
     fastest = max(view.speeds.max(initial=0.0) for view in views) or 1.0
     data = {
         "low": low.tolist(),
         "size": size,
-        "spacing": cast.largest_spacing or size / 100,
-        "triangles": _base64(cast.mesh.triangles, np.uint32) if shows_mesh else "",
-        "cloth": _base64(cast.cloth, np.uint8) if shows_mesh else "",
-        "walls": _base64(_scaled(_walls(few[0], cast), low, size)[0], np.uint16),
+        "spacing": scene_roles.largest_spacing or size / 100,
+        "triangles": _base64(scene_roles.mesh.triangles, np.uint32) if shows_mesh else "",
+        "cloth": _base64(scene_roles.cloth, np.uint8) if shows_mesh else "",
+        "walls": _base64(_scaled(_walls(few[0], scene_roles), low, size)[0], np.uint16),
         "frames": [_numbers(view, low, size, fastest) for view in views],
     }
     caption = f"{len(chosen)} of {len(trajectory)} frames"
     caption += f", every {_ordinal(every)} particle" if every > 1 else ""
-    if cast.mesh is not None and not shows_mesh:
+    if scene_roles.mesh is not None and not shows_mesh:
         caption += ", without the cloth: too many vertices"
     return Packed(f"{dump.resolve().parent.name}/{dump.name}", caption, data)
 
@@ -106,21 +106,23 @@ def _every(count: int) -> int:
     return max(1, -(-int(count) // PARTICLES))
 
 
-def _view(frame: Frame, cast: Cast, every: int, shows_mesh: bool) -> _View:
+def _view(frame: Frame, scene_roles: SceneRoles, every: int, shows_mesh: bool) -> _View:
     """Take out of a frame what is shown: every n-th particle, the same ones in all frames."""
     check_positions(frame.positions, frame)
-    rows = _is(frame, cast.fluid) & (frame.ids % every == 0)
+    rows = _is(frame, scene_roles.fluid) & (frame.ids % every == 0)
     known = {"vx", "vy", "vz"} <= frame.columns.keys()
     speeds = np.linalg.norm(frame.velocities[rows], axis=1) if known else np.zeros(rows.sum())
-    vertices = cast.mesh.positions(frame) if shows_mesh else np.empty((0, 3))
+    vertices = scene_roles.mesh.positions(frame) if shows_mesh else np.empty((0, 3))
     label = f"step {frame.step}" if np.isnan(frame.time) else f"t = {frame.time:.4g}"
-    return _View(label, cast.upright(frame.positions[rows]), speeds, cast.upright(vertices))
+    return _View(
+        label, scene_roles.upright(frame.positions[rows]), speeds, scene_roles.upright(vertices)
+    )
 
 
-def _walls(frame: Frame, cast: Cast) -> Array:
+def _walls(frame: Frame, scene_roles: SceneRoles) -> Array:
     """Return the places of wall particles, as many as a page shows."""
-    walls = _is(frame, cast.walls)
-    return cast.upright(frame.positions[walls & (frame.ids % _every(walls.sum()) == 0)])
+    walls = _is(frame, scene_roles.walls)
+    return scene_roles.upright(frame.positions[walls & (frame.ids % _every(walls.sum()) == 0)])
 
 
 def _bounds(views: list[_View]) -> tuple[Array, float]:

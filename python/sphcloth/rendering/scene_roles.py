@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
-from sphcloth.rendering.surface import REACH, WIDTH, Drops
+from sphcloth.rendering.surface import REACH, WIDTH, Particles
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame
 
@@ -41,8 +41,8 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Cast:
-    """Who plays what in a dump.
+class SceneRoles:
+    """What each atom of a dump is drawn as.
 
     Attributes:
         fluid: types of water.
@@ -63,8 +63,8 @@ class Cast:
     color_by: str | None
 
     @classmethod
-    def of(cls, frames: Sequence[Frame], roles: Roles, choice: Choice) -> Cast:
-        """Find out from some frames of a dump who plays what.
+    def of(cls, frames: Sequence[Frame], roles: Roles, choice: Choice) -> SceneRoles:
+        """Find out from some frames of a dump what its atoms are.
 
         Raises:
             UserError: a type that is not in the dump, or cloth that is not in the data file.
@@ -102,17 +102,17 @@ class Cast:
         """Turn points, shape (..., 3), so that z points up: the y of a two-dimensional scene."""
         return points[..., [0, 2, 1]] * [1.0, -1.0, 1.0] if self.is_flat else points
 
-    def water(self, frame: Frame) -> Drops:
+    def water(self, frame: Frame) -> Particles:
         """Return the water of a frame, with what looks over from across a periodic boundary.
 
         Raises:
             UserError: a position that is not finite, or no column for the colors.
         """
-        return self._drops(frame, self.fluid, self.values(frame))
+        return self._particles(frame, self.fluid, self.values(frame))
 
-    def wall_particles(self, frame: Frame) -> Drops:
+    def wall_particles(self, frame: Frame) -> Particles:
         """Return the boundary particles of a frame, likewise."""
-        return self._drops(frame, self.walls, None)
+        return self._particles(frame, self.walls, None)
 
     def values(self, frame: Frame) -> NDArray[np.float64] | None:
         """Return the quantity of all atoms that gives water its color, shape (N,), or None."""
@@ -121,18 +121,20 @@ class Cast:
         values = frame.vectors(*QUANTITIES[self.color_by])
         return np.linalg.norm(values, axis=1) if values.shape[1] > 1 else values[:, 0]
 
-    def _drops(self, frame: Frame, kinds: frozenset[int], values: NDArray | None) -> Drops:
+    def _particles(self, frame: Frame, kinds: frozenset[int], values: NDArray | None) -> Particles:
         chosen = np.flatnonzero(np.isin(frame.types, list(kinds)))
         spacing = np.array([self.spacing[kind] for kind in frame.types[chosen]], dtype=float)
-        drops = Drops(frame.positions[chosen], spacing, None if values is None else values[chosen])
-        check_positions(drops.positions, frame)
-        drops = _with_images(drops, frame, axes=2 if self.is_flat else 3)
+        particles = Particles(
+            frame.positions[chosen], spacing, None if values is None else values[chosen]
+        )
+        check_positions(particles.positions, frame)
+        particles = _with_images(particles, frame, axes=2 if self.is_flat else 3)
         if self.is_flat:
-            drops = _with_depth(drops)
+            particles = _with_depth(particles)
         return replace(
-            drops,
-            positions=self.upright(drops.positions),
-            room=np.sort(self.upright(drops.room), axis=0),
+            particles,
+            positions=self.upright(particles.positions),
+            room=np.sort(self.upright(particles.room), axis=0),
         )
 
 
@@ -202,50 +204,44 @@ def _spacing(
     return float(np.median(distance[:, 1])) or 0.01 * float(np.ptp(positions, axis=0).max())
 
 
-def _with_images(drops: Drops, frame: Frame, axes: int) -> Drops:
+def _with_images(particles: Particles, frame: Frame, axes: int) -> Particles:
     """Add the periodic images of particles that the surface in the box depends on."""
-    if any(frame.tilt) or not len(drops.positions):
-        return drops
-    reach = REACH * WIDTH * float(drops.spacing.max())
-    room = drops.room.copy()
+    if any(frame.tilt) or not len(particles.positions):
+        return particles
+    reach = REACH * WIDTH * float(particles.spacing.max())
+    room = particles.room.copy()
     for axis in itertools.compress(range(axes), frame.periodic):
         low, high = room[:, axis] = frame.box[:, axis]
-        place = low + (drops.positions[:, axis] - low) % (high - low)
-        positions = drops.positions.copy()
+        place = low + (particles.positions[:, axis] - low) % (high - low)
+        positions = particles.positions.copy()
         positions[:, axis] = place
-        drops = replace(drops, positions=positions)
-        parts = [drops, *_images(drops, axis, low, high, reach)]
-        drops = _joined(parts)
-    return replace(drops, room=room)
+        particles = replace(particles, positions=positions)
+        parts = [particles, *_images(particles, axis, low, high, reach)]
+        particles = _joined(parts)
+    return replace(particles, room=room)
 
 
-def _images(drops: Drops, axis: int, low: float, high: float, reach: float) -> Iterator[Drops]:
-    place = drops.positions[:, axis]
+def _images(
+    particles: Particles, axis: int, low: float, high: float, reach: float
+) -> Iterator[Particles]:
+    place = particles.positions[:, axis]
     for chosen, shift in ((place < low + reach, high - low), (place > high - reach, low - high)):
-        part = _picked(drops, chosen)
+        part = particles.select(chosen)
         part.positions[:, axis] += shift
         yield part
 
 
-def _with_depth(drops: Drops) -> Drops:
+def _with_depth(particles: Particles) -> Particles:
     """Put copies of the particles of a plane side by side along z."""
     parts = []
     for layer in LAYERS:
-        part = _picked(drops, np.ones(len(drops.positions), bool))
+        part = particles.select(np.ones(len(particles.positions), bool))
         part.positions[:, 2] += layer * part.spacing
         parts.append(part)
     return _joined(parts)
 
 
-def _picked(drops: Drops, chosen: NDArray[np.bool_]) -> Drops:
-    """Return copies of some particles."""
-    values = None if drops.values is None else drops.values[chosen]
-    return replace(
-        drops, positions=drops.positions[chosen], spacing=drops.spacing[chosen], values=values
-    )
-
-
-def _joined(parts: Sequence[Drops]) -> Drops:
+def _joined(parts: Sequence[Particles]) -> Particles:
     values = None
     if parts[0].values is not None:
         values = np.concatenate([part.values for part in parts])

@@ -6,9 +6,12 @@
 #include "library.h"
 
 #include "bond_pbd.h"
+#include "compute_cloth_contact.h"
 #include "compute_pbd_atom.h"
+#include "compute_pbd_cloth.h"
 #include "compute_pbd_local.h"
 #include "compute_sph_atom.h"
+#include "compute_sph_step.h"
 #include "create_cloth.h"
 #include "dihedral_pbd.h"
 #include "fix_cloth_contact.h"
@@ -97,12 +100,18 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "sph/watch", "limits at which a run ends");
   plugin.creator.v2 = &create_with_args<FixWallSPH>;
   add("fix", "wall/sph", "plane walls without particles");
+  plugin.creator.v2 = &create_with_args<ComputeClothContact>;
+  add("compute", "cloth/contact", "counts, impulses and forces of contact with cloth");
   plugin.creator.v2 = &create_with_args<ComputePBDAtom>;
   add("compute", "pbd/atom", "strain, curvature and holding forces of cloth by vertex");
+  plugin.creator.v2 = &create_with_args<ComputePBDCloth>;
+  add("compute", "pbd/cloth", "strain, residual, energy and holding force of cloth");
   plugin.creator.v2 = &create_with_args<ComputePBDLocal>;
   add("compute", "pbd/local", "strain of edges and angles of hinges of cloth");
   plugin.creator.v2 = &create_with_args<ComputeSPHAtom>;
   add("compute", "sph/atom", "per-atom quantities of SPH particles");
+  plugin.creator.v2 = &create_with_args<ComputeSPHStep>;
+  add("compute", "sph/step", "limits and updates of the time steps of SPH particles");
   plugin.creator.v1 = &create<SPHWrite>;
   add("command", "sph_write", "tables of a kernel or an equation of state");
   plugin.creator.v1 = &create<CreateCloth>;

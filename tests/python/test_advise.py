@@ -302,7 +302,9 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     """The reference log of pour: thermo columns stand for the values of the fixes."""
     log = Path(__file__).parents[2] / "examples/pour/log.22Jul2025.pour.tiny.1"
     run = Evidence.of_log(log)
-    assert run.last("f_contact[1]") == run.last("v_contacts")
+    meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
+    for value, name in meant.items():
+        assert run.last(value) == run.last(f"v_{name}") is not None
     by_limit = {"velocity": 19, "force": 42, "wetted": 1808, "max": 59, "output": 2}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
@@ -311,6 +313,22 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
         "limits viscous, density": f"{step} viscous 0 density 0",
         "contact": "# fix contact fluid cloth/contact",
     }
+
+
+def test_values_that_computes_give_by_keyword_are_known(tmp_path: Path) -> None:
+    """Their columns stand for elements of the vectors of the fixes."""
+    log = tmp_path / "log.lammps"
+    log.write_text(
+        "fix s all sph/integrate global\nfix one a pbd/cloth\nfix two b pbd/cloth\n"
+        "compute c all sph/step dt particles/max limit\ncompute n all sph/step updates\n"
+        "compute strain all pbd/cloth strain fix two\ncompute which all pbd/cloth strain\n"
+        "compute all all sph/step *\nvariable limit equal c_c[3]\n---\n"
+        "keywords: ['Step', 'Time', 'c_c[1]', 'c_c[2]', 'v_limit', 'c_n', 'c_strain', 'c_which', "
+        "'c_all[4]', ]\ndata:\n  - [0, 0, 1, 2, 3, 4, 5, 6, 7, ]\n...\n"
+    )
+    columns = Evidence.of_log(log).columns
+    known = {name: values[-1] for name, values in columns.items() if name.startswith("f_")}
+    assert known == {"f_s[27]": 2, "f_s[1]": 3, "f_s[3]": 4, "f_two[4]": 5}
 
 
 def test_settings_are_read_as_lammps_echoes_them(tmp_path: Path) -> None:

@@ -221,6 +221,8 @@ def test_updates_are_those_of_the_fix_or_atoms_times_steps() -> None:
     assert count_updates(plain, "", AS_WRITTEN) == 10 * 2 + 15 * 2
     counted = ThermoTable(table | {"f_mine[3]": np.array([5.0, 9, 12])}, 0.0)
     assert count_updates(counted, "fix mine all sph/integrate global\n", "individual") == 7
+    named = ThermoTable(table | {"c_updates": np.array([5.0, 9, 13])}, 0.0)
+    assert count_updates(named, "", "individual") == 8
     with pytest.raises(UserError, match=r"add f_step\[3\]"):
         count_updates(plain, "", "individual")
 

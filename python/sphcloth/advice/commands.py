@@ -81,6 +81,7 @@ class Commands:
         pair_style, neighbor, dihedral_style, run_style: arguments; empty without the command.
         bonds, hinges: by type, the arguments behind it.
         variables: equal-style variables, name -> formula.
+        computes: ID -> style and arguments.
         steps_by_limit: name of a limit -> steps that it set, over all runs of one fix.
     """
 
@@ -93,6 +94,7 @@ class Commands:
     bonds: dict[str, tuple[str, ...]] = field(default_factory=dict)
     hinges: dict[str, tuple[str, ...]] = field(default_factory=dict)
     variables: dict[str, str] = field(default_factory=dict)
+    computes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     steps_by_limit: dict[str, int] = field(default_factory=dict)
 
     @classmethod
@@ -138,6 +140,7 @@ class Commands:
             by_type("bond_coeff"),
             by_type("dihedral_coeff"),
             {words[0]: "".join(words[2:]) for words in formulas},
+            {words[0]: tuple(words[2:]) for words in said.get("compute", []) if len(words) > 2},
             limits,
         )
 

@@ -14,6 +14,18 @@ from numpy.typing import NDArray
 from sphcloth.advice.commands import Commands
 from sphcloth.log import ThermoTable
 
+LIMITS = "velocity force acoustic viscous density relative wetted cloth max"
+# compute -> its fix, and n of f_ID[n] for the keywords that an advice may need
+NAMED = {
+    "sph/step": (
+        "sph/integrate",
+        {"limit": 1, "updates": 3, "compression": 4}
+        | {f"particles/{limit}": 19 + n for n, limit in enumerate(LIMITS.split())},
+    ),
+    "pbd/cloth": ("pbd/cloth", {"strain": 4}),
+    "cloth/contact": ("cloth/contact", {"contacts": 1, "stops": 2}),
+}
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -38,9 +50,11 @@ class Evidence:
         """Take a finished run from its log; a column ``v_x`` counts as what x stands for."""
         commands, table = Commands.read(log), ThermoTable.read(log)
         columns = dict(table.columns)
-        for name, formula in commands.variables.items():
-            if f"v_{name}" in columns and re.fullmatch(r"f_\w+(\[\d+\])?", formula):
-                columns[formula] = columns[f"v_{name}"]
+        stand_for = {f"v_{name}": formula for name, formula in commands.variables.items()}
+        for column, values in table.columns.items():
+            meant = _value_of_fix(stand_for.get(column, column), commands)
+            if meant:
+                columns[meant] = values
         steps = int(table["Step"][-1] - table["Step"][0])
         return cls(commands, columns, True, steps, float(table["Time"][-1]))
 
@@ -59,3 +73,21 @@ class Evidence:
         """Return the last value of a column, None if there is no such column."""
         values = self.columns.get(name, np.empty(0))
         return float(values[-1]) if len(values) else None
+
+
+def _value_of_fix(formula: str, commands: Commands) -> str | None:
+    """Return what ``f_ID[n]`` a formula is, which may name a compute that gives it by keyword."""
+    if re.fullmatch(r"f_\w+(\[\d+\])?", formula):
+        return formula
+    found = re.fullmatch(r"c_(\w+?)(?:\[(\d+)\])?", formula)
+    style, *words = commands.computes.get(found[1], ("",)) if found else ("",)
+    if style not in NAMED or any("*" in word for word in words):
+        return None
+    fix_style, numbers = NAMED[style]
+    fixes = [fix.id for fix in commands.styled(fix_style)]
+    while "fix" in words:
+        place = words.index("fix")
+        fixes = words[place + 1 : place + 2]
+        del words[place : place + 2]
+    keyword = words[int(found[2] or 1) - 1] if int(found[2] or 1) <= len(words) else ""
+    return f"f_{fixes[0]}[{numbers[keyword]}]" if keyword in numbers and len(fixes) == 1 else None

@@ -260,15 +260,16 @@ class Crew:
 def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
     """Return how often a particle was updated in a run.
 
-    That is what fix sph/integrate counts, from the column ``v_updates`` or ``f_ID[3]``, or else,
-    right where all particles take every step, the atoms summed over the steps.
+    That is what fix sph/integrate counts, from the column ``v_updates``, ``c_updates`` or
+    ``f_ID[3]``, or else, right where all particles take every step, the atoms summed over the
+    steps.
 
     Raises:
         UserError: steps are individual and the log has neither column.
     """
     fix = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)
     counted = f"f_{fix[1]}[3]" if fix else "f_step[3]"
-    for name in ("v_updates", counted):
+    for name in ("v_updates", "c_updates", counted):
         if name in table:
             return float(table[name][-1] - table[name][0])
     if scheme in PARTIAL:

@@ -179,6 +179,13 @@ BOOST_AUTO_TEST_CASE(hinge_reaches_rest_angles_from_minus_150_to_150_degrees)
   }
 }
 
+BOOST_AUTO_TEST_CASE(difference_of_angles_across_180_degrees)
+{
+  BOOST_CHECK_SMALL(angle_difference(-3.0, 3.0) - (2.0 * PI - 6.0), 1e-15);
+  BOOST_CHECK_SMALL(angle_difference(3.0, -3.0) - (6.0 - 2.0 * PI), 1e-15);
+  BOOST_CHECK(angle_difference(1.0, -1.0) == 2.0);
+}
+
 BOOST_AUTO_TEST_CASE(hinge_leaves_degenerate_triangles_alone)
 {
   std::array<Vec3, 4> x = folded(0.3);

@@ -1,0 +1,380 @@
+"""The layout of the C++: which folder may include which, sizes, and words that are not ours.
+
+A finding is a rule, a file and how often the file breaks the rule. What broke a rule when the rule
+came is in ``EXCEPTIONS``, which can only shrink: a file may break a rule less often than its entry
+says, never more often, and an entry that is not needed any more must be deleted.
+``python tests/test_source_layout.py`` prints the entries of today.
+"""
+
+import re
+from collections import Counter, defaultdict
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src/USER-SPHCLOTH"
+COLUMNS, LINES, PROTOTYPES = 100, 500, 30
+
+# From the bottom to the top: a file includes its own folder and those before it. The top, "", are
+# the styles, which are flat. So core/ includes nothing of LAMMPS or outside of core/.
+FLOORS = [
+    *("core/util", "core/geometry", "core/timestep", "core/contact"),
+    *("core/neighbor", "core/sph", "core/pbd"),
+    *("lammps_util", "cloth", "contact", "fluid", "stepping", ""),
+]
+
+# whole words, in code and comments; CONTRIBUTING has those of the field in their place
+PRIVATE_WORDS = """
+who whoever somebody everybody nobody anybody someone everyone anyone
+lend lends lent owe owes owed OWED arrears there_and_back keep_springs share_of_spring odometer
+NearLists SheetWall SheetWalls FluidWall ClothGuest Crowd Foot feet FIRM HAIR NAP
+"""
+PRIVATE = re.compile(rf"\b(?:{'|'.join(PRIVATE_WORDS.split())})\b")
+BRITISH = re.compile("neighbour|colour|behaviour|centre", re.IGNORECASE)  # parts of names, too
+
+EXCEPTIONS: dict[tuple[str, str], int] = {
+    ("British spelling", "src/USER-SPHCLOTH/cloth/cloth_constraints.cpp"): 24,
+    ("British spelling", "src/USER-SPHCLOTH/cloth/cloth_constraints.h"): 15,
+    ("British spelling", "src/USER-SPHCLOTH/cloth/vertex_halo.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/compute_sph_atom.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/contact/post_stabilization.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/core/contact/point_triangle.h"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/core/geometry/disc_grid.h"): 18,
+    ("British spelling", "src/USER-SPHCLOTH/core/neighbor/approach_bounds.h"): 8,
+    ("British spelling", "src/USER-SPHCLOTH/core/neighbor/block_minmax.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/core/neighbor/blocks.h"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/core/neighbor/cell_lists.h"): 17,
+    ("British spelling", "src/USER-SPHCLOTH/core/neighbor/dual_lists.h"): 11,
+    ("British spelling", "src/USER-SPHCLOTH/core/pbd/cloth_solver.cpp"): 14,
+    ("British spelling", "src/USER-SPHCLOTH/core/pbd/cloth_solver.h"): 17,
+    ("British spelling", "src/USER-SPHCLOTH/core/pbd/coloring.h"): 15,
+    ("British spelling", "src/USER-SPHCLOTH/core/pbd/constraints.h"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/core/pbd/sheet_mesh.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/core/sph/fluid.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/core/sph/fluid.h"): 10,
+    ("British spelling", "src/USER-SPHCLOTH/core/sph/fluid_loops.h"): 10,
+    ("British spelling", "src/USER-SPHCLOTH/core/sph/gradient.h"): 3,
+    ("British spelling", "src/USER-SPHCLOTH/core/sph/shifting.h"): 6,
+    ("British spelling", "src/USER-SPHCLOTH/core/timestep/step_limits.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/core/timestep/time_bins.h"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/create_cloth.cpp"): 3,
+    ("British spelling", "src/USER-SPHCLOTH/create_cloth.h"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/fix_pbd_cloth.cpp"): 16,
+    ("British spelling", "src/USER-SPHCLOTH/fix_pbd_cloth.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_emit.cpp"): 9,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_emit.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_integrate.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_integrate.h"): 2,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_shift.cpp"): 8,
+    ("British spelling", "src/USER-SPHCLOTH/fix_sph_watch.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/pair_sph_tait.cpp"): 17,
+    ("British spelling", "src/USER-SPHCLOTH/pair_sph_tait.h"): 6,
+    ("British spelling", "src/USER-SPHCLOTH/sph_adaptive.cpp"): 1,
+    ("British spelling", "src/USER-SPHCLOTH/stepping/block_steps.cpp"): 21,
+    ("British spelling", "src/USER-SPHCLOTH/stepping/block_steps.h"): 8,
+    ("above 100 columns", "src/USER-SPHCLOTH/cloth/cloth_constraints.h"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/cloth/vertex_halo.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/compute_pbd_atom.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/compute_pbd_local.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/contact/contact_surface.cpp"): 6,
+    ("above 100 columns", "src/USER-SPHCLOTH/contact/contact_surface.h"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/contact/post_stabilization.cpp"): 8,
+    ("above 100 columns", "src/USER-SPHCLOTH/contact/triangle_set.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/contact/triangle_set.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/contact/point_triangle.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/contact/sheet_sides.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/geometry/box_grid.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/geometry/disc_grid.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/neighbor/approach_bounds.h"): 4,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/neighbor/block_minmax.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/neighbor/blocks.h"): 3,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/neighbor/cell_lists.h"): 4,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/neighbor/dual_lists.h"): 16,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/pbd/cloth_solver.cpp"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/pbd/cloth_solver.h"): 5,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/pbd/constraints.h"): 6,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/sph/fluid.h"): 3,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/sph/fluid_loops.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/sph/gradient.h"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/sph/shifting.h"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/timestep/step_limits.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/timestep/time_bins.h"): 5,
+    ("above 100 columns", "src/USER-SPHCLOTH/core/util/simd.h"): 4,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_cloth_contact.cpp"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_pbd_cloth.cpp"): 8,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_pbd_cloth.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_sph_emit.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_sph_integrate.cpp"): 4,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_sph_integrate.h"): 4,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_sph_shift.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_sph_watch.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/fix_wall_sph.cpp"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/fluid/fluid_boundary.h"): 2,
+    ("above 100 columns", "src/USER-SPHCLOTH/fluid/mesh_boundary.cpp"): 3,
+    ("above 100 columns", "src/USER-SPHCLOTH/fluid/mesh_boundary.h"): 8,
+    ("above 100 columns", "src/USER-SPHCLOTH/lammps_util/atom_tools.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/lammps_util/rank_error.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/lammps_util/restart_record.h"): 1,
+    ("above 100 columns", "src/USER-SPHCLOTH/pair_sph_tait.cpp"): 3,
+    ("above 100 columns", "src/USER-SPHCLOTH/pair_sph_tait.h"): 5,
+    ("above 100 columns", "src/USER-SPHCLOTH/stepping/block_steps.cpp"): 14,
+    ("above 100 columns", "src/USER-SPHCLOTH/stepping/block_steps.h"): 11,
+    ("above 100 columns", "src/messages/messages.cpp"): 1,
+    ("above 30 prototypes: BlockSteps", "src/USER-SPHCLOTH/stepping/block_steps.h"): 58,
+    ("above 30 prototypes: ContactSurface", "src/USER-SPHCLOTH/contact/contact_surface.h"): 49,
+    ("above 30 prototypes: FixClothContact", "src/USER-SPHCLOTH/fix_cloth_contact.h"): 33,
+    ("above 30 prototypes: FixPBDCloth", "src/USER-SPHCLOTH/fix_pbd_cloth.h"): 62,
+    ("above 30 prototypes: FixSPHIntegrate", "src/USER-SPHCLOTH/fix_sph_integrate.h"): 66,
+    ("above 30 prototypes: FluidLoops", "src/USER-SPHCLOTH/core/sph/fluid_loops.h"): 36,
+    ("above 30 prototypes: PairSPHTait", "src/USER-SPHCLOTH/pair_sph_tait.h"): 59,
+    ("above 500 lines", "src/USER-SPHCLOTH/contact/contact_surface.cpp"): 544,
+    ("above 500 lines", "src/USER-SPHCLOTH/core/sph/fluid_loops.h"): 864,
+    ("above 500 lines", "src/USER-SPHCLOTH/fix_pbd_cloth.cpp"): 855,
+    ("above 500 lines", "src/USER-SPHCLOTH/fix_sph_integrate.cpp"): 866,
+    ("above 500 lines", "src/USER-SPHCLOTH/pair_sph_tait.cpp"): 826,
+    ("above 500 lines", "src/USER-SPHCLOTH/stepping/block_steps.cpp"): 815,
+    ("include cycle", "src/USER-SPHCLOTH/contact/obstacle"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/fix_cloth_contact"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/fix_pbd_cloth"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/fix_sph_integrate"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/fix_wall_sph"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/fluid/mesh_boundary"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/pair_sph_tait"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/sph_adaptive"): 9,
+    ("include cycle", "src/USER-SPHCLOTH/stepping/block_steps"): 9,
+    ("private word", "src/USER-SPHCLOTH/cloth/cloth_constraints.h"): 3,
+    ("private word", "src/USER-SPHCLOTH/cloth/solver_coupling.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/cloth/vertex_halo.cpp"): 3,
+    ("private word", "src/USER-SPHCLOTH/cloth/vertex_halo.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/contact/contact_surface.cpp"): 8,
+    ("private word", "src/USER-SPHCLOTH/contact/contact_surface.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/contact/obstacle.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/contact/post_stabilization.cpp"): 7,
+    ("private word", "src/USER-SPHCLOTH/contact/triangle_set.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/core/neighbor/block_minmax.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/core/neighbor/blocks.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/core/neighbor/cell_lists.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/core/neighbor/dual_lists.h"): 10,
+    ("private word", "src/USER-SPHCLOTH/core/pbd/cloth_solver.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/core/pbd/constraints.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/core/sph/fluid.cpp"): 3,
+    ("private word", "src/USER-SPHCLOTH/core/sph/fluid.h"): 5,
+    ("private word", "src/USER-SPHCLOTH/core/sph/fluid_loops.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/core/sph/shifting.h"): 3,
+    ("private word", "src/USER-SPHCLOTH/core/timestep/time_bins.h"): 5,
+    ("private word", "src/USER-SPHCLOTH/core/util/simd.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/fix_cloth_contact.cpp"): 2,
+    ("private word", "src/USER-SPHCLOTH/fix_cloth_contact.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/fix_pbd_cloth.cpp"): 52,
+    ("private word", "src/USER-SPHCLOTH/fix_pbd_cloth.h"): 6,
+    ("private word", "src/USER-SPHCLOTH/fix_sph_integrate.cpp"): 3,
+    ("private word", "src/USER-SPHCLOTH/fix_sph_integrate.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/fix_sph_shift.cpp"): 4,
+    ("private word", "src/USER-SPHCLOTH/fix_sph_shift.h"): 1,
+    ("private word", "src/USER-SPHCLOTH/fix_sph_watch.cpp"): 4,
+    ("private word", "src/USER-SPHCLOTH/fix_wall_sph.cpp"): 2,
+    ("private word", "src/USER-SPHCLOTH/fix_wall_sph.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/fluid/fluid_boundary.h"): 2,
+    ("private word", "src/USER-SPHCLOTH/fluid/mesh_boundary.cpp"): 58,
+    ("private word", "src/USER-SPHCLOTH/fluid/mesh_boundary.h"): 20,
+    ("private word", "src/USER-SPHCLOTH/pair_sph_tait.cpp"): 28,
+    ("private word", "src/USER-SPHCLOTH/pair_sph_tait.h"): 7,
+    ("private word", "src/USER-SPHCLOTH/sph_adaptive.cpp"): 2,
+    ("private word", "src/USER-SPHCLOTH/stepping/block_steps.cpp"): 27,
+    ("private word", "src/USER-SPHCLOTH/stepping/block_steps.h"): 12,
+    ("upward include", "src/USER-SPHCLOTH/cloth/cloth_constraints.cpp"): 2,
+    ("upward include", "src/USER-SPHCLOTH/contact/obstacle.cpp"): 1,
+    ("upward include", "src/USER-SPHCLOTH/fluid/mesh_boundary.cpp"): 1,
+    ("upward include", "src/USER-SPHCLOTH/stepping/block_steps.cpp"): 2,
+}
+
+
+def sources(*folders: str) -> dict[str, str]:
+    paths = [path for name in folders for path in sorted((ROOT / name).rglob("*.[hc]*"))]
+    return {
+        str(path.relative_to(ROOT)): path.read_text()
+        for path in paths
+        if path.suffix in (".h", ".cpp")
+    }
+
+
+# includes
+
+
+def floor(module: str) -> int:
+    parts = module.split("/")
+    return FLOORS.index("/".join(parts[: 2 if parts[0] == "core" else 1]) if parts[1:] else "")
+
+
+def includes() -> dict[str, set[str]]:
+    """Which files of the package, or others, each file of it includes."""
+    graph = {}
+    for path in sorted([*PACKAGE.rglob("*.h"), *PACKAGE.rglob("*.cpp")]):
+        found = set()
+        for name in re.findall(r'^#include ["<](.*)[">]', path.read_text(), re.MULTILINE):
+            near = [folder / name for folder in (PACKAGE, path.parent)]
+            ours = [one.resolve() for one in near if one.is_file()]
+            found.add(str(ours[0].relative_to(PACKAGE)) if ours else f"outside: {name}")
+        graph[str(path.relative_to(PACKAGE))] = found
+    return graph
+
+
+def module_of(file: str) -> str:
+    """A header and its source are one."""
+    return file.rpartition(".")[0]
+
+
+def upward(graph: dict[str, set[str]]) -> Counter:
+    found: Counter = Counter()
+    for file, names in graph.items():
+        for name in names:
+            if name.startswith("outside: "):
+                foreign = name.endswith(".h") and not name.endswith("intrin.h")
+                wrong = file.startswith("core/") and foreign
+            else:
+                wrong = floor(module_of(name)) > floor(module_of(file))
+            found["upward include", f"src/USER-SPHCLOTH/{file}"] += wrong
+    return found
+
+
+def cycles(graph: dict[str, set[str]]) -> Counter:
+    """How many modules each module is in a cycle with, itself among them."""
+    modules = defaultdict(set)
+    for file, names in graph.items():
+        modules[module_of(file)] |= {module_of(n) for n in names if not n.startswith("outside: ")}
+
+    def reach(start: str) -> set[str]:
+        seen, rest = set(), [start]
+        while rest:
+            new = modules[rest.pop()] - seen - {start}
+            seen |= new
+            rest += new
+        return seen
+
+    below = {module: reach(module) for module in list(modules)}
+    found: Counter = Counter()
+    for module, others in below.items():
+        if n := sum(module in below[other] for other in others):
+            found["include cycle", f"src/USER-SPHCLOTH/{module}"] = 1 + n
+    return found
+
+
+# sizes
+
+
+def without_text(code: str) -> str:
+    """The code without comments, preprocessor lines and what is in quotation marks."""
+    comment, quoted = r"//[^\n]*|/\*.*?\*/", r""" "(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])' """.strip()
+    code = re.sub(f"{comment}|{quoted}", " ", code, flags=re.DOTALL)
+    return re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", "", code, flags=re.MULTILINE)
+
+
+def inside(code: str, brace: int) -> str:
+    """What is between this brace and its partner, without what is between braces in it."""
+    depth, out = 0, []
+    for c in code[brace:]:
+        depth += c == "{"
+        if depth == 1 or (depth == 2 and c in "{}"):
+            out.append(c)
+        depth -= c == "}"
+        if depth == 0:
+            break
+    return "".join(out)
+
+
+def prototypes(code: str) -> dict[str, int]:
+    """How many functions each class declares and leaves to its source file to define.
+
+    A heuristic: a name, parameters in parentheses, perhaps const, noexcept, override, final or
+    ``= 0``, and a semicolon, at the first level of the braces of the class. Constructors and what
+    LAMMPS calls count as all others do; what is defined in the class at once does not.
+    """
+    count = {}
+    code = without_text(code)
+    for found in re.finditer(r"(?<!enum )\b(?:class|struct)\s+(\w+)[^;{}()=<>]*\{", code):
+        parameters = r"\((?:[^(){}]|\([^(){}]*\))*\)"
+        end = r"(?:\s|const|noexcept|override|final|=\s*0)*;"
+        declared = re.findall(rf"\w\s*{parameters}{end}", inside(code, found.end() - 1))
+        count[found[1]] = len(declared)
+    return count
+
+
+def sizes() -> Counter:
+    found: Counter = Counter()
+    for file, text in sources("src", "tests/core").items():
+        lines = text.splitlines()
+        found[f"above {COLUMNS} columns", file] = sum(len(line) > COLUMNS for line in lines)
+        found[f"above {LINES} lines", file] = len(lines) if len(lines) > LINES else 0
+        for name, n in prototypes(text).items():
+            found[f"above {PROTOTYPES} prototypes: {name}", file] = n if n > PROTOTYPES else 0
+    return found
+
+
+# words
+
+
+def words() -> Counter:
+    found: Counter = Counter()
+    for file, text in sources("src").items():
+        found["private word", file] = len(PRIVATE.findall(text))
+        found["British spelling", file] = len(BRITISH.findall(text))
+    return found
+
+
+def findings() -> Counter:
+    graph = includes()
+    return +(upward(graph) + cycles(graph) + sizes() + words())
+
+
+FOUND = findings()
+
+
+@pytest.mark.parametrize(("rule", "file"), sorted(FOUND), ids=str)
+def test_rules_are_kept(rule: str, file: str) -> None:
+    allowed = EXCEPTIONS.get((rule, file), 0)
+    found = FOUND[rule, file]
+    assert found <= allowed, (
+        f"{file}: {rule}: {found}, at most {allowed}; nothing is added to the list"
+    )
+
+
+def entry(rule: str, file: str) -> str:
+    n = FOUND[rule, file] or EXCEPTIONS[rule, file]
+    return f'    ("{rule}", "{file}"): {n},'
+
+
+def test_exceptions_are_needed() -> None:
+    mended = [entry(*key) for key in EXCEPTIONS if not FOUND[key]]
+    assert not mended, "mended, to be deleted from EXCEPTIONS:\n" + "\n".join(mended)
+
+
+def test_cycles_and_upward_includes_are_found() -> None:
+    graph = {"fix_a.h": {"stepping/b.h"}, "stepping/b.cpp": {"fix_a.h"}, "core/sph/d.h": set()}
+    graph |= {"stepping/b.h": set(), "core/util/c.h": {"core/sph/d.h", "outside: atom.h"}}
+    package = "src/USER-SPHCLOTH"
+    cycle = [("include cycle", f"{package}/{module}") for module in ("fix_a", "stepping/b")]
+    assert +cycles(graph) == dict.fromkeys(cycle, 2)
+    found = {file: n for (_, file), n in (+upward(graph)).items()}
+    assert found == {f"{package}/stepping/b.cpp": 1, f"{package}/core/util/c.h": 2}
+
+
+def test_what_a_prototype_is() -> None:
+    code = """
+    struct Plain { double x = 1.0; int n[3]; };
+    class Some : public Other {
+     public:
+      Some(int a) : Other(a), b{1} {}
+      ~Some() override;
+      int init() override { if (b(1)) { return 2; } return f(3); }
+      double g(double (*f)(double)) const noexcept;
+      virtual void h(int) = 0;    // not(this);
+      std::function<double(int)> member;
+      template <class T> T k(const T &t) const { return t; }
+    };
+    """
+    assert prototypes(code) == {"Plain": 0, "Some": 3}
+
+
+if __name__ == "__main__":
+    print("\n".join(entry(*key) for key in sorted(FOUND)))

@@ -55,7 +55,7 @@ CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 
 BUGS = [
     Bug("sources: no way since the opening", "fix_sph_emit.cpp",
-        "centre + pattern[k] + age * velocity", "centre + pattern[k]", SOURCES),
+        "center + pattern[k] + age * velocity", "center + pattern[k]", SOURCES),
     Bug("sources: each rank counts its own", "fix_sph_emit.cpp",
         "last = largest_id(atom, world)", "last = emitted * (1 + comm->me)",
         f"{SOURCES}::test_pouring_on_two_ranks_and_after_a_restart"),
@@ -65,8 +65,9 @@ BUGS = [
         "b.mass += sink->compute_vector(0)", "b.mass -= sink->compute_vector(0)", WATCH),
     Bug("watch: kinetic energy without its half", "fix_sph_watch.cpp",
         "mine[KINETIC] += 0.5 * mass", "mine[KINETIC] += mass", WATCH),
-    Bug("cloth: ghosts of a colour are old", "fix_pbd_cloth.cpp",
-        "    halo.forward_ways(constraints.channel_of_edge_colour(c), way.data(), substep_dt());\n"
+    Bug("cloth: ghosts of a color are old", "fix_pbd_cloth.cpp",
+        "    halo.forward_displacements(constraints.channel_of_edge_color(c), displacement.data(),\n"
+        "                               substep_dt());\n"
         "  } else {",
         "  } else {", PARALLEL),
     Bug("cloth: twice the impulse is lent", "fix_pbd_cloth.cpp",
@@ -76,7 +77,7 @@ BUGS = [
         "  substeps = static_cast<int>(std::ceil(usual * step_dt - ROUNDING));\n", "",
         "tests/styles/test_block.py::test_steps_that_jump_do_not_feed_a_sheet"),
     Bug("cloth: a reference is forgotten", "fix_pbd_cloth.cpp",
-        "if (step_of_k > 0.0) constraints.keep_springs(", "if (false) constraints.keep_springs(",
+        "if (step_of_k > 0.0) constraints.rescale_stiffness(", "if (false) constraints.rescale_stiffness(",
         f"{CLOTH}::test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step"),
     Bug("cloth: pins pull the wrong way", "fix_pbd_cloth.cpp",
         "Vec3(-hold[i][0], -hold[i][1], -hold[i][2])", "Vec3(hold[i][0], hold[i][1], hold[i][2])",
@@ -115,7 +116,7 @@ BUGS = [
         "atom->v[i][d] += kicks[3 * i + d] = *buf++;", "atom->v[i][d] += *buf++;",
         f"{BLOCK}::test_ranks"),
     Bug("block: who has no pressure flies freely among those who have", "fix_sph_integrate.cpp",
-        "pair->pressure_term_beside(i) * ratio * ratio", "0.0 * ratio",
+        "pair->p_over_rho2_beside(i) * ratio * ratio", "0.0 * ratio",
         f"{BLOCK}::test_water_without_pressure_beside_water_under_pressure_does_not_fly_freely"),
     Bug("restart: the time since the last change of the step is lost", "lammps_util/atom_tools.h",
         "update->update_time();", "update->beginstep += 0;",
@@ -124,8 +125,8 @@ BUGS = [
         "std::copy(record + 1, record + 4, pushes[i]);", "std::fill_n(pushes[i], 3, 0.0);",
         "tests/styles/test_obstacles.py"),
     Bug("wall of a mesh: what is beyond the border is filled, too", "fluid/mesh_boundary.cpp",
-        "foot.share * foot.value.lambda * (1.0 - foot.beyond.lambda)",
-        "foot.share * foot.value.lambda", "tests/styles/test_sheet_wall.py"),
+        "closest.share * closest.value.lambda * (1.0 - closest.beyond.lambda)",
+        "closest.share * closest.value.lambda", "tests/styles/test_sheet_wall.py"),
     Bug("contact: a hole in every triangle", "core/contact/point_triangle.h",
         "weight.minCoeff() >= -SEAM", "weight.minCoeff() >= 0.05", CONTACT),
     Bug("cloth: compliance of the wrong sign", "core/pbd/constraints.h",

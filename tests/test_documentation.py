@@ -177,7 +177,7 @@ def test_every_command_ends_a_mistake_with_exit_code_2(
 # links
 
 # functions that the walk-through of CONTRIBUTING lets the reader write
-TO_BE_WRITTEN = ("project_areas", "material_of_area", "channel_of_area_colour")
+TO_BE_WRITTEN = ("project_areas", "material_of_area", "channel_of_area_color")
 CODE = "".join(
     path.read_text()
     for folder, kinds in (("src", "*.[hc]*"), ("python", "*.py"))

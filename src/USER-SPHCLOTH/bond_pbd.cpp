@@ -2,10 +2,10 @@
 
 #include "bond_pbd.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "modify.h"
 

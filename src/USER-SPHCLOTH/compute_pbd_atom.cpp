@@ -1,8 +1,8 @@
 #include "compute_pbd_atom.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "fix_pbd_cloth.h"
+#include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "update.h"
 
@@ -48,7 +48,7 @@ bool ComputePBDAtom::asks_for(Column first, Column last) const
 void ComputePBDAtom::init()
 {
   FixPBDCloth *found = FixPBDCloth::find(lmp, label, cloth_id);
-  if (asks_for(Column::FX, Column::FZ)) found->want_holding_forces();
+  if (asks_for(Column::FX, Column::FZ)) found->want_reaction_forces();
   cloth = found;
 }
 
@@ -89,7 +89,7 @@ double ComputePBDAtom::value(Column column, int i, const Place &place) const
     case Column::NY:
     case Column::NZ: return place.normal[static_cast<int>(column) - static_cast<int>(Column::NX)];
     default:
-      return cloth->holding_force(i)[static_cast<int>(column) - static_cast<int>(Column::FX)];
+      return cloth->reaction_force(i)[static_cast<int>(column) - static_cast<int>(Column::FX)];
   }
 }
 

@@ -1,10 +1,10 @@
 #include "compute_pbd_local.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "core/util/bytes.h"
 #include "core/pbd/constraints.h"
+#include "core/util/bytes.h"
 #include "fix_pbd_cloth.h"
+#include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "update.h"
 

@@ -1,11 +1,11 @@
 #include "compute_sph_atom.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "error.h"
 #include "fix_cloth_contact.h"
 #include "fix_sph_integrate.h"
 #include "force.h"
+#include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
@@ -122,7 +122,7 @@ double ComputeSPHAtom::value(Column column, int i) const
 {
   const bool integrated = stepper && atom->mask[i] & stepper->groupbit;
   switch (column) {
-    case Column::NEIGHBORS: return pair->count_neighbours(i);
+    case Column::NEIGHBORS: return pair->count_neighbors(i);
     case Column::DT: return integrated ? stepper->own_step(i) : 0.0;
     case Column::SIDE: return sheets->side_of(i);
     case Column::ACTIVE: return integrated && stepper->is_active(i);

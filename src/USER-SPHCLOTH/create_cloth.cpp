@@ -1,14 +1,14 @@
 #include "create_cloth.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
 #include "modify.h"
 #include "region.h"
 
@@ -27,7 +27,7 @@ static constexpr double MOST_IMAGES = 500.0;
 static constexpr double MOST_CELLS = 1e8;
 
 CreateCloth::CreateCloth(LAMMPS *lmp_) :
-    Command(lmp_), itype(0), areal_mass(0.0), centre(Vec3::Zero()), axis_u(Vec3::UnitX()),
+    Command(lmp_), itype(0), areal_mass(0.0), center(Vec3::Zero()), axis_u(Vec3::UnitX()),
     axis_v(Vec3::UnitY()), length(0.0), width(0.0), radius(0.0), spacing(0.0), bond_type(1),
     shear_type(0), triangle_type(1), hinge_type(1), groupbit(0), first_id(0)
 {
@@ -72,7 +72,7 @@ void CreateCloth::read_options(ArgReader &args)
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "center")
-      centre = read_vector(args, keyword);
+      center = read_vector(args, keyword);
     else if (keyword == "size") {
       length = args.positive("size, first side");
       width = args.positive("size, second side");
@@ -229,7 +229,7 @@ void CreateCloth::check_capacity() const
 
 CreateCloth::Vec3 CreateCloth::place(int k) const
 {
-  return centre + sheet.vertices[k][0] * axis_u + sheet.vertices[k][1] * axis_v;
+  return center + sheet.vertices[k][0] * axis_u + sheet.vertices[k][1] * axis_v;
 }
 
 void CreateCloth::create_vertices()

@@ -32,7 +32,7 @@ class CreateCloth : public Command {
 
   int itype;
   double areal_mass;
-  Vec3 centre, axis_u, axis_v;
+  Vec3 center, axis_u, axis_v;
   double length, width, radius, spacing;    // either length and width or radius
   std::optional<sphcloth::Pattern> pattern;
   int bond_type, shear_type, triangle_type, hinge_type;

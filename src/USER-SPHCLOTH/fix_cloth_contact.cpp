@@ -3,15 +3,15 @@
 
 #include "fix_cloth_contact.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
 #include "memory.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
@@ -55,7 +55,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
       rules.sides = args.choice(keyword, {"no", "yes"});
     else if (keyword == "wall") {
       const bool yes = args.choice(keyword, {"no", "yes"});
-      walls.reset(yes ? new SheetWalls(lmp, label, groupbit) : nullptr);
+      walls.reset(yes ? new MeshBoundary(lmp, label, groupbit) : nullptr);
     } else
       args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
   }
@@ -97,7 +97,7 @@ void FixClothContact::init()
   surfaces.clear();
   obstacles.clear();
   hard.clear();
-  guests.clear();
+  couplings.clear();
   vertex_bits = 0;
   std::vector<FixPBDCloth *> cloths;
   bool behind = false;
@@ -114,7 +114,7 @@ void FixClothContact::init()
                  label, group->names[igroup], fix->id);
     surfaces.push_back(
         std::make_unique<ContactSurface>(lmp, cloth, this, groupbit, &rules, &counts));
-    cloth->invite(surfaces.back().get());
+    cloth->register_coupling(surfaces.back().get());
     cloths.push_back(cloth);
     vertex_bits |= cloth->groupbit;
   }
@@ -165,8 +165,8 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
   obstacle.set_pushes(pushes);
   hard.push_back(std::make_unique<ContactSurface>(lmp, &obstacle, this, meets, &rules, &counts));
   for (FixPBDCloth *cloth : cloths) {
-    guests.push_back(std::make_unique<ObstacleGuest>(lmp, cloth, hard.back().get(), &rules));
-    cloth->invite(guests.back().get());
+    couplings.push_back(std::make_unique<ObstacleCoupling>(lmp, cloth, hard.back().get(), &rules));
+    cloth->register_coupling(couplings.back().get());
     hard.back()->meet_vertices_of(cloth);
   }
 }
@@ -189,9 +189,9 @@ void FixClothContact::setup_post_neighbor()
                "data file needs an Angles section",
                label);
   keep_places();
-  if (rules.sides && surfaces.size() > sphcloth::MOST_SHEETS)
+  if (rules.sides && surfaces.size() > sphcloth::MAX_SHEETS)
     error->all(FLERR, "{}: {} cloths have sides, the most are {}: give 'sides no'", label,
-               surfaces.size(), sphcloth::MOST_SHEETS);
+               surfaces.size(), sphcloth::MAX_SHEETS);
   if (rules.sides)
     for (auto &surface : surfaces) surface->check_winding();
   post_neighbor();
@@ -302,7 +302,7 @@ void FixClothContact::pre_reverse(int, int)
 int FixClothContact::side_of(int i) const
 {
   if (!rules.sides || static_cast<std::size_t>(i) >= side.size() || side[i] == 0) return 0;
-  for (int sheet = 0; sheet < sphcloth::MOST_SHEETS; sheet++)
+  for (int sheet = 0; sheet < sphcloth::MAX_SHEETS; sheet++)
     for (int sign : {1, -1})
       if (side[i] & sphcloth::side_of_sheet(sheet, sign > 0)) return sign;
   return 0;
@@ -313,10 +313,10 @@ int FixClothContact::side_of(int i) const
 void FixClothContact::follow_into_box()
 {
   for (int i = 0; i < atom->nlocal; i++) {
-    double way[3];
-    for (int d = 0; d < 3; d++) way[d] = atom->x[i][d] - places[i][d];
-    domain->minimum_image(FLERR, way);
-    for (int d = 0; d < 3; d++) places[i][d] = atom->x[i][d] - way[d];
+    double displacement[3];
+    for (int d = 0; d < 3; d++) displacement[d] = atom->x[i][d] - places[i][d];
+    domain->minimum_image(FLERR, displacement);
+    for (int d = 0; d < 3; d++) places[i][d] = atom->x[i][d] - displacement[d];
   }
 }
 

@@ -56,7 +56,7 @@ class FixClothContact : public Fix {
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const { return side.data(); }
   // what fills the kernel of fluid near the meshes; null with 'wall no'
-  SheetWalls *wall() const { return walls.get(); }
+  MeshBoundary *wall() const { return walls.get(); }
   // how far pair_style sph/tait looks
   void set_sight(double distance) { sight = distance; }
 
@@ -72,8 +72,8 @@ class FixClothContact : public Fix {
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
-  std::vector<std::unique_ptr<ObstacleGuest>> guests;    // of every cloth and obstacle
-  std::unique_ptr<SheetWalls> walls;
+  std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
+  std::unique_ptr<MeshBoundary> walls;
   ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
   std::vector<sphcloth::Sides> side;
   double sight;

@@ -5,9 +5,7 @@
 
 #include "fix_pbd_cloth.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "bond_pbd.h"
 #include "comm.h"
 #include "core/util/bytes.h"
@@ -16,10 +14,12 @@
 #include "fix_sph_integrate.h"
 #include "force.h"
 #include "group.h"
-#include "memory.h"
-#include "modify.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
+#include "memory.h"
+#include "modify.h"
 #include "sph_adaptive.h"
 #include "update.h"
 
@@ -51,7 +51,7 @@ static constexpr double NOT_YET = std::numeric_limits<double>::quiet_NaN();
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), solver(Solver::SUBSTEPS),
-    iterations(10), there_and_back(false), from_start(true), tolerance(0.0), step_given(0.0),
+    iterations(10), symmetric_sweeps(false), from_start(true), tolerance(0.0), step_given(0.0),
     step_of_k(0.0), pinbit(0), pin_motion(lmp, label), attachbit(0), damping(0.0), rest_x(nullptr),
     hold(nullptr), lent(nullptr), mesh(lmp, label), constraints(lmp, label, mesh), halo(lmp),
     holding{}, sweeps(0), remembered(true), last_residual(0.0), last_energy(0.0), started(false),
@@ -101,7 +101,7 @@ void FixPBDCloth::read_options(ArgReader &args)
       solver = static_cast<Solver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
       solver_given = true;
     } else if (keyword == "order")
-      there_and_back = args.choice(keyword, {"forward", "symmetric"});
+      symmetric_sweeps = args.choice(keyword, {"forward", "symmetric"});
     else if (keyword == "direction")
       from_start = args.choice(keyword, {"current", "start"});
     else if (keyword == "tolerance")
@@ -133,9 +133,9 @@ void FixPBDCloth::read_options(ArgReader &args)
   if (attachbit && solver == Solver::SUBSTEPS)
     args.fail("solver", "substeps",
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
-  if (there_and_back && solver == Solver::JACOBI)
+  if (symmetric_sweeps && solver == Solver::JACOBI)
     args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
-  if (attachbit) want_holding_forces();
+  if (attachbit) want_reaction_forces();
   if (solver == Solver::SUBSTEPS) {
     memory->create(lent, atom->nmax, 3, "pbd/cloth:lent");
     std::fill_n(lent[0], 3 * atom->nmax, NOT_YET);
@@ -214,7 +214,7 @@ int FixPBDCloth::setmask()
 
 void FixPBDCloth::init()
 {
-  guests.clear();
+  couplings.clear();
   check_overlap();
   check_masses();
   mesh.gather(groupbit);
@@ -226,7 +226,7 @@ void FixPBDCloth::init()
   steps_jump = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
   step_of_k = step_of_stiffness();
   constraints.measure_rest(groupbit, rest_x);
-  constraints.colour(there_and_back ? 2 * iterations : iterations, solver == Solver::JACOBI);
+  constraints.color(symmetric_sweeps ? 2 * iterations : iterations, solver == Solver::JACOBI);
 }
 
 void FixPBDCloth::check_overlap()
@@ -300,7 +300,7 @@ void FixPBDCloth::post_neighbor()
   for (int s = 0; s < halo.n_slots(); s++) p[s].w = w[s];
   start = p;
   v = p;
-  way = p;
+  displacement = p;
   kick = w;
   for (int s : attached) kick[s] = 0.0;
   change.assign(solver == Solver::JACOBI ? n : 0, {});
@@ -333,12 +333,12 @@ void FixPBDCloth::post_integrate()
   if (lent) lend();
   load();
   if (hold) start_pulls();
-  begin_guests();
-  if (step_of_k > 0.0) constraints.keep_springs(step_of_k / usual_substeps(), substep_dt());
+  begin_couplings();
+  if (step_of_k > 0.0) constraints.rescale_stiffness(step_of_k / usual_substeps(), substep_dt());
   for (int n = 0; n < substeps; n++) substep(n);
-  if (hold) let_bodies_feel();
+  if (hold) apply_reactions();
   store();
-  for (ClothGuest *guest : present) guest->end_step();
+  for (SolverCoupling *coupling : present) coupling->end_step();
   remembered = false;
   started = true;
 }
@@ -372,10 +372,10 @@ void FixPBDCloth::move_pins()
   }
 }
 
-void FixPBDCloth::begin_guests()
+void FixPBDCloth::begin_couplings()
 {
   present.clear();
-  if (guests.empty()) return;
+  if (couplings.empty()) return;
   const double dt = update->dt;
   for (int s = 0; s < halo.n_owned(); s++) {
     const double *f = atom->f[halo.atom_of(s)], by = dt * force->ftm2v * kick[s];
@@ -383,8 +383,8 @@ void FixPBDCloth::begin_guests()
     p[s].y = start[s].y + dt * (v[s].y + by * f[1]);
     p[s].z = start[s].z + dt * (v[s].z + by * f[2]);
   }
-  for (ClothGuest *guest : guests)
-    if (guest->begin_step(start.data(), p.data(), dt)) present.push_back(guest);
+  for (SolverCoupling *coupling : couplings)
+    if (coupling->begin_step(start.data(), p.data(), dt)) present.push_back(coupling);
 }
 
 // A held vertex is on its way from where its velocity says that it was to where it is.
@@ -432,13 +432,13 @@ void FixPBDCloth::substep(int n)
   }
   const bool last = n == substeps - 1;
   for (int s = 0; s < halo.n_owned(); s++) {
-    way[s] = {dt * v[s].x, dt * v[s].y, dt * v[s].z, way[s].w};
-    if (!last || way[s].w > 0.0) continue;
+    displacement[s] = {dt * v[s].x, dt * v[s].y, dt * v[s].z, displacement[s].w};
+    if (!last || displacement[s].w > 0.0) continue;
     const double *x = atom->x[halo.atom_of(s)];    // without rounding
-    way[s] = {x[0] - start[s].x, x[1] - start[s].y, x[2] - start[s].z, 0.0};
+    displacement[s] = {x[0] - start[s].x, x[1] - start[s].y, x[2] - start[s].z, 0.0};
   }
-  halo.forward_ways(ALL, way.data(), substep_dt());
-  for (ClothGuest *guest : present) guest->begin_substep(start.data(), v.data(), dt);
+  halo.forward_displacements(ALL, displacement.data(), substep_dt());
+  for (SolverCoupling *coupling : present) coupling->begin_substep(start.data(), v.data(), dt);
 
   project_all(dt);
   go();
@@ -448,12 +448,12 @@ void FixPBDCloth::substep(int n)
   }
   const double inv_dt = 1.0 / dt;
   for (int s = 0; s < halo.n_owned(); s++) {
-    if (way[s].w == 0.0) continue;
-    v[s].x = inv_dt * way[s].x;
-    v[s].y = inv_dt * way[s].y;
-    v[s].z = inv_dt * way[s].z;
+    if (displacement[s].w == 0.0) continue;
+    v[s].x = inv_dt * displacement[s].x;
+    v[s].y = inv_dt * displacement[s].y;
+    v[s].z = inv_dt * displacement[s].z;
   }
-  for (ClothGuest *guest : present) guest->end_substep(v.data(), dt);
+  for (SolverCoupling *coupling : present) coupling->end_substep(v.data(), dt);
   if (!last) start = p;
 }
 
@@ -462,9 +462,9 @@ void FixPBDCloth::substep(int n)
 void FixPBDCloth::go()
 {
   for (int s = 0; s < halo.n_slots(); s++) {
-    p[s].x = start[s].x + way[s].x;
-    p[s].y = start[s].y + way[s].y;
-    p[s].z = start[s].z + way[s].z;
+    p[s].x = start[s].x + displacement[s].x;
+    p[s].y = start[s].y + displacement[s].y;
+    p[s].z = start[s].z + displacement[s].z;
   }
 }
 
@@ -474,24 +474,24 @@ void FixPBDCloth::damp()
 {
   const double share = -std::expm1(-damping * substep_dt());
   halo.forward_velocities(ALL, v.data());
-  for (int c = 0; c < constraints.edge_colours(); c++) {
+  for (int c = 0; c < constraints.edge_colors(); c++) {
     sphcloth::damp(constraints.distance, c, start.data(), v.data(), share);
-    halo.forward_velocities(constraints.channel_of_edge_colour(c), v.data());
+    halo.forward_velocities(constraints.channel_of_edge_color(c), v.data());
   }
 }
 
 void FixPBDCloth::project_all(double dt)
 {
-  const ClothState state{start.data(), way.data(), from_start,
+  const ClothState state{start.data(), displacement.data(), from_start,
                          solver == Solver::JACOBI ? change.data() : nullptr, 1.0 / (dt * dt)};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = solver == Solver::SUBSTEPS ? 1 : iterations;
   for (sweeps = 0; sweeps < n;) {
     solver == Solver::JACOBI ? jacobi(state) : gauss_seidel(state);
-    for (ClothGuest *guest : present) {
-      guest->project(way.data());
-      halo.forward_ways(ALL, way.data(), substep_dt());
+    for (SolverCoupling *coupling : present) {
+      coupling->project(displacement.data());
+      halo.forward_displacements(ALL, displacement.data(), substep_dt());
     }
     sweeps++;
     if (tolerance == 0.0) continue;
@@ -505,36 +505,38 @@ void FixPBDCloth::project_all(double dt)
 
 void FixPBDCloth::gauss_seidel(const ClothState &state)
 {
-  const int n = constraints.distance.colours() + constraints.bending.colours();
-  for (int c = 0; c < n; c++) project_colour(c, state);
-  for (int c = n - 1; there_and_back && c >= 0; c--) project_colour(c, state);
+  const int n = constraints.distance.colors() + constraints.bending.colors();
+  for (int c = 0; c < n; c++) project_color(c, state);
+  for (int c = n - 1; symmetric_sweeps && c >= 0; c--) project_color(c, state);
 }
 
 // edges first, then hinges
 
-void FixPBDCloth::project_colour(int c, const ClothState &state)
+void FixPBDCloth::project_color(int c, const ClothState &state)
 {
-  const int hinge = c - constraints.distance.colours();
+  const int hinge = c - constraints.distance.colors();
   if (hinge < 0) {
     project(constraints.distance, c, state);
-    halo.forward_ways(constraints.channel_of_edge_colour(c), way.data(), substep_dt());
+    halo.forward_displacements(constraints.channel_of_edge_color(c), displacement.data(),
+                               substep_dt());
   } else {
     project(constraints.bending, hinge, state);
-    halo.forward_ways(constraints.channel_of_hinge_colour(hinge), way.data(), substep_dt());
+    halo.forward_displacements(constraints.channel_of_hinge_color(hinge), displacement.data(),
+                               substep_dt());
   }
 }
 
 void FixPBDCloth::jacobi(const ClothState &state)
 {
-  for (int c = 0; c < constraints.distance.colours(); c++) project(constraints.distance, c, state);
-  for (int c = 0; c < constraints.bending.colours(); c++) project(constraints.bending, c, state);
+  for (int c = 0; c < constraints.distance.colors(); c++) project(constraints.distance, c, state);
+  for (int c = 0; c < constraints.bending.colors(); c++) project(constraints.bending, c, state);
   for (int s = 0; s < halo.n_owned(); s++) {
-    way[s].x += change[s].x;
-    way[s].y += change[s].y;
-    way[s].z += change[s].z;
+    displacement[s].x += change[s].x;
+    displacement[s].y += change[s].y;
+    displacement[s].z += change[s].z;
   }
   std::fill(change.begin(), change.end(), Vertex());
-  halo.forward_ways(ALL, way.data(), substep_dt());
+  halo.forward_displacements(ALL, displacement.data(), substep_dt());
 }
 
 // What the free vertices gained beyond the external forces came from those that are held.
@@ -546,9 +548,9 @@ void FixPBDCloth::store()
     const int i = halo.atom_of(s);
     if (!(atom->mask[i] & attachbit)) {
       external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
-      for (const ClothGuest *guest : present) {
-        met += guest->impulse_on(s);
-        if (p[s].w == 0.0) push_held(i, guest->impulse_on(s));
+      for (const SolverCoupling *coupling : present) {
+        met += coupling->impulse_on(s);
+        if (p[s].w == 0.0) push_held(i, coupling->impulse_on(s));
       }
     }
     if (kick[s] == 0.0) continue;
@@ -601,7 +603,7 @@ double FixPBDCloth::all_lent(int d) const
    pull of the cloth on what holds its vertices
 ------------------------------------------------------------------------- */
 
-void FixPBDCloth::want_holding_forces()
+void FixPBDCloth::want_reaction_forces()
 {
   if (hold) return;
   memory->create(hold, atom->nmax, HOLD, "pbd/cloth:hold");
@@ -631,7 +633,7 @@ template <std::size_t N> void FixPBDCloth::add_pull_on_pins(const Constraints<N>
 
 // An attached vertex took part with its own mass: what it gained is the body's, from now on.
 
-void FixPBDCloth::let_bodies_feel()
+void FixPBDCloth::apply_reactions()
 {
   for (int s : attached) {
     const int i = halo.atom_of(s);
@@ -657,7 +659,7 @@ void FixPBDCloth::pre_reverse(int, int)
       for (int d = 0; d < 3; d++) atom->f[i][d] += hold[i][d];
 }
 
-Eigen::Vector3d FixPBDCloth::holding_force(int i) const
+Eigen::Vector3d FixPBDCloth::reaction_force(int i) const
 {
   return is_held(i) ? Vec3(-hold[i][0], -hold[i][1], -hold[i][2]) : Vec3::Zero();
 }
@@ -851,5 +853,5 @@ double FixPBDCloth::memory_usage()
 {
   return (3.0 + (hold ? HOLD : 0.0) + (lent ? 3.0 : 0.0)) * sizeof(double) * atom->nmax +
       constraints.distance.bytes() + constraints.bending.bytes() +
-      bytes_of(p, v, start, way, change) + halo.memory_usage();
+      bytes_of(p, v, start, displacement, change) + halo.memory_usage();
 }

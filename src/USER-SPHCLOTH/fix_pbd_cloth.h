@@ -12,12 +12,12 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "fix.h"
 
 #include "cloth/cloth_constraints.h"
-#include "cloth/solver_coupling.h"
 #include "cloth/cloth_topology.h"
+#include "cloth/pin_motion.h"
+#include "cloth/solver_coupling.h"
+#include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
 #include "core/pbd/cloth_solver.h"
-#include "cloth/pin_motion.h"
-#include "cloth/vertex_halo.h"
 
 #include <array>
 #include <string>
@@ -66,7 +66,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   int n_owned() const { return halo.n_owned(); }
 
   // takes part in the projections until the next init()
-  void invite(ClothGuest *guest) { guests.push_back(guest); }
+  void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
 
   // of edge and hinge m of the topology; an edge without a length or a constraint has no strain
   double rest_length(int m) const { return constraints.rest_length(m); }
@@ -77,8 +77,8 @@ class FixPBDCloth : public Fix, public ContactMesh {
 
   // force of an atom's holder on the cloth in the last step: 0 for a free vertex.  Known from the
   // next step on if it is asked for before a run.
-  void want_holding_forces();
-  Eigen::Vector3d holding_force(int owned_atom) const;
+  void want_reaction_forces();
+  Eigen::Vector3d reaction_force(int owned_atom) const;
 
  private:
   using Vec3 = Eigen::Vector3d;
@@ -91,7 +91,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   std::string label;
   Solver solver;
   int iterations;
-  bool there_and_back;    // a sweep goes through the constraints and back
+  bool symmetric_sweeps;    // a sweep goes through the constraints and back
   bool from_start;    // edges are projected along where they were at the start of the step
   double tolerance;    // of the residual, 0: all iterations are done
   double step_given;    // for which k holds, by the user; 0: not given
@@ -109,14 +109,14 @@ class FixPBDCloth : public Fix, public ContactMesh {
 
   // by slot, and one idle vertex behind: places, velocities, places at the start of the (sub)step, ways
   // since then, and of one Jacobi sweep
-  sphcloth::Vertices p, v, start, way, change;
+  sphcloth::Vertices p, v, start, displacement, change;
   std::vector<int> attached;    // slots
   std::vector<double> kick;    // inverse mass to the forces: 0 also for attached vertices
   double holding[3];    // force of the holders in the last step, this rank's part
   int sweeps;    // of the last step
   bool remembered;    // the next two are of the last step, this rank's part
   double last_residual, last_energy;
-  std::vector<ClothGuest *> guests, present;    // those that are near in this step
+  std::vector<SolverCoupling *> couplings, present;    // those that are near in this step
   bool started;    // velocities are those of half a step ago, see direction start
   bool steps_jump;    // between powers of two
   double step_dt, shortest_of_late;    // steps: the one that is taken
@@ -126,7 +126,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void take_rest_positions(const char *);
   void check_overlap();
   void check_masses();
-  void begin_guests();
+  void begin_couplings();
   int read_held(ArgReader &, const std::string &keyword);
   bool is_held(int atom) const;
   bool is_pinned(int atom) const;
@@ -144,14 +144,14 @@ class FixPBDCloth : public Fix, public ContactMesh {
   void damp();
   void project_all(double dt);
   void gauss_seidel(const sphcloth::ClothState &);
-  void project_colour(int colour, const sphcloth::ClothState &);
+  void project_color(int color, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   void store();
   void lend();
   double all_lent(int dimension) const;
   void start_pulls();
   template <std::size_t N> void add_pull_on_pins(const sphcloth::Constraints<N> &);
-  void let_bodies_feel();
+  void apply_reactions();
   double residual() const;
   bool converged() const;
   void remember();

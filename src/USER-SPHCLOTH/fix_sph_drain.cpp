@@ -2,17 +2,17 @@
 
 #include "fix_sph_drain.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
-#include "region.h"
 #include "lammps_util/restart_record.h"
+#include "region.h"
 
 #include <algorithm>
 #include <cmath>

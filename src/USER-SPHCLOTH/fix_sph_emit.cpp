@@ -4,17 +4,17 @@
 
 #include "fix_sph_emit.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ static constexpr double MOST_IN_LAYER = 1e8;
 
 FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
-    spacing(0.0), mass(0.0), centre(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
+    spacing(0.0), mass(0.0), center(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
     disc(false), start(0.0), layer_time(0.0), layers(0), momentum{}
 {
   restart_global = 1;
@@ -64,11 +64,11 @@ void FixSPHEmit::read_options(ArgReader &args)
     const std::string keyword = args.word("keyword");
     if (keyword == "disc") {
       disc = true;
-      centre = vector("disc centre");
+      center = vector("disc centre");
       extent[0] = args.positive("disc radius");
     } else if (keyword == "rectangle") {
       disc = false;
-      centre = vector("rectangle centre");
+      center = vector("rectangle centre");
       extent[0] = args.positive("rectangle first side");
       extent[1] = args.positive("rectangle second side");
     } else if (keyword == "velocity")
@@ -138,7 +138,7 @@ void FixSPHEmit::init()
         "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of {:.6g}",
         label, 100.0 * excess, at_rest);
   for (const Vec3 &x : pattern) {
-    Vec3 place = centre + x;
+    Vec3 place = center + x;
     if (!domain->inside(place.data()))
       error->all(FLERR,
                  "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
@@ -182,7 +182,7 @@ void FixSPHEmit::emit_layer(double age)
   bigint mine[2] = {0, warned ? 0 : count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
-    add_particle(centre + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
+    add_particle(center + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
   for (int i = before; i < atom->nlocal; i++) modify->create_attribute(i);
 
   mine[0] = atom->nlocal - before;
@@ -204,7 +204,7 @@ void FixSPHEmit::emit_layer(double age)
 
 bigint FixSPHEmit::count_in_the_way(double age) const
 {
-  const Vec3 normal = velocity.normalized(), middle = centre + age * velocity;
+  const Vec3 normal = velocity.normalized(), middle = center + age * velocity;
   bigint n = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     const Vec3 from = Eigen::Map<const Vec3>(atom->x[i]) - middle;

@@ -50,7 +50,7 @@ class FixSPHEmit : public Fix {
   int itype;
   double spacing;
   double mass;    // of a particle, 0: that of water at rest
-  Vec3 centre, velocity;
+  Vec3 center, velocity;
   double extent[2];    // radius of the disc, or the two sides of the rectangle
   bool disc;
   double start;                 // physical time of the first layer

@@ -3,23 +3,23 @@
 
 #include "fix_sph_integrate.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
-#include "stepping/block_steps.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
 #include "force.h"
 #include "group.h"
 #include "integrate.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
+#include "lammps_util/restart_record.h"
 #include "memory.h"
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/rank_error.h"
-#include "lammps_util/restart_record.h"
 #include "sph_adaptive.h"
+#include "stepping/block_steps.h"
 #include "update.h"
 
 #include <algorithm>
@@ -589,7 +589,7 @@ inline StepState FixSPHIntegrate::particle_state(int i, const double *f) const
   s.nu = fluid.viscosity;
   s.sound = fluid.sound * fluid.eos.stiffening(s.rho);
   if (lambda.relative > 0.0) s.approach = pair->approach_speed(i);
-  const bool flies = pair->pressure_term()[i] == 0.0;
+  const bool flies = pair->p_over_rho2()[i] == 0.0;
   if (flies) s.until_pressed = until_pressed(i, fluid.eos.rho0 - s.rho, s.sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!flies || scheme == SteppingScheme::INDIVIDUAL) s.drho = atom->drho[i];
@@ -607,7 +607,7 @@ double FixSPHIntegrate::until_pressed(int i, double gap, double sound) const
   const double by_sound = lambda.acoustic * smoothing / sound;
   if (flies_alone || 0.5 * alone <= by_sound || ceiling <= by_sound) return alone;
   const double ratio = atom->rho[i] / smoothing;
-  return time_to_cross(gap, atom->drho[i], pair->pressure_term_beside(i) * ratio * ratio);
+  return time_to_cross(gap, atom->drho[i], pair->p_over_rho2_beside(i) * ratio * ratio);
 }
 
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is

@@ -11,10 +11,10 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include "fix.h"
 
-#include "core/timestep/step_limits.h"
 #include "core/sph/tait.h"
-#include "stepping/output_times.h"
+#include "core/timestep/step_limits.h"
 #include "lammps_util/particle_columns.h"
+#include "stepping/output_times.h"
 
 #include <array>
 #include <memory>

@@ -3,7 +3,6 @@
 
 #include "fix_sph_shift.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "core/util/bytes.h"
@@ -12,9 +11,10 @@
 #include "fix_wall_sph.h"
 #include "force.h"
 #include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>
@@ -97,7 +97,7 @@ void FixSPHShift::init()
 void FixSPHShift::post_force(int)
 {
   const int n = atom->nlocal, n_types = atom->ntypes + 1;
-  crowd.assign(n, Crowd());
+  crowd.assign(n, ConcentrationGradient());
   open.assign(n + atom->nghost, 0.0);
   volumes.resize(n + atom->nghost);
   for (int i = 0; i < n + atom->nghost; i++) volumes[i] = volume(i);
@@ -131,20 +131,20 @@ template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScal
   const int dim = domain->dimension, n_types = atom->ntypes + 1, type = atom->type[i];
   const double spacing = spacing_of(volumes[i].at_rest, dim);
   const double *x = atom->x[i], *v = atom->v[i];
-  Crowd &mine = crowd[i];
+  ConcentrationGradient &mine = crowd[i];
   for (int t = 1; t < n_types; t++) {
     const KernelScale &s = scale[type * n_types + t];
     const double at_spacing = K::shape(std::min(spacing * s.inv_support, 0.9));
-    const Stretch near = pair->neighbours(i, t);
+    const NeighborSpan near = pair->neighbors(i, t);
     for (int k = 0; k < near.n; k++) {
       const int j = near.of[k];
       const double *xj = atom->x[j];
-      const Neighbour neighbour{
+      const NeighborTerm neighbor_type{
           {x[0] - xj[0], x[1] - xj[1], x[2] - xj[2]}, volumes[j].now, volumes[j].at_rest};
-      add_neighbour<K>(mine, neighbour, s, at_spacing, coefficients.clumping, dim);
+      add_neighbor<K>(mine, neighbor_type, s, at_spacing, coefficients.clumping, dim);
       if (!correct_velocity) continue;
       const double *vj = atom->v[j];
-      add_velocity<K>(mine, neighbour, {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]}, s);
+      add_velocity<K>(mine, neighbor_type, {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]}, s);
     }
   }
   if (walls) walls->add_to(mine, i);
@@ -166,7 +166,7 @@ bool FixSPHShift::near_surface_or_cloth(int i) const
   if (open[i] != 0.0) return true;
   const double *x = atom->x[i];
   for (int t = 1; t <= atom->ntypes; t++) {
-    const Stretch near = pair->neighbours(i, t);
+    const NeighborSpan near = pair->neighbors(i, t);
     const double support = pair->support(atom->type[i], t);
     for (int k = 0; k < near.n; k++) {
       const int j = near.of[k];

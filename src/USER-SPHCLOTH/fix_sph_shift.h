@@ -56,7 +56,7 @@ class FixSPHShift : public Fix {
   int cloth_bits;    // groups of cloth vertices
 
   // between the evaluation and the next step, during which no particle changes its place in memory
-  std::vector<sphcloth::Crowd> crowd;
+  std::vector<sphcloth::ConcentrationGradient> crowd;
   std::vector<Volume> volumes;    // owned and ghost
   std::vector<double> open;    // owned and ghost: 1 at a free surface
   std::vector<char> left;

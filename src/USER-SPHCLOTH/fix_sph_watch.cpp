@@ -3,9 +3,7 @@
 
 #include "fix_sph_watch.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -13,10 +11,12 @@
 #include "fix_sph_emit.h"
 #include "force.h"
 #include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "output.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/restart_record.h"
 #include "update.h"
 
 #include <algorithm>

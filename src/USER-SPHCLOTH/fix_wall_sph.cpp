@@ -3,16 +3,16 @@
 
 #include "fix_wall_sph.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "input.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/rank_error.h"
 #include "update.h"
 #include "variable.h"
 
@@ -297,11 +297,11 @@ double FixWallSPH::departure(int i, std::size_t k) const
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
 // in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
 
-void FixWallSPH::push(int i, double pressure_term) { push(i, pressure_term, 1.0, true); }
+void FixWallSPH::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
 
-void FixWallSPH::push_more(int i, double pressure_term, double times)
+void FixWallSPH::push_more(int i, double p_over_rho2, double times)
 {
-  push(i, pressure_term, times, false);
+  push(i, p_over_rho2, times, false);
 }
 
 void FixWallSPH::forget_pushes() { std::fill(mine.begin(), mine.end(), 0.0); }
@@ -311,7 +311,7 @@ void FixWallSPH::prolong(double times)
   for (std::size_t k = 0; k + 1 < mine.size(); k++) mine[k] *= times;    // the energy stays
 }
 
-void FixWallSPH::push(int i, double pressure_term, double times, bool first)
+void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 {
   if (!look(i)) return;
   const int type = atom->type[i];
@@ -333,7 +333,7 @@ void FixWallSPH::push(int i, double pressure_term, double times, bool first)
         : 0.0;
 
     const double pressure =
-        times * stop - reflection * pressure_term * denser;    // per mass, away from the wall
+        times * stop - reflection * p_over_rho2 * denser;    // per mass, away from the wall
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
                                      : -times * friction * (v[d] - wall.velocity[d]);
@@ -365,7 +365,7 @@ bool FixWallSPH::moves_beside(int i)
   });
 }
 
-void FixWallSPH::add_to(Crowd &crowd, int i)
+void FixWallSPH::add_to(ConcentrationGradient &crowd, int i)
 {
   if (!look(i)) return;
   const double support = pair->support(atom->type[i]);

@@ -11,8 +11,8 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "fix.h"
 
-#include "core/sph/shifting.h"
 #include "core/sph/plane_wall.h"
+#include "core/sph/shifting.h"
 #include "fluid/fluid_boundary.h"
 
 #include <array>
@@ -24,7 +24,7 @@ namespace LAMMPS_NS {
 class ArgReader;
 class PairSPHTait;
 
-class FixWallSPH : public Fix, public FluidWall {
+class FixWallSPH : public Fix, public FluidBoundary {
  public:
   FixWallSPH(class LAMMPS *, int, char **);
   int setmask() override;
@@ -37,8 +37,8 @@ class FixWallSPH : public Fix, public FluidWall {
   void begin() override;
   double density(int i) override;
   double density_rate(int i, double back) override;
-  void push(int i, double pressure_term) override;
-  void push_more(int i, double pressure_term, double times) override;
+  void push(int i, double p_over_rho2) override;
+  void push_more(int i, double p_over_rho2, double times) override;
   void forget_pushes() override;
   void prolong(double times) override;
 
@@ -47,7 +47,7 @@ class FixWallSPH : public Fix, public FluidWall {
   bool moves_beside(int i) override;
 
   // What the walls, where they were then, add to the surroundings of a fluid particle
-  void add_to(sphcloth::Crowd &, int i);
+  void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
   enum class Place { NUMBER, EDGE, VARIABLE };
@@ -99,7 +99,7 @@ class FixWallSPH : public Fix, public FluidWall {
   bool measure(int i, double back = 0.0);
   double slope(int, std::size_t, double share) const;
   double departure(int, std::size_t) const;
-  void push(int i, double pressure_term, double times, bool first);
+  void push(int i, double p_over_rho2, double times, bool first);
   double output(int);
 };
 

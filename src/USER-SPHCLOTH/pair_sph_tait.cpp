@@ -3,10 +3,7 @@
 
 #include "pair_sph_tait.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
-#include "stepping/block_steps.h"
 #include "comm.h"
 #include "core/util/bytes.h"
 #include "domain.h"
@@ -14,10 +11,13 @@
 #include "fix_cloth_contact.h"
 #include "fix_wall_sph.h"
 #include "force.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "lammps_util/rank_error.h"
+#include "stepping/block_steps.h"
 #include "timer.h"
 #include "update.h"
 
@@ -141,7 +141,7 @@ void PairSPHTait::find_walls()
   walls.clear();
   meshes.clear();
   for (Fix *fix : modify->get_fix_list()) {
-    if (auto *plane = dynamic_cast<FluidWall *>(fix)) walls.push_back(plane);
+    if (auto *plane = dynamic_cast<FluidBoundary *>(fix)) walls.push_back(plane);
     if (auto *contact = dynamic_cast<FixClothContact *>(fix); contact && contact->wall())
       meshes.push_back(contact->wall());
   }
@@ -181,7 +181,7 @@ void PairSPHTait::set_model()
   model.dimension = domain->dimension;
   model.n_types = atom->ntypes;
   model.friction = Friction::NONE;
-  model.also = Also::NOTHING;
+  model.also = Outputs::NOTHING;
   model.role.assign(n, Role::NONE);
   model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
@@ -258,33 +258,33 @@ void PairSPHTait::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   is_evaluated = false;
-  const bool new_neighbours = neighbor->ago == 0;
-  if (new_neighbours) renew();
+  const bool new_neighbors = neighbor->ago == 0;
+  if (new_neighbors) renew();
   const Particles p = particles();
-  follow(p, new_neighbours);
+  follow(p, new_neighbors);
 
   select(p);
   fluid->place(p, box());
-  measure_amounts(p, new_neighbours);
-  for (FluidWall *wall : walls) wall->begin();
-  for (SheetWalls *mesh : meshes) mesh->begin();
+  measure_amounts(p, new_neighbors);
+  for (FluidBoundary *wall : walls) wall->begin();
+  for (MeshBoundary *mesh : meshes) mesh->begin();
   densities(p);
-  pressures(p, pressures_follow || new_neighbours);
+  pressures(p, pressures_follow || new_neighbors);
   stage = Stage::DENSITY;
   comm->forward_comm(this, 2);
   if (extrapolate) boundary_pressures(p);
   fluid->record(p);
   if (blocks && blocks->catch_up()) fluid->record(p);
 
-  fluid->forces(p, blocks ? On::FLUID : On::ALL);
+  fluid->forces(p, blocks ? Target::FLUID : Target::ALL);
   if (blocks) blocks->note_forces();
-  for (FluidWall *wall : walls)
+  for (FluidBoundary *wall : walls)
     for_each_fluid([&](int i, const Tait &) { wall->push(i, pressure[i]); });
-  for (SheetWalls *mesh : meshes)
+  for (MeshBoundary *mesh : meshes)
     for_each_fluid([&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
   if (vflag_either) tally_virial(p);
   if (blocks) blocks->hand_out();
-  for (SheetWalls *mesh : meshes) mesh->end();
+  for (MeshBoundary *mesh : meshes) mesh->end();
   if (eflag_either) tally_energy();
   is_evaluated = true;
 }
@@ -301,27 +301,27 @@ void PairSPHTait::select(const Particles &p)
       for (const int slot : fluid->active().of(t)) active_fluid.push_back(fluid->order().at(slot));
 }
 
-void PairSPHTait::push_walls_more(int i, double pressure_term, double times)
+void PairSPHTait::push_walls_more(int i, double p_over_rho2, double times)
 {
-  for (FluidWall *wall : walls) wall->push_more(i, pressure_term, times);
-  for (SheetWalls *mesh : meshes) mesh->push_more(i, pressure_term / mesh->stretch(i), times);
+  for (FluidBoundary *wall : walls) wall->push_more(i, p_over_rho2, times);
+  for (MeshBoundary *mesh : meshes) mesh->push_more(i, p_over_rho2 / mesh->stretch(i), times);
 }
 
 void PairSPHTait::prolong_walls(double times)
 {
-  for (FluidWall *wall : walls) wall->prolong(times);
-  for (SheetWalls *mesh : meshes) mesh->prolong(times);
+  for (FluidBoundary *wall : walls) wall->prolong(times);
+  for (MeshBoundary *mesh : meshes) mesh->prolong(times);
 }
 
 void PairSPHTait::hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take)
 {
-  for (FluidWall *wall : walls) wall->forget_pushes();
-  for (SheetWalls *mesh : meshes) mesh->hand_over(take);
+  for (FluidBoundary *wall : walls) wall->forget_pushes();
+  for (MeshBoundary *mesh : meshes) mesh->hand_over(take);
 }
 
 bool PairSPHTait::feels_moving_wall(int i) const
 {
-  for (FluidWall *wall : walls)
+  for (FluidBoundary *wall : walls)
     if (wall->moves_beside(i)) return true;
   return is_beside_mesh(i);
 }
@@ -329,7 +329,7 @@ bool PairSPHTait::feels_moving_wall(int i) const
 bool PairSPHTait::is_beside_mesh(int i) const
 {
   return std::any_of(meshes.begin(), meshes.end(),
-                     [&](const SheetWalls *mesh) { return mesh->is_beside(i); });
+                     [&](const MeshBoundary *mesh) { return mesh->is_beside(i); });
 }
 
 void PairSPHTait::give_impulses(const std::vector<int> &slots, const double *pressure_time,
@@ -398,7 +398,7 @@ void PairSPHTait::renew()
   amount.resize(atom->nmax);
   pressure.assign(atom->nmax, 0.0);
   if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
-  if (fluid->model.also == Also::RATE_AND_APPROACH) approach.resize(atom->nmax);
+  if (fluid->model.also == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
     if (!materials.is_boundary(itype))
@@ -416,10 +416,10 @@ void PairSPHTait::renew()
 // As wide as LAMMPS's skin lists hold until LAMMPS renews its own: it looks at how far the fastest has
 // gone.  Narrower ones are made anew where particles have come nearer.
 
-void PairSPHTait::follow(const Particles &p, bool new_neighbours)
+void PairSPHTait::follow(const Particles &p, bool new_neighbors)
 {
   try {
-    if (new_neighbours)
+    if (new_neighbors)
       fluid->list(p, reach.data(), neighbor->skin, motion(p));
     else
       fluid->follow(p);
@@ -459,11 +459,11 @@ bool PairSPHTait::is_measured(int t) const
 // Volumes of boundary particles that share space among themselves follow their motion, as long as
 // there is fluid to feel them.
 
-void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
+void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbors)
 {
   const int n = atom->ntypes + 1;
-  std::fill(moved.begin(), moved.end(), new_neighbours);
-  if (measure_volume && !new_neighbours && any_fluid) {
+  std::fill(moved.begin(), moved.end(), new_neighbors);
+  if (measure_volume && !new_neighbors && any_fluid) {
     std::vector<int> &here = moved_here;
     std::fill(here.begin(), here.end(), 0);
     for (int i = 0; i < p.n_owned; i++) {
@@ -478,10 +478,10 @@ void PairSPHTait::measure_amounts(const Particles &p, bool new_neighbours)
     fluid->volumes(p, t, amount.data());
     measured = true;
   }
-  if (!measured && !new_neighbours) return;
+  if (!measured && !new_neighbors) return;
   stage = Stage::AMOUNT;
   comm->forward_comm(this, 1);
-  if (!new_neighbours) return;
+  if (!new_neighbors) return;
   std::array<int, 3> here{0, 0, 0}, anywhere{0, 0, 0};
   for (int i = 0; i < p.n_owned; i++) {
     const int t = p.type[i];
@@ -517,9 +517,9 @@ void PairSPHTait::densities(const Particles &p)
 {
   if (!options.continuity) {
     fluid->gather(p, true);
-    for (FluidWall *wall : walls)
+    for (FluidBoundary *wall : walls)
       for_each_fluid([&](int i, const Tait &) { p.rho[i] += wall->density(i); });
-    for (SheetWalls *mesh : meshes)
+    for (MeshBoundary *mesh : meshes)
       for_each_fluid([&](int i, const Tait &) { p.rho[i] *= mesh->stretch(i); });
     return;
   }
@@ -539,9 +539,9 @@ void PairSPHTait::integrate_density(const Particles &p)
   if (elapsed > 0.0) {
     const double back = 0.5 * elapsed;
     density_rates(p, back);
-    for (FluidWall *wall : walls)
+    for (FluidBoundary *wall : walls)
       for_each_fluid([&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
-    for (SheetWalls *mesh : meshes)
+    for (MeshBoundary *mesh : meshes)
       for_each_fluid([&](int i, const Tait &) {
         rate[i] = rate[i] * mesh->stretch(i) + mesh->density_rate(i, back);
       });
@@ -587,7 +587,7 @@ void PairSPHTait::pressures(const Particles &p, bool of_all)
     double &term = pressure[i];
     term = std::max(eos.pressure(rho), least) / (rho * rho);
     // a density that is stretched has a gradient that is
-    for (SheetWalls *mesh : meshes) term *= mesh->stretch(i);
+    for (MeshBoundary *mesh : meshes) term *= mesh->stretch(i);
     // neither true of what is not a number
     if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
       rank_error(lmp, FLERR,
@@ -654,11 +654,11 @@ double PairSPHTait::pressure_of(int i) const
 {
   double p = pressure[i] * atom->rho[i] * atom->rho[i];
   if (is_fluid(atom->type[i]))
-    for (SheetWalls *mesh : meshes) p /= mesh->stretch(i);
+    for (MeshBoundary *mesh : meshes) p /= mesh->stretch(i);
   return p;
 }
 
-int PairSPHTait::count_neighbours(int i)
+int PairSPHTait::count_neighbors(int i)
 {
   if (fluid->order().slots() == 0) return 0;    // a scene without fluid has no lists
   const Particles p = particles();
@@ -681,13 +681,13 @@ bool PairSPHTait::inside_support(int i, int j) const
   return apart_sq(atom->x[i], atom->x[j]) < far * far;
 }
 
-double PairSPHTait::pressure_term_beside(int i)
+double PairSPHTait::p_over_rho2_beside(int i)
 {
   double **x = atom->x;
   double greatest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++) {
     const double far = support(atom->type[i], t), far_sq = far * far;
-    const Stretch near = neighbours(i, t);
+    const NeighborSpan near = neighbors(i, t);
     for (int k = 0; k < near.n; k++)
       if (const int j = near.of[k]; pressure[j] > greatest && apart_sq(x[i], x[j]) < far_sq)
         greatest = pressure[j];
@@ -697,21 +697,21 @@ double PairSPHTait::pressure_term_beside(int i)
 
 void PairSPHTait::want_wetting() const
 {
-  for (SheetWalls *mesh : meshes) mesh->want_wetting();
+  for (MeshBoundary *mesh : meshes) mesh->want_wetting();
 }
 
 double PairSPHTait::approach_speed(int i)
 {
   double most = approach[i];
-  for (FluidWall *wall : walls) most = std::max(most, wall->approach(i));
-  for (SheetWalls *mesh : meshes) most = std::max(most, mesh->approach(i));
+  for (FluidBoundary *wall : walls) most = std::max(most, wall->approach(i));
+  for (MeshBoundary *mesh : meshes) most = std::max(most, mesh->approach(i));
   return most;
 }
 
 PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
   if (!materials.is_boundary(atom->type[i])) {
-    for (const SheetWalls *mesh : meshes)
+    for (const MeshBoundary *mesh : meshes)
       if (mesh->fluid_mass(i) > 0.0) return {mesh->fluid_mass(i), mesh->sound(i)};
     return {};
   }

@@ -25,8 +25,8 @@ namespace LAMMPS_NS {
 
 class BlockSteps;
 class FixClothContact;
-class FluidWall;
-class SheetWalls;
+class FluidBoundary;
+class MeshBoundary;
 
 class PairSPHTait : public Pair {
  public:
@@ -92,14 +92,14 @@ class PairSPHTait : public Pair {
   double amount_of(int i) const { return amount[i]; }
   double pressure_of(int i) const;
   // of all roles that matter to it, inside the support
-  int count_neighbours(int i);
+  int count_neighbors(int i);
 
   // per-atom pressure over density squared, owned and ghost, of the last evaluation
-  const double *pressure_term() const { return pressure.data(); }
+  const double *p_over_rho2() const { return pressure.data(); }
 
   // The largest speed at which a neighbour or a wall and an owned fluid particle came near when it
   // was active last; to be asked for in init()
-  void want_approach() { fluid->model.also = sphcloth::Also::RATE_AND_APPROACH; }
+  void want_approach() { fluid->model.also = sphcloth::Outputs::RATE_AND_APPROACH; }
   double approach_speed(int i);
 
   // volume of a particle, owned or ghost, in the last evaluation
@@ -113,14 +113,14 @@ class PairSPHTait : public Pair {
   // What they ask for once the forces on the active fluid are known: to push walls once more, as
   // FluidWall::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
   // Fluid::record_impulses() on these owned particles.
-  void push_walls_more(int i, double pressure_term, double times);
+  void push_walls_more(int i, double p_over_rho2, double times);
   void prolong_walls(double times);
   // what walls have been pushed so far: take(owned vertex, force) of meshes, of others it is left out
   void hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take);
-  void push_boundaries() { fluid->forces(particles(), sphcloth::On::BOUNDARIES); }
+  void push_boundaries() { fluid->forces(particles(), sphcloth::Target::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);
-  sphcloth::NearLists &order() { return fluid->order(); }
+  sphcloth::DualLists &order() { return fluid->order(); }
   bool feels_moving_wall(int i) const;
   bool is_beside_mesh(int i) const;
   // owned fluid particles that are updated in this evaluation, with block steps
@@ -128,10 +128,10 @@ class PairSPHTait : public Pair {
 
   // Neighbours of an owned atom inside the support, and some a little outside: how many of these depends
   // on the ranks.
-  sphcloth::Stretch neighbours(int i, int type) { return fluid->neighbours(i, type); }
+  sphcloth::NeighborSpan neighbors(int i, int type) { return fluid->neighbors(i, type); }
   bool inside_support(int i, int j) const;
   // the greatest of those inside, at least 0
-  double pressure_term_beside(int i);
+  double p_over_rho2_beside(int i);
 
   // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
   // without an array all are active.  Densities of the others may be interpolated by who says so, and
@@ -146,7 +146,7 @@ class PairSPHTait : public Pair {
   // d rho/dt goes to atom->drho with the forces; to be asked for in init()
   void want_density_rate()
   {
-    fluid->model.also = std::max(fluid->model.also, sphcloth::Also::RATE);
+    fluid->model.also = std::max(fluid->model.also, sphcloth::Outputs::RATE);
   }
 
   // Time that has passed since the last evaluation, for a density that follows its rate
@@ -168,8 +168,8 @@ class PairSPHTait : public Pair {
   Options options;
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
-  std::vector<FluidWall *> walls;
-  std::vector<SheetWalls *> meshes;    // those of them that are meshes
+  std::vector<FluidBoundary *> walls;
+  std::vector<MeshBoundary *> meshes;    // those of them that are meshes
   FixClothContact *sheets;    // that part the fluid; null without
   BlockSteps *blocks;
   bool is_evaluated;
@@ -203,7 +203,7 @@ class PairSPHTait : public Pair {
   sphcloth::Particles particles();
   sphcloth::Fluid::Box box() const;
   void renew();
-  void follow(const sphcloth::Particles &, bool new_neighbours);
+  void follow(const sphcloth::Particles &, bool new_neighbors);
   sphcloth::Motion motion(const sphcloth::Particles &) const;
   bool is_measured(int type) const;
   void measure_amounts(const sphcloth::Particles &, bool);

@@ -3,7 +3,6 @@
 #include "sph_adaptive.h"
 
 #include "angle.h"
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "bond.h"
 #include "comm.h"
@@ -13,6 +12,7 @@
 #include "force.h"
 #include "improper.h"
 #include "kspace.h"
+#include "lammps_util/arg_reader.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"

@@ -1,11 +1,11 @@
 #include "sph_write.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/arg_reader.h"
 #include "pair_sph_tait.h"
 #include "update.h"
 

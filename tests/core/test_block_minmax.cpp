@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)
 {
   Scattered s(9000);
   s.value.assign(s.n, 3);
-  Survey survey(s.blocks);
+  BlockMinMax survey(s.blocks);
   survey.take(s.value.data());
   for (int b = 0; b < s.blocks.count(); b++)
     for (int t = 1; t <= TYPES; t++)
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(no_particles_have_no_minimum_or_maximum)
   const std::vector<int> type{1}, value{4};
   Blocks blocks;
   blocks.divide(x.data(), type.data(), 1, TYPES, WIDTH);
-  Survey survey(blocks);
+  BlockMinMax survey(blocks);
   survey.take(value.data());
   BOOST_CHECK(survey.all_have(4, 0, 1) && !survey.all_have(5, 0, 1));
   BOOST_CHECK(survey.all_have(5, 0, 2));

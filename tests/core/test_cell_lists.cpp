@@ -33,7 +33,7 @@ Cloud cloud(int n, int n_types, double a, double b, double c, unsigned seed)
 void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<double> &reach)
 {
   const int n = static_cast<int>(p.type.size());
-  NeighbourLists lists;
+  CellLists lists;
   lists.build(p.x.data(), p.type.data(), n_owned, n, n_types, reach.data());
   std::set<int> seen;
   for (int t = 1; t <= n_types; t++)
@@ -44,7 +44,7 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
       for (int other = 1; other <= n_types; other++) {
         const double far = reach[t * (n_types + 1) + other];
         std::multiset<int> listed;
-        const Stretch s = lists(slot, other);
+        const NeighborSpan s = lists(slot, other);
         listed.insert(s.of, s.of + s.n);
         for (int j = 0; j < n; j++) {
           double r_sq = 0.0;
@@ -98,12 +98,12 @@ BOOST_AUTO_TEST_CASE(pairs_parted_by_a_sheet_are_left_out_and_no_others)
     if (std::fabs(z) < 0.3) sides[i] = side_of_sheet(2, z > 0.0);
   }
   const std::vector<double> reach{0, 0, 0, 0.2};
-  NeighbourLists all, parts;
+  CellLists all, parts;
   all.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data());
   parts.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data(), sides.data());
   int left_out = 0;
   for (int slot = 0; slot < all.slots(); slot++) {
-    const Stretch one = all(slot, 1), other = parts(slot, 1);
+    const NeighborSpan one = all(slot, 1), other = parts(slot, 1);
     std::multiset<int> expected, listed(other.of, other.of + other.n);
     for (int k = 0; k < one.n; k++)
       if (parted(sides[all.at(slot)], sides[one.of[k]]))

@@ -15,10 +15,10 @@ BOOST_AUTO_TEST_CASE(no_two_constraints_of_one_color_share_a_vertex)
   const Sheet sheet = make_sheet(Pattern::DIAGONAL, 1.0, 1.0, 0.05);
   const MeshTopology mesh = mesh_topology(sheet.triangles);
   int n = 0;
-  const auto colour = colour_constraints(mesh.hinges, static_cast<int>(sheet.vertices.size()), n);
+  const auto color = color_constraints(mesh.hinges, static_cast<int>(sheet.vertices.size()), n);
   std::set<std::pair<int, int>> seen;
   for (std::size_t m = 0; m < mesh.hinges.size(); m++)
-    for (int v : mesh.hinges[m]) BOOST_CHECK(seen.insert({colour[m], v}).second);
+    for (int v : mesh.hinges[m]) BOOST_CHECK(seen.insert({color[m], v}).second);
   BOOST_CHECK(n > 0 && n < 40);
 }
 

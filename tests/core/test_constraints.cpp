@@ -35,7 +35,7 @@ constexpr double FREE = std::numeric_limits<double>::infinity();
 
 template <std::size_t N> struct Alone {
   Constraints<N> c;
-  std::array<Vertex, N + 1> p, start, way,
+  std::array<Vertex, N + 1> p, start, displacement,
       change;    // p: after the sweeps, from there the next ones go on
   bool along_start = false;
 
@@ -49,16 +49,17 @@ template <std::size_t N> struct Alone {
     start = p;
     c.clear(1, N);
     c.add(slots, spring);
-    c.close_colour();
+    c.close_color();
   }
   void sweep(int n = 1)
   {
     for (std::size_t q = 0; q < N; q++)
-      way[q] = {p[q].x - start[q].x, p[q].y - start[q].y, p[q].z - start[q].z, p[q].w};
+      displacement[q] = {p[q].x - start[q].x, p[q].y - start[q].y, p[q].z - start[q].z, p[q].w};
     for (int k = 0; k < n; k++)
-      project(c, 0, {start.data(), way.data(), along_start, nullptr, 1.0});
+      project(c, 0, {start.data(), displacement.data(), along_start, nullptr, 1.0});
     for (std::size_t q = 0; q < N; q++)
-      p[q] = {start[q].x + way[q].x, start[q].y + way[q].y, start[q].z + way[q].z, p[q].w};
+      p[q] = {start[q].x + displacement[q].x, start[q].y + displacement[q].y,
+              start[q].z + displacement[q].z, p[q].w};
   }
 };
 
@@ -312,10 +313,11 @@ BOOST_AUTO_TEST_CASE(jacobi_sweep_adds_up_and_agrees_with_gauss_seidel_for_one)
   const std::array<Vec3, 2> x{Vec3(0, 0, 0), Vec3(1.4, 0.2, 0)};
   Alone<2> direct(x, {1.0, 3.0}, {1.0, 1.0, 0.0, FREE}), summed = direct;
   direct.sweep();
-  for (int q = 0; q < 2; q++) summed.way[q].w = summed.p[q].w;
-  project(summed.c, 0, {summed.p.data(), summed.way.data(), false, summed.change.data(), 1.0});
+  for (int q = 0; q < 2; q++) summed.displacement[q].w = summed.p[q].w;
+  project(summed.c, 0,
+          {summed.p.data(), summed.displacement.data(), false, summed.change.data(), 1.0});
   for (int q = 0; q < 2; q++) {
-    BOOST_CHECK(place(summed.way[q]) == Vec3(0, 0, 0));
+    BOOST_CHECK(place(summed.displacement[q]) == Vec3(0, 0, 0));
     BOOST_CHECK_SMALL((x[q] + place(summed.change[q]) - place(direct.p[q])).norm(), 1e-15);
   }
 }
@@ -327,24 +329,24 @@ BOOST_AUTO_TEST_CASE(place_in_a_group_does_not_matter_and_groups_are_filled_up)
     const Vec3 r = random_vec();
     p[i] = {r[0], r[1], r[2], 0.5 + 0.1 * i};
   }
-  Vertices way(15);
-  for (int i = 0; i < 14; i++) way[i].w = p[i].w;
+  Vertices displacement(15);
+  for (int i = 0; i < 14; i++) displacement[i].w = p[i].w;
   Constraints<2> c;
   c.clear(2, 14);
   for (int m = 0; m < 7; m++) c.add({2 * m, 2 * m + 1}, {0.6, 1.0, 1e-3, FREE});
-  c.close_colour();
+  c.close_color();
   c.add({0, 13}, {0.6, 1.0, 0.0, FREE});
-  c.close_colour();
-  BOOST_CHECK(c.size() == 12 && c.colours() == 2 && c.begin[1] == 8);
-  project(c, 0, {p.data(), way.data(), false, nullptr, 1.0});
+  c.close_color();
+  BOOST_CHECK(c.size() == 12 && c.colors() == 2 && c.begin[1] == 8);
+  project(c, 0, {p.data(), displacement.data(), false, nullptr, 1.0});
   for (int m = 0; m < 7; m++) {
     Alone<2> one({place(p[2 * m]), place(p[2 * m + 1])}, {p[2 * m].w, p[2 * m + 1].w},
                  {0.6, 1.0, 1e-3, FREE});
     one.sweep();
-    BOOST_CHECK(place(one.way[0]) == place(way[2 * m]) &&
-                place(one.way[1]) == place(way[2 * m + 1]));
+    BOOST_CHECK(place(one.displacement[0]) == place(displacement[2 * m]) &&
+                place(one.displacement[1]) == place(displacement[2 * m + 1]));
   }
-  BOOST_CHECK(way[14].x == 0.0 && way[14].y == 0.0 && way[14].z == 0.0);
+  BOOST_CHECK(displacement[14].x == 0.0 && displacement[14].y == 0.0 && displacement[14].z == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(rescaled_stiffness_is_a_compliance_in_any_step_and_comes_back)
@@ -356,17 +358,17 @@ BOOST_AUTO_TEST_CASE(rescaled_stiffness_is_a_compliance_in_any_step_and_comes_ba
     // one projection by k/(k + (1 - k) ratio) is one with a = W (1 - k)/k ratio
     Alone<2> one = kept,
              compliant(x, {0.5, 2.0}, {rest, 1.0, weight * (1.0 - k) / k * ratio, FREE});
-    one.c.keep_springs(ratio);
+    one.c.rescale_stiffness(ratio);
     one.sweep();
     compliant.sweep();
     BOOST_CHECK_SMALL((place(one.p[0]) - place(compliant.p[0])).norm(), 1e-15);
   }
-  kept.c.keep_springs(7.0);
+  kept.c.rescale_stiffness(7.0);
   BOOST_CHECK(kept.c.k[0] < k);
-  kept.c.keep_springs(1.0);
+  kept.c.rescale_stiffness(1.0);
   BOOST_CHECK(kept.c.k[0] == k);
   Alone<2> rigid(x, {0.5, 2.0}, {rest, 1.0, 0.0, FREE});
-  rigid.c.keep_springs(100.0);
+  rigid.c.rescale_stiffness(100.0);
   BOOST_CHECK(rigid.c.k[0] == 1.0);
 }
 

@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(finds_the_triangles_near_a_point_and_the_nearest)
   int found = 0;
   grid.within(Eigen::Vector3d(0, 0, infinite), infinite, [&](int) { found++; });
   BOOST_CHECK(found <= 500);
-  moving[3].centre[0] = infinite;
+  moving[3].center[0] = infinite;
   roomy.build(moving, far);
   roomy.within(vec(), far, [](int t) { BOOST_CHECK(t != 3); });
   grid.build({}, far);

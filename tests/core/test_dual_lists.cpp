@@ -34,10 +34,10 @@ struct Walk {
 
 // how many of those inside the support are missing in the front of a list
 
-int missing(const NearLists &lists, const Walk &w, int i, int t)
+int missing(const DualLists &lists, const Walk &w, int i, int t)
 {
   const int slot = lists.slot(i);
-  const Stretch front = lists(slot, t);
+  const NeighborSpan front = lists(slot, t);
   int n = 0;
   for (int j = 0; j < w.n; j++) {
     if (j == i || w.type[j] != t) continue;
@@ -53,7 +53,7 @@ struct Watched {
   Walk walk;
   int owned;
   std::vector<double> v;
-  NearLists lists;
+  DualLists lists;
   // types 1 and 2; type 2 does not interact with itself
   const std::vector<double> support{0, 0, 0, 0, SUPPORT, SUPPORT, 0, SUPPORT, 0};
 

@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_CASE(through_the_middle_from_both_sides_at_any_speed)
   for (double side : {1.0, -1.0})
     for (double speed : {0.02, 1.0, 1000.0}) {
       const Sweep p{{0.3, 0.1, side * 0.01}, {0.3, 0.1, side * (0.01 - speed)}};
-      const Touch t = touch(p, resting_triangle(), 1e-3);
+      const ContactResult t = touch(p, resting_triangle(), 1e-3);
       BOOST_CHECK(t.hit);
       BOOST_CHECK(t.through == (speed > 0.01));
       BOOST_CHECK_SMALL(t.normal[2] - side, 1e-15);
@@ -57,7 +57,8 @@ BOOST_AUTO_TEST_CASE(past_the_edge_away_along_and_short_of_it_do_not_count)
 
 BOOST_AUTO_TEST_CASE(inside_the_thickness_the_gap_may_not_shrink_and_is_never_widened)
 {
-  const Touch nearer = touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 3e-4}}, resting_triangle(), 1e-3);
+  const ContactResult nearer =
+      touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 3e-4}}, resting_triangle(), 1e-3);
   BOOST_CHECK(nearer.hit);
   BOOST_CHECK(!nearer.through);
   BOOST_CHECK_SMALL(nearer.depth - 1e-4, 1e-12);
@@ -95,12 +96,14 @@ BOOST_AUTO_TEST_CASE(no_seam_between_two_triangles)
 BOOST_AUTO_TEST_CASE(edges_and_vertices_keep_their_distance_too)
 {
   // beside the edge from (0, 0) to (1, 0), and off the corner at the origin
-  const Touch edge = touch({{0.5, -0.02, 0.0}, {0.5, -0.005, 0.0}}, resting_triangle(), 0.01);
+  const ContactResult edge =
+      touch({{0.5, -0.02, 0.0}, {0.5, -0.005, 0.0}}, resting_triangle(), 0.01);
   BOOST_CHECK(edge.hit && !edge.through);
   BOOST_CHECK_SMALL(edge.depth - 0.005, 1e-12);
   BOOST_CHECK_SMALL((edge.normal - Vec3(0, -1, 0)).norm(), 1e-12);
   BOOST_CHECK_SMALL((edge.weight - Vec3(0.5, 0.5, 0.0)).norm(), 1e-12);
-  const Touch corner = touch({{-0.3, -0.4, 0.0}, {-0.003, -0.004, 0.0}}, resting_triangle(), 0.01);
+  const ContactResult corner =
+      touch({{-0.3, -0.4, 0.0}, {-0.003, -0.004, 0.0}}, resting_triangle(), 0.01);
   BOOST_CHECK(corner.hit);
   BOOST_CHECK_SMALL(corner.depth - 0.005, 1e-12);
   BOOST_CHECK_SMALL((corner.weight - Vec3(1, 0, 0)).norm(), 1e-12);

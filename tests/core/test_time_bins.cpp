@@ -11,20 +11,20 @@ BOOST_AUTO_TEST_SUITE(time_bins)
 
 BOOST_AUTO_TEST_CASE(steps_begin_at_multiples_of_their_length)
 {
-  TimeLine line{1.0, 0};
+  TimeBins line{1.0, 0};
   BOOST_CHECK(line.coarsest() == 0);
-  line.now = TimeLine::ticks(3);
+  line.now = TimeBins::ticks(3);
   BOOST_CHECK(line.coarsest() == 3);
   BOOST_CHECK(line.begins(3) && line.begins(4) && !line.begins(2));
-  line.now += TimeLine::ticks(3);
+  line.now += TimeBins::ticks(3);
   BOOST_CHECK(line.coarsest() == 2);
-  line.now = TimeLine::ticks(0);
+  line.now = TimeBins::ticks(0);
   BOOST_CHECK(line.ended() && line.coarsest() == 0);
 }
 
 BOOST_AUTO_TEST_CASE(longest_step_that_is_not_above_what_is_wanted)
 {
-  const TimeLine line{1.0, 0};
+  const TimeBins line{1.0, 0};
   BOOST_CHECK(line.level_of(2.0) == 0 && line.level_of(1.0) == 0);
   BOOST_CHECK(line.level_of(0.99) == 1 && line.level_of(0.5) == 1 && line.level_of(0.3) == 2);
   BOOST_CHECK(line.level_of(0.5 * (1.0 - 1e-14)) == 1);    // rounding
@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(longest_step_that_is_not_above_what_is_wanted)
 static double cost(const std::vector<double> &wanted, double root)
 {
   double sum = 0.0;
-  const TimeLine line{root, 0};
+  const TimeBins line{root, 0};
   for (const double dt : wanted) sum += 1.0 / line.step(line.level_of(dt));
   return sum;
 }
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(no_particle_gets_more_than_wanted_whatever_the_base_step)
   for (int k = 0; k < 300; k++) wanted.push_back(1e-4 * std::pow(1.03, k % 170));
   WantedSteps all;
   for (const double dt : wanted) all.add(dt, 1e-4);
-  const TimeLine line{all.best_root(1e-4, 0.1, 1.0), 0};
+  const TimeBins line{all.best_root(1e-4, 0.1, 1.0), 0};
   BOOST_CHECK(line.root > 5e-5);
   for (const double dt : wanted) BOOST_CHECK(line.step(line.level_of(dt)) <= dt * (1.0 + 1e-12));
 }

@@ -88,7 +88,7 @@ void ClothConstraints::measure_rest(int groupbit, double **rest_x)
   }
 }
 
-void ClothConstraints::colour(int sweeps, bool at_once)
+void ClothConstraints::color(int sweeps, bool at_once)
 {
   const auto springs_of = [sweeps](const PBDMaterial *material) {
     return material ? material->springs(1.0, sweeps) : std::vector<Spring>();
@@ -103,8 +103,8 @@ void ClothConstraints::colour(int sweeps, bool at_once)
   edges.layers = 1;
   for (const std::vector<Spring> &springs : edges.springs)
     edges.layers = std::max(edges.layers, static_cast<int>(springs.size()));
-  edges.colour = colour_constraints(mesh.edges.vertices, mesh.n_vertices(), edges.colours);
-  hinges.colour = colour_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinges.colours);
+  edges.color = color_constraints(mesh.edges.vertices, mesh.n_vertices(), edges.colors);
+  hinges.color = color_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinges.colors);
 
   crowd.assign(at_once ? mesh.n_vertices() : 0, 0);
   count(edges);
@@ -150,10 +150,10 @@ void ClothConstraints::collect(VertexHalo &halo)
 // first of its vertices that is owned here.
 
 template <std::size_t N>
-ClothConstraints::ByColour<N> ClothConstraints::find(const Kind<N> &kind, VertexHalo &halo,
-                                                     const std::vector<int> &vertex_of_slot) const
+ClothConstraints::ByColor<N> ClothConstraints::find(const Kind<N> &kind, VertexHalo &halo,
+                                                    const std::vector<int> &vertex_of_slot) const
 {
-  ByColour<N> found(kind.colours);
+  ByColor<N> found(kind.colors);
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s), vertex = vertex_of_slot[s];
     for (int k = kind.elements.first[vertex]; k < kind.elements.first[vertex + 1]; k++) {
@@ -165,27 +165,27 @@ ClothConstraints::ByColour<N> ClothConstraints::find(const Kind<N> &kind, Vertex
         f.slots[q] = halo.slot_of(mesh.image_here(kind.elements.vertices[m][q], i));
         if (viewer < 0 && !halo.is_ghost(f.slots[q])) viewer = f.slots[q];
       }
-      if (viewer == s) found[kind.colour[m]].push_back(f);
+      if (viewer == s) found[kind.color[m]].push_back(f);
     }
   }
   return found;
 }
 
 template <std::size_t N>
-void ClothConstraints::fill(Constraints<N> &c, const Kind<N> &kind, const ByColour<N> &found,
+void ClothConstraints::fill(Constraints<N> &c, const Kind<N> &kind, const ByColor<N> &found,
                             int idle) const
 {
-  c.clear(kind.colours * kind.layers, idle);
+  c.clear(kind.colors * kind.layers, idle);
   for (int layer = 0; layer < kind.layers; layer++)
-    for (const std::vector<Found<N>> &of_colour : found) {
-      for (const Found<N> &f : of_colour) {
+    for (const std::vector<Found<N>> &of_color : found) {
+      for (const Found<N> &f : of_color) {
         const std::vector<Spring> &springs = kind.springs[kind.elements.type[f.element]];
         if (layer >= static_cast<int>(springs.size())) continue;
         Spring spring = springs[layer];
         spring.rest *= kind.rest[f.element];
         c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]));
       }
-      c.close_colour();
+      c.close_color();
     }
 }
 
@@ -197,9 +197,8 @@ void ClothConstraints::ask_for_ghosts(VertexHalo &halo) const
     for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++)
       for (int layer = 0; layer < edges.layers; layer++)
         halo.need(
-            s,
-            channel_of_edge_colour(edges.colour[mesh.edges.incident[k]] + edges.colours * layer));
+            s, channel_of_edge_color(edges.color[mesh.edges.incident[k]] + edges.colors * layer));
     for (int k = mesh.hinges.first[vertex]; k < mesh.hinges.first[vertex + 1]; k++)
-      halo.need(s, channel_of_hinge_colour(hinges.colour[mesh.hinges.incident[k]]));
+      halo.need(s, channel_of_hinge_color(hinges.color[mesh.hinges.incident[k]]));
   }
 }

@@ -5,8 +5,8 @@
 #define SPHCLOTH_CLOTH_CLOTH_CONSTRAINTS_H
 
 #include "cloth/cloth_topology.h"
-#include "core/pbd/cloth_solver.h"
 #include "cloth/vertex_halo.h"
+#include "core/pbd/cloth_solver.h"
 
 #include <array>
 #include <string>
@@ -30,31 +30,31 @@ class ClothConstraints : protected Pointers {
   // share.
 
   void measure_rest(int groupbit, double **rest_x);
-  void colour(int sweeps, bool at_once);
+  void color(int sweeps, bool at_once);
 
   // 2. after each list build, between reset() and connect() of the halo, which must have so many
   // channels: all ghosts, then the vertices of one colour each
 
-  int n_channels() const { return channel_of_hinge_colour(hinges.colours); }
+  int n_channels() const { return channel_of_hinge_color(hinges.colors); }
   void collect(VertexHalo &);
 
   // before a step dt: stiffnesses are those of the springs that they are in a step `reference`
-  void keep_springs(double reference, double dt)
+  void rescale_stiffness(double reference, double dt)
   {
     const double ratio = (reference / dt) * (reference / dt);
-    distance.keep_springs(ratio);
-    bending.keep_springs(ratio);
+    distance.rescale_stiffness(ratio);
+    bending.rescale_stiffness(ratio);
   }
 
   static constexpr int ALL = 0;
-  int channel_of_edge_colour(int c) const { return 1 + c; }
-  int channel_of_hinge_colour(int c) const { return 1 + edges.colours * edges.layers + c; }
+  int channel_of_edge_color(int c) const { return 1 + c; }
+  int channel_of_hinge_color(int c) const { return 1 + edges.colors * edges.layers + c; }
 
   // what this rank projects, with slots of the halo as vertices.  A type may be several constraints
   // at once: the colours of the second of each edge are behind those of the first.
   sphcloth::Constraints<2> distance;
   sphcloth::Constraints<4> bending;
-  int edge_colours() const { return edges.colours; }    // of the first
+  int edge_colors() const { return edges.colors; }    // of the first
 
   // of edge and hinge m of the mesh; an edge without a length or a constraint has no strain
   double rest_length(int m) const { return edges.rest[m]; }
@@ -68,8 +68,8 @@ class ClothConstraints : protected Pointers {
 
     const ClothElements<N> &elements;
     std::vector<double> rest;    // length or angle, by element
-    std::vector<int> colour;
-    int colours = 0, layers = 1;
+    std::vector<int> color;
+    int colors = 0, layers = 1;
     std::vector<std::vector<sphcloth::Spring>> springs;    // of a unit rest value, by type
   };
 
@@ -77,7 +77,7 @@ class ClothConstraints : protected Pointers {
     int element;
     std::array<int, N> slots;
   };
-  template <std::size_t N> using ByColour = std::vector<std::vector<Found<N>>>;
+  template <std::size_t N> using ByColor = std::vector<std::vector<Found<N>>>;
 
   std::string owner;
   const ClothTopology &mesh;
@@ -91,9 +91,9 @@ class ClothConstraints : protected Pointers {
   template <std::size_t N> void count(const Kind<N> &);
   template <std::size_t N> double share_of(const std::array<int, N> &vertices) const;
   template <std::size_t N>
-  ByColour<N> find(const Kind<N> &, VertexHalo &, const std::vector<int> &vertex_of_slot) const;
+  ByColor<N> find(const Kind<N> &, VertexHalo &, const std::vector<int> &vertex_of_slot) const;
   template <std::size_t N>
-  void fill(sphcloth::Constraints<N> &, const Kind<N> &, const ByColour<N> &, int idle) const;
+  void fill(sphcloth::Constraints<N> &, const Kind<N> &, const ByColor<N> &, int idle) const;
   void ask_for_ghosts(VertexHalo &) const;
 };
 

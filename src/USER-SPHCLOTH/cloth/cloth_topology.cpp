@@ -1,10 +1,10 @@
 #include "cloth/cloth_topology.h"
 
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 #ifndef SPHCLOTH_CLOTH_PBD_MATERIAL_H
 #define SPHCLOTH_CLOTH_PBD_MATERIAL_H
 
-#include "lammps_util/arg_reader.h"
 #include "comm.h"
 #include "core/pbd/constraints.h"
+#include "lammps_util/arg_reader.h"
 
 #include <algorithm>
 #include <limits>

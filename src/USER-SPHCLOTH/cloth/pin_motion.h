@@ -3,9 +3,9 @@
 #ifndef SPHCLOTH_CLOTH_PIN_MOTION_H
 #define SPHCLOTH_CLOTH_PIN_MOTION_H
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "input.h"
+#include "lammps_util/arg_reader.h"
 #include "variable.h"
 
 #include <array>

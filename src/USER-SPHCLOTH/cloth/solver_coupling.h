@@ -10,7 +10,7 @@
 
 namespace LAMMPS_NS {
 
-class ClothGuest {
+class SolverCoupling {
  public:
   // From where the vertices start, and where they would go without constraints, in a step of dt.
   // Collective; false on all ranks: nothing is near, and the rest is not called.
@@ -19,7 +19,7 @@ class ClothGuest {
   virtual void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v,
                              double dt) = 0;
   virtual void
-  project(sphcloth::Vertex *way) = 0;    // since that start, of owned vertices: changes it
+  project(sphcloth::Vertex *displacement) = 0;    // since that start, of owned vertices: changes it
   virtual void end_substep(sphcloth::Vertex *v, double dt) = 0;    // changes velocities
   virtual void end_step() = 0;
 
@@ -27,7 +27,7 @@ class ClothGuest {
   virtual Eigen::Vector3d impulse_on(int slot) const = 0;
 
  protected:
-  ~ClothGuest() noexcept(false) = default;
+  ~SolverCoupling() noexcept(false) = default;
 };
 
 }    // namespace LAMMPS_NS

@@ -54,7 +54,7 @@ class VertexHalo : protected Pointers {
   {
     add_to_images(channel, data, 1.0, -ago);
   }
-  template <class Data> void forward_ways(int channel, Data *data, double dt)
+  template <class Data> void forward_displacements(int channel, Data *data, double dt)
   {
     add_to_images(channel, data, 0.0, dt);
   }

@@ -4,10 +4,10 @@
 #include "contact/contact_surface.h"
 
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "core/util/bytes.h"
 #include "fix.h"
 #include "force.h"
+#include "lammps_util/atom_tools.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -102,9 +102,10 @@ void ContactSurface::set_discs(double reach)
   for (std::size_t t = 0; t < triangles.size(); t++) {
     const auto &[a, b, c] = triangles[t];
     discs[t] = disc_around(end[a], end[b], end[c]);
-    double way_sq = 0.0;
-    for (int s : triangles[t]) way_sq = std::max(way_sq, (end[s] - start[s]).squaredNorm());
-    discs[t].room = std::sqrt(way_sq);
+    double displacement_sq = 0.0;
+    for (int s : triangles[t])
+      displacement_sq = std::max(displacement_sq, (end[s] - start[s]).squaredNorm());
+    discs[t].room = std::sqrt(displacement_sq);
   }
   disc_grid.build(discs, reach);
 }
@@ -181,8 +182,8 @@ double ContactSurface::farthest_sq() const
   for (int i = 0; i < n; i++) {
     const double dx = x[3 * i] - then[3 * i], dy = x[3 * i + 1] - then[3 * i + 1],
                  dz = x[3 * i + 2] - then[3 * i + 2];
-    const double way_sq = mask[i] & meets ? dx * dx + dy * dy + dz * dz : 0.0;
-    farthest = std::max(farthest, way_sq);
+    const double displacement_sq = mask[i] & meets ? dx * dx + dy * dy + dz * dz : 0.0;
+    farthest = std::max(farthest, displacement_sq);
   }
   return farthest;
 }
@@ -223,7 +224,7 @@ void ContactSurface::meet()
   forget_pairs();
   for_overlapping([this](int i, int t, const Sweep &sweep) {
     if (!may_meet(sweep, sweep_of_triangle(t), 2.0 * rules->thickness)) return;
-    remember(i, t, Touch());
+    remember(i, t, ContactResult());
     particles[entry[i]].start = sweep.start;
     particles[entry[i]].end = sweep.end;
   });
@@ -311,8 +312,8 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   remaining -= dt;
   for (Particle &p : particles) {
     p.from = p.end;
-    p.way = dt * p.velocity;
-    p.end = p.from + p.way;
+    p.displacement = dt * p.velocity;
+    p.end = p.from + p.displacement;
     p.touched = false;
     p.contacts = 0;
   }
@@ -331,12 +332,13 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   halo.forward_places(0, from.data(), before);
 }
 
-void ContactSurface::project(Vertex *way)
+void ContactSurface::project(Vertex *displacement)
 {
   const Clock clock(counts->seconds);
   for (int s = 0; s < halo.n_owned(); s++) {
     const Vertex &from_here = substep_start[s];
-    end[s] = Vec3(from_here.x + way[s].x, from_here.y + way[s].y, from_here.z + way[s].z);
+    end[s] = Vec3(from_here.x + displacement[s].x, from_here.y + displacement[s].y,
+                  from_here.z + displacement[s].z);
   }
   halo.forward_places(0, end.data(), remaining);
   change.assign(halo.n_slots(), Vec3::Zero());
@@ -348,14 +350,14 @@ void ContactSurface::project(Vertex *way)
   }
 
   for (Particle &p : particles) {
-    p.way += p.w * p.change;
-    p.end = p.from + p.way;
+    p.displacement += p.w * p.change;
+    p.end = p.from + p.displacement;
   }
   halo.reverse_add(0, change.data());
   for (int s = 0; s < halo.n_owned(); s++) {
-    way[s].x += w_solver[s] * change[s][0];
-    way[s].y += w_solver[s] * change[s][1];
-    way[s].z += w_solver[s] * change[s][2];
+    displacement[s].x += w_solver[s] * change[s][0];
+    displacement[s].y += w_solver[s] * change[s][1];
+    displacement[s].z += w_solver[s] * change[s][2];
     received[s] += change[s] / substep_dt;
   }
 }
@@ -368,7 +370,7 @@ void ContactSurface::press(Pair &pair)
 {
   const Particle &p = particles[pair.particle];
   const std::array<int, 3> &slots = triangles[pair.triangle];
-  const Touch touched =
+  const ContactResult touched =
       touch({p.start, p.end}, sweep_of_triangle(pair.triangle), rules->thickness, 0.0);
   double missing = touched.depth;
   if (touched.hit) {
@@ -428,7 +430,7 @@ void ContactSurface::end_substep(Vertex *v, double dt)
 {
   const Clock clock(counts->seconds);
   for (Particle &p : particles) {
-    if (p.touched) p.velocity = p.way / dt;
+    if (p.touched) p.velocity = p.displacement / dt;
     p.load = 0.0;
     p.change.setZero();
   }
@@ -516,11 +518,12 @@ std::array<Sweep, 3> ContactSurface::triangle_until(int t, double part) const
   return sweep;
 }
 
-Eigen::Vector3d ContactSurface::way_of(int t, const Vec3 &weight) const
+Eigen::Vector3d ContactSurface::displacement_of(int t, const Vec3 &weight) const
 {
-  Vec3 way = Vec3::Zero();
-  for (int q = 0; q < 3; q++) way += weight[q] * (end[triangles[t][q]] - start[triangles[t][q]]);
-  return way;
+  Vec3 displacement = Vec3::Zero();
+  for (int q = 0; q < 3; q++)
+    displacement += weight[q] * (end[triangles[t][q]] - start[triangles[t][q]]);
+  return displacement;
 }
 
 void ContactSurface::push_triangle(int t, const Vec3 &weight, const Vec3 &impulse)

@@ -10,11 +10,11 @@
 #define SPHCLOTH_CONTACT_CONTACT_SURFACE_H
 
 #include "cloth/solver_coupling.h"
-#include "core/contact/point_triangle.h"
-#include "core/geometry/disc_grid.h"
-#include "core/contact/sheet_sides.h"
-#include "platform.h"
 #include "contact/triangle_set.h"
+#include "core/contact/point_triangle.h"
+#include "core/contact/sheet_sides.h"
+#include "core/geometry/disc_grid.h"
+#include "platform.h"
 
 #include <array>
 #include <map>
@@ -89,7 +89,7 @@ class ContactZones {
 
 Eigen::Vector3d at_most(const Eigen::Vector3d &, double most);
 
-class ContactSurface : public ClothGuest, public TriangleSet {
+class ContactSurface : public SolverCoupling, public TriangleSet {
  public:
   // contact: the fix that asks; meets: groups of the atoms that meet the mesh
   ContactSurface(LAMMPS *, ContactMesh *, Fix *contact, int meets, const ContactRules *,
@@ -103,7 +103,7 @@ class ContactSurface : public ClothGuest, public TriangleSet {
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
-  void project(sphcloth::Vertex *way) override;
+  void project(sphcloth::Vertex *displacement) override;
   void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }
@@ -129,9 +129,10 @@ class ContactSurface : public ClothGuest, public TriangleSet {
       if (boxes[t].intersects(box)) visit(t);
     });
   }
-  bool is_deeper(const sphcloth::Touch &, int t, const sphcloth::Touch &than, int than_t) const;
+  bool is_deeper(const sphcloth::ContactResult &, int t, const sphcloth::ContactResult &than,
+                 int than_t) const;
   std::array<sphcloth::Sweep, 3> triangle_until(int t, double part) const;
-  Vec3 way_of(int t, const Vec3 &weight) const;
+  Vec3 displacement_of(int t, const Vec3 &weight) const;
   void push_triangle(int t, const Vec3 &weight, const Vec3 &impulse);
   void hand_over_pushes();
 
@@ -153,7 +154,8 @@ class ContactSurface : public ClothGuest, public TriangleSet {
     bool touched = false;
     double load = 0.0;    // sum of the pushes of its pairs
     Vec3 start = Vec3::Zero(), end = Vec3::Zero();    // of the step so far
-    Vec3 from = Vec3::Zero(), way = Vec3::Zero();    // at the start of the substep, and since then
+    Vec3 from = Vec3::Zero(),
+         displacement = Vec3::Zero();    // at the start of the substep, and since then
     Vec3 velocity = Vec3::Zero(), velocity_before = Vec3::Zero(), change = Vec3::Zero();
   };
 
@@ -240,12 +242,12 @@ class ContactSurface : public ClothGuest, public TriangleSet {
   double split_mass(const Pair &, const std::vector<double> &inverse_mass) const;
   double loaded_mass(const Pair &) const;
   void forget_pairs();
-  void remember(int atom, int triangle, const sphcloth::Touch &);
+  void remember(int atom, int triangle, const sphcloth::ContactResult &);
   void give(const Pair &, const Vec3 &by);
   void press(Pair &);
   void rub(Pair &);
   bool stop(bool recover);
-  bool give_room(sphcloth::Touch &, const Vec3 &p, int t) const;
+  bool give_room(sphcloth::ContactResult &, const Vec3 &p, int t) const;
   void stop_approach();
   void take_velocities();
   void take_held(int atom, const Vec3 &impulse);

@@ -20,7 +20,7 @@ void Obstacle::push_held(int i, const Eigen::Vector3d &impulse)
 
 static Eigen::Vector3d vector_of(const Vertex &v) { return {v.x, v.y, v.z}; }
 
-bool ObstacleGuest::begin_step(const Vertex *start, const Vertex *end, double dt)
+bool ObstacleCoupling::begin_step(const Vertex *start, const Vertex *end, double dt)
 {
   step_dt = dt;
   elapsed = 0.0;
@@ -45,7 +45,7 @@ bool ObstacleGuest::begin_step(const Vertex *start, const Vertex *end, double dt
   return any;
 }
 
-void ObstacleGuest::begin_substep(const Vertex *start, const Vertex *v, double dt)
+void ObstacleCoupling::begin_substep(const Vertex *start, const Vertex *v, double dt)
 {
   substep_start = start;
   elapsed += dt;
@@ -59,16 +59,16 @@ void ObstacleGuest::begin_substep(const Vertex *start, const Vertex *v, double d
 
 // The deepest first, as often as there are triangles near.
 
-void ObstacleGuest::project(Vertex *way)
+void ObstacleCoupling::project(Vertex *displacement)
 {
   for (Meeting &m : meetings) {
-    Vertex &vertex = way[m.slot];
+    Vertex &vertex = displacement[m.slot];
     const Vec3 from = vector_of(substep_start[m.slot]);
     for (int pass = m.first; pass < m.last; pass++) {
-      Touch deepest;
+      ContactResult deepest;
       int triangle = -1;
       for (int k = m.first; k < m.last; k++) {
-        const Touch touched =
+        const ContactResult touched =
             touch({m.start, from + vector_of(vertex)},
                   surface->triangle_until(near[k], elapsed / step_dt), rules->thickness, 0.0);
         if (!touched.hit || !surface->is_deeper(touched, near[k], deepest, triangle)) continue;
@@ -96,14 +96,14 @@ void ObstacleGuest::project(Vertex *way)
 
 // of a vertex with velocity v from the triangle
 
-Eigen::Vector3d ObstacleGuest::velocity_from(const Meeting &m, const Vertex &v) const
+Eigen::Vector3d ObstacleCoupling::velocity_from(const Meeting &m, const Vertex &v) const
 {
-  return vector_of(v) - surface->way_of(m.triangle, m.weight) / step_dt;
+  return vector_of(v) - surface->displacement_of(m.triangle, m.weight) / step_dt;
 }
 
 // as ContactSurface::part()
 
-void ObstacleGuest::end_substep(Vertex *v, double dt)
+void ObstacleCoupling::end_substep(Vertex *v, double dt)
 {
   for (Meeting &m : meetings) {
     if (m.triangle < 0) continue;
@@ -123,4 +123,4 @@ void ObstacleGuest::end_substep(Vertex *v, double dt)
   }
 }
 
-void ObstacleGuest::end_step() { surface->hand_over_pushes(); }
+void ObstacleCoupling::end_step() { surface->hand_over_pushes(); }

@@ -40,19 +40,19 @@ class Obstacle : public ContactMesh, protected Pointers {
 
 // While a cloth is solved its vertices are kept out of an obstacle after each sweep.
 
-class ObstacleGuest : public ClothGuest, protected Pointers {
+class ObstacleCoupling : public SolverCoupling, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  ObstacleGuest(LAMMPS *lmp_, FixPBDCloth *cloth_, ContactSurface *surface_,
-                const ContactRules *rules_) :
+  ObstacleCoupling(LAMMPS *lmp_, FixPBDCloth *cloth_, ContactSurface *surface_,
+                   const ContactRules *rules_) :
       Pointers(lmp_), cloth(cloth_), surface(surface_), rules(rules_)
   {
   }
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
-  void project(sphcloth::Vertex *way) override;
+  void project(sphcloth::Vertex *displacement) override;
   void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override;
   Vec3 impulse_on(int slot) const override { return received[slot]; }

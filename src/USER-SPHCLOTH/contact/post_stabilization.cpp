@@ -4,10 +4,10 @@
 #include "contact/contact_surface.h"
 
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "update.h"
 
@@ -63,7 +63,7 @@ void ContactSurface::load_sweeps()
 bool ContactSurface::stop(bool recover)
 {
   int mine = 0, particle = -1, triangle = -1;
-  Touch deepest;
+  ContactResult deepest;
   double approach = 0.0;    // of the deepest
   const auto put_back = [&] {
     if (triangle < 0) return;
@@ -79,9 +79,9 @@ bool ContactSurface::stop(bool recover)
       put_back();
       particle = i;
       triangle = -1;
-      deepest = Touch();
+      deepest = ContactResult();
     }
-    Touch touched = touch(sweep, sweep_of_triangle(t), rules->thickness, SLACK);
+    ContactResult touched = touch(sweep, sweep_of_triangle(t), rules->thickness, SLACK);
     const double into = touched.depth - SLACK * touched.kept;
     if (touched.through)
       touched.depth += SLACK * touched.kept;
@@ -102,7 +102,8 @@ bool ContactSurface::stop(bool recover)
 
 // Two triangles may be met alike, on an edge: then the same one on all ranks is taken.
 
-bool ContactSurface::is_deeper(const Touch &a, int triangle_a, const Touch &b, int triangle_b) const
+bool ContactSurface::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,
+                               int triangle_b) const
 {
   if (!(a.depth > 0.0)) return false;
   if (triangle_b < 0 || a.depth > b.depth * (1.0 + SEAM)) return true;
@@ -111,7 +112,7 @@ bool ContactSurface::is_deeper(const Touch &a, int triangle_a, const Touch &b, i
 
 // at least a part of the thickness, if something of it is missing; false if nothing is
 
-bool ContactSurface::give_room(Touch &touched, const Vec3 &p, int t) const
+bool ContactSurface::give_room(ContactResult &touched, const Vec3 &p, int t) const
 {
   const std::array<int, 3> &s = triangles[t];
   Vec3 weight;
@@ -125,7 +126,7 @@ bool ContactSurface::give_room(Touch &touched, const Vec3 &p, int t) const
   return true;
 }
 
-void ContactSurface::remember(int i, int triangle, const Touch &touched)
+void ContactSurface::remember(int i, int triangle, const ContactResult &touched)
 {
   if (entry[i] < 0) {
     entry[i] = static_cast<int>(particles.size());
@@ -157,7 +158,7 @@ bigint ContactSurface::count_too_near(tagint &one)
   tagint example = 0;
   int last = -1;
   for_overlapping([&](int i, int t, const Sweep &sweep) {
-    Touch touched;
+    ContactResult touched;
     if (i == last || !give_room(touched, sweep.end, t)) return;
     last = i;
     mine++;
@@ -256,8 +257,9 @@ void ContactSurface::freeze()
 void ContactSurface::move_zones(const ContactZones &zones)
 {
   struct Sum {
-    double mass, way[3], momentum[3];    // of the free members
-    double held, held_way[3], held_velocity[3];    // number of the held ones, and sums over them
+    double mass, displacement[3], momentum[3];    // of the free members
+    double held, held_displacement[3],
+        held_velocity[3];    // number of the held ones, and sums over them
   };
   constexpr int SIZE = sizeof(Sum) / sizeof(double);
   std::vector<Sum> mine(zones.size(), Sum{}), all(zones.size());
@@ -267,11 +269,12 @@ void ContactSurface::move_zones(const ContactZones &zones)
   const auto is_held = [&](int i) { return mesh->has_vertex(i) && mesh->inverse_mass(i) == 0.0; };
 
   for (const auto &[i, z] : members) {
-    const Vec3 way = sweep_of(i).end - sweep_of(i).start;
+    const Vec3 displacement = sweep_of(i).end - sweep_of(i).start;
     const double m = atom_mass(atom, i);
     (is_held(i) ? mine[z].held : mine[z].mass) += is_held(i) ? 1.0 : m;
     for (int d = 0; d < 3; d++) {
-      (is_held(i) ? mine[z].held_way : mine[z].way)[d] += is_held(i) ? way[d] : m * way[d];
+      (is_held(i) ? mine[z].held_displacement : mine[z].displacement)[d] +=
+          is_held(i) ? displacement[d] : m * displacement[d];
       (is_held(i) ? mine[z].held_velocity : mine[z].momentum)[d] += is_held(i) ? atom->v[i][d]
                                                                                : m * atom->v[i][d];
     }
@@ -281,20 +284,21 @@ void ContactSurface::move_zones(const ContactZones &zones)
   for (const auto &[i, z] : members) {
     const Sum &sum = all[z];
     const Sweep sweep = sweep_of(i);
-    Vec3 way, velocity, lost;
+    Vec3 displacement, velocity, lost;
     for (int d = 0; d < 3; d++) {
-      way[d] = sum.held > 0.0 ? sum.held_way[d] / sum.held : sum.way[d] / sum.mass;
+      displacement[d] = sum.held > 0.0 ? sum.held_displacement[d] / sum.held
+                                       : sum.displacement[d] / sum.mass;
       velocity[d] = sum.held > 0.0 ? sum.held_velocity[d] / sum.held : sum.momentum[d] / sum.mass;
       lost[d] = sum.momentum[d] - sum.mass * velocity[d];
     }
     if (!is_held(i)) {
       for (int d = 0; d < 3; d++) {
-        atom->x[i][d] = sweep.start[d] + way[d];
+        atom->x[i][d] = sweep.start[d] + displacement[d];
         atom->v[i][d] = velocity[d];
       }
       continue;
     }
-    const double apart = (sweep.end - sweep.start - way).norm();
+    const double apart = (sweep.end - sweep.start - displacement).norm();
     if (apart > rules->thickness)
       rank_error(lmp, FLERR,
                  "{}: held vertex {} moves {} away from others in one step and crushes what is "

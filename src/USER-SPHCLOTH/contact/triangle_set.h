@@ -3,10 +3,10 @@
 #ifndef SPHCLOTH_CONTACT_TRIANGLE_SET_H
 #define SPHCLOTH_CONTACT_TRIANGLE_SET_H
 
+#include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
 #include "core/geometry/box_grid.h"
 #include "platform.h"
-#include "cloth/vertex_halo.h"
 
 #include <array>
 #include <string>
@@ -67,7 +67,7 @@ class TriangleSet : protected Pointers {
   void add_triangles(const std::vector<int> &reach);
   void check_reach(double far);
 
-  friend class SheetWall;
+  friend class BoundaryMesh;
 };
 
 }    // namespace LAMMPS_NS

@@ -6,7 +6,7 @@
 
 namespace LAMMPS_NS {
 
-class FluidWall {
+class FluidBoundary {
  public:
   // where it is now
   virtual void begin() = 0;
@@ -15,10 +15,10 @@ class FluidWall {
   // the same to the rate of its density, where it was a time `back` ago
   virtual double density_rate(int i, double back) = 0;
   // the force on it; pressure_term = p/rho^2
-  virtual void push(int i, double pressure_term) = 0;
+  virtual void push(int i, double p_over_rho2) = 0;
   // Once more, for a particle with a step of its own: the force of another pressure term and `times`
   // the rest.  What was pushed before holds for energy, virial and rate.
-  virtual void push_more(int i, double pressure_term, double times) = 0;
+  virtual void push_more(int i, double p_over_rho2, double times) = 0;
   // what was pushed so far is none of the forces on it in the coming step
   virtual void forget_pushes() = 0;
   // all that was pushed acts so many times as long; the forces on particles are seen to
@@ -30,7 +30,7 @@ class FluidWall {
   virtual bool moves_beside(int i) = 0;
 
  protected:
-  ~FluidWall() noexcept(false) = default;
+  ~FluidBoundary() noexcept(false) = default;
 };
 
 }    // namespace LAMMPS_NS

@@ -1,13 +1,13 @@
 #include "fluid/mesh_boundary.h"
 
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "core/contact/point_triangle.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
 #include "neighbor.h"
 #include "pair_sph_tait.h"
-#include "lammps_util/rank_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,19 +27,19 @@ static Eigen::Vector3d place_of(const double *x) { return {x[0], x[1], x[2]}; }
 static Eigen::Vector3d gap_to_line(const Eigen::Vector3d &p, const Eigen::Vector3d &a,
                                    const Eigen::Vector3d &b)
 {
-  const Eigen::Vector3d way = b - a, gap = p - a;
-  const double length_sq = way.squaredNorm();
-  const double at = length_sq > 0.0 ? std::clamp(way.dot(gap) / length_sq, 0.0, 1.0) : 0.0;
-  return gap - at * way;
+  const Eigen::Vector3d displacement = b - a, gap = p - a;
+  const double length_sq = displacement.squaredNorm();
+  const double at = length_sq > 0.0 ? std::clamp(displacement.dot(gap) / length_sq, 0.0, 1.0) : 0.0;
+  return gap - at * displacement;
 }
 
-Eigen::Vector3d SheetWall::gap_to(const Vec3 &p, int t, Vec3 &weight) const
+Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
 {
   const std::array<int, 3> &s = set->triangles[t];
   return distance_vector(p, places[s[0]], places[s[1]], places[s[2]], weight);
 }
 
-void SheetWall::find_places()
+void BoundaryMesh::find_places()
 {
   for (std::size_t s = 0; s < places.size(); s++) places[s] = set->place(static_cast<int>(s));
 }
@@ -47,7 +47,7 @@ void SheetWall::find_places()
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.  Who is
 // beyond the border sees the fluid on both sides until then, and nothing is filled.
 
-void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
+void BoundaryMesh::look(double list_skin, const std::function<double(int)> &reach)
 {
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
@@ -114,7 +114,7 @@ void SheetWall::look(double list_skin, const std::function<double(int)> &reach)
 // Of triangles with the distance of their boxes those that are within reach and may become the nearest,
 // sorted by their own distance.  The one with the nearest box tells most about the others.
 
-void SheetWall::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
+void BoundaryMesh::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
 {
   if (near.empty()) return;
   const auto nearer = [](const Candidate &a, const Candidate &b) {
@@ -135,7 +135,7 @@ void SheetWall::keep_nearest(const Vec3 &p, double within, std::vector<Candidate
   std::sort(near.begin(), near.end(), nearer);
 }
 
-bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
+bool BoundaryMesh::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
 {
   for (const Candidate &c : nearest_first) {
     if (c.distance > nearest_first[0].distance * (1.0 + TIE)) break;
@@ -146,7 +146,7 @@ bool SheetWall::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_f
   return false;
 }
 
-void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
+void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points)
 {
   if (seekers.empty()) return;
   find_places();
@@ -157,61 +157,61 @@ void SheetWall::find_feet(int sheet, std::vector<Foot> &feet)
   for (const Seeker &seeker : seekers) {
     const Vec3 p = place_of(atom->x[seeker.particle]);
     const double nearer = moved + (p - seeker.at).norm();    // at most, than at the list build
-    Foot foot;
-    foot.distance = seeker.reach;
+    ClosestPoint closest;
+    closest.distance = seeker.reach;
     Vec3 nearest = Vec3::Zero();
     int triangle = -1;
     for (std::size_t k = seeker.first; k < seeker.last; k++) {
-      if (candidates[k].distance - nearer > foot.distance) break;
+      if (candidates[k].distance - nearer > closest.distance) break;
       Vec3 weight;
       const Vec3 gap = gap_to(p, candidates[k].triangle, weight);
       const double distance_sq = gap.squaredNorm();
-      if (distance_sq >= foot.distance * foot.distance) continue;
-      foot.distance = std::sqrt(distance_sq);
-      foot.weight = weight;
+      if (distance_sq >= closest.distance * closest.distance) continue;
+      closest.distance = std::sqrt(distance_sq);
+      closest.weight = weight;
       nearest = gap;
       triangle = candidates[k].triangle;
     }
-    if (triangle < 0 || foot.distance == 0.0) continue;
-    foot.particle = seeker.particle;
-    foot.sheet = sheet;
-    foot.vertices = set->triangles[triangle];
-    foot.normal = nearest / foot.distance;
-    find_border(p - nearest, seeker, foot);
-    feet.push_back(foot);
+    if (triangle < 0 || closest.distance == 0.0) continue;
+    closest.particle = seeker.particle;
+    closest.sheet = sheet;
+    closest.vertices = set->triangles[triangle];
+    closest.normal = nearest / closest.distance;
+    find_border(p - nearest, seeker, closest);
+    closest_points.push_back(closest);
   }
 }
 
 // Of the space behind the plane only what the sheet hides is filled: what is beyond its border is seen.
 
-void SheetWall::find_border(const Vec3 &at, const Seeker &seeker, Foot &foot) const
+void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoint &closest) const
 {
-  foot.border_distance = seeker.reach;
+  closest.border_distance = seeker.reach;
   for (std::size_t b = seeker.first_border; b < seeker.last_border; b++) {
     const Vec3 gap = gap_to_line(at, places[borders[b][0]], places[borders[b][1]]);
     const double distance = gap.norm();
-    if (distance >= foot.border_distance) continue;
-    foot.border_distance = distance;
-    const Vec3 in_plane = gap - gap.dot(foot.normal) * foot.normal;
-    foot.from_border = distance > 0.0 ? Vec3(in_plane / distance) : Vec3::Zero();
+    if (distance >= closest.border_distance) continue;
+    closest.border_distance = distance;
+    const Vec3 in_plane = gap - gap.dot(closest.normal) * closest.normal;
+    closest.from_border = distance > 0.0 ? Vec3(in_plane / distance) : Vec3::Zero();
   }
 }
 
-Eigen::Vector3d SheetWall::velocity_at(const Foot &foot) const
+Eigen::Vector3d BoundaryMesh::velocity_at(const ClosestPoint &closest) const
 {
   Vec3 velocity = Vec3::Zero();
   for (int q = 0; q < 3; q++)
-    velocity += foot.weight[q] * place_of(atom->v[set->halo.atom_of(foot.vertices[q])]);
+    velocity += closest.weight[q] * place_of(atom->v[set->halo.atom_of(closest.vertices[q])]);
   return velocity;
 }
 
-void SheetWall::spread(const Foot &foot, const Vec3 &amount, std::vector<Vec3> &over)
+void BoundaryMesh::spread(const ClosestPoint &closest, const Vec3 &amount, std::vector<Vec3> &over)
 {
-  for (int q = 0; q < 3; q++) over[foot.vertices[q]] += foot.weight[q] * amount;
+  for (int q = 0; q < 3; q++) over[closest.vertices[q]] += closest.weight[q] * amount;
 }
 
-void SheetWall::sum_up(std::vector<Vec3> &amounts,
-                       const std::function<void(int, const Vec3 &)> &take)
+void BoundaryMesh::sum_up(std::vector<Vec3> &amounts,
+                          const std::function<void(int, const Vec3 &)> &take)
 {
   set->halo.reverse_add(0, amounts.data());
   for (int s = 0; s < set->halo.n_owned(); s++)
@@ -223,7 +223,7 @@ void SheetWall::sum_up(std::vector<Vec3> &amounts,
    all meshes
 ------------------------------------------------------------------------- */
 
-void SheetWalls::init(PairSPHTait *fluid)
+void MeshBoundary::init(PairSPHTait *fluid)
 {
   pair = fluid;
   if (!pair)
@@ -236,7 +236,7 @@ void SheetWalls::init(PairSPHTait *fluid)
   sheets.clear();
 }
 
-void SheetWalls::add(const ContactMesh *mesh, TriangleSet *set)
+void MeshBoundary::add(const ContactMesh *mesh, TriangleSet *set)
 {
   for (int i = 0; i < atom->nlocal; i++)
     if (mesh->has_vertex(i) && pair->is_boundary(atom->type[i]))
@@ -247,7 +247,7 @@ void SheetWalls::add(const ContactMesh *mesh, TriangleSet *set)
   sheets.emplace_back(lmp, set);
 }
 
-double SheetWalls::reach() const
+double MeshBoundary::reach() const
 {
   double longest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++)
@@ -255,139 +255,142 @@ double SheetWalls::reach() const
   return longest + neighbor->skin;
 }
 
-double SheetWalls::support(int i) const { return pair->support(atom->type[i]); }
+double MeshBoundary::support(int i) const { return pair->support(atom->type[i]); }
 
-void SheetWalls::look()
+void MeshBoundary::look()
 {
-  for (SheetWall &sheet : sheets)
+  for (BoundaryMesh &sheet : sheets)
     sheet.look(neighbor->skin, [this](int i) {
       return atom->mask[i] & groupbit && pair->is_fluid(atom->type[i]) ? support(i) : 0.0;
     });
 }
 
-void SheetWalls::begin()
+void MeshBoundary::begin()
 {
   lasts = 1.0;
-  feet.clear();
-  for (std::size_t k = 0; k < sheets.size(); k++) sheets[k].find_feet(static_cast<int>(k), feet);
+  closest_points.clear();
+  for (std::size_t k = 0; k < sheets.size(); k++)
+    sheets[k].find_closest_points(static_cast<int>(k), closest_points);
   if (sheets.size() > 1)
-    std::sort(feet.begin(), feet.end(), [](const Foot &a, const Foot &b) {
-      if (a.particle != b.particle) return a.particle < b.particle;
-      return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
-    });
+    std::sort(closest_points.begin(), closest_points.end(),
+              [](const ClosestPoint &a, const ClosestPoint &b) {
+                if (a.particle != b.particle) return a.particle < b.particle;
+                return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
+              });
   first.assign(atom->nlocal, -1);
   if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
-  for (std::size_t k = 0; k < feet.size(); k++) {
-    Foot &foot = feet[k];
-    foot.value = table(foot.distance / support(foot.particle));
-    foot.beyond = table(foot.border_distance / support(foot.particle));
-    int &begin = first[foot.particle];
+  for (std::size_t k = 0; k < closest_points.size(); k++) {
+    ClosestPoint &closest = closest_points[k];
+    closest.value = table(closest.distance / support(closest.particle));
+    closest.beyond = table(closest.border_distance / support(closest.particle));
+    int &begin = first[closest.particle];
     if (begin < 0) begin = static_cast<int>(k);
     for (std::size_t nearer = begin; nearer < k; nearer++)
-      foot.share *= 1.0 - std::max(0.0, foot.normal.dot(feet[nearer].normal));
+      closest.share *= 1.0 - std::max(0.0, closest.normal.dot(closest_points[nearer].normal));
   }
 }
 
-template <class Do> void SheetWalls::for_feet(int i, Do something)
+template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
 {
   if (first[i] < 0) return;
-  for (std::size_t k = first[i]; k < feet.size() && feet[k].particle == i; k++) something(feet[k]);
+  for (std::size_t k = first[i]; k < closest_points.size() && closest_points[k].particle == i; k++)
+    something(closest_points[k]);
 }
 
-double SheetWalls::stretch(int i)
+double MeshBoundary::stretch(int i)
 {
   double gamma = 1.0;
-  for_feet(i, [&](const Foot &foot) { gamma *= 1.0 - covered(foot); });
+  for_closest_points(i, [&](const ClosestPoint &closest) { gamma *= 1.0 - covered(closest); });
   return 1.0 / gamma;
 }
 
-double SheetWalls::density_rate(int i, double back)
+double MeshBoundary::density_rate(int i, double back)
 {
   double rate = 0.0;
-  for_feet(i, [&](Foot foot) {
-    const Vec3 velocity = velocity_from(foot);
-    foot.value = table((foot.distance - back * velocity.dot(foot.normal)) / support(i));
-    rate += rise(foot).dot(velocity);
+  for_closest_points(i, [&](ClosestPoint closest) {
+    const Vec3 velocity = velocity_from(closest);
+    closest.value = table((closest.distance - back * velocity.dot(closest.normal)) / support(i));
+    rate += rise(closest).dot(velocity);
   });
   return rate;
 }
 
 // the share of its kernel, behind the plane and not beyond the border
 
-double SheetWalls::covered(const Foot &foot)
+double MeshBoundary::covered(const ClosestPoint &closest)
 {
-  return foot.share * foot.value.lambda * (1.0 - foot.beyond.lambda);
+  return closest.share * closest.value.lambda * (1.0 - closest.beyond.lambda);
 }
 
 // the gradient of its density where it is moved
 
-Eigen::Vector3d SheetWalls::rise(const Foot &foot) const
+Eigen::Vector3d MeshBoundary::rise(const ClosestPoint &closest) const
 {
-  const int i = foot.particle;
-  const Vec3 slope = foot.value.slope * (1.0 - foot.beyond.lambda) * foot.normal -
-      foot.value.lambda * foot.beyond.slope * foot.from_border;
-  return atom->rho[i] * foot.share / (support(i) * (1.0 - covered(foot))) * slope;
+  const int i = closest.particle;
+  const Vec3 slope = closest.value.slope * (1.0 - closest.beyond.lambda) * closest.normal -
+      closest.value.lambda * closest.beyond.slope * closest.from_border;
+  return atom->rho[i] * closest.share / (support(i) * (1.0 - covered(closest))) * slope;
 }
 
-Eigen::Vector3d SheetWalls::velocity_from(const Foot &foot) const
+Eigen::Vector3d MeshBoundary::velocity_from(const ClosestPoint &closest) const
 {
-  return place_of(atom->v[foot.particle]) - sheets[foot.sheet].velocity_at(foot);
+  return place_of(atom->v[closest.particle]) - sheets[closest.sheet].velocity_at(closest);
 }
 
 // Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.
 
-void SheetWalls::push(int i, double pressure_term) { push(i, pressure_term, 1.0, true); }
+void MeshBoundary::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
 
-void SheetWalls::push_more(int i, double pressure_term, double times)
+void MeshBoundary::push_more(int i, double p_over_rho2, double times)
 {
-  push(i, pressure_term, times, false);
+  push(i, p_over_rho2, times, false);
 }
 
-void SheetWalls::push(int i, double pressure_term, double times, bool first_push)
+void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push)
 {
   const int type = atom->type[i];
   const Tait &eos = pair->equation_of_state(type);
   const double mass = atom_mass(atom, i), nu = pair->laminar_viscosity(type);
-  for_feet(i, [&](const Foot &foot) {
-    const Vec3 velocity = velocity_from(foot);
-    const double away = velocity.dot(foot.normal);
-    const double friction = nu * foot.share * 2.0 * eos.rho0 / atom->rho[i] *
-        wall_friction(foot.value, foot.distance / support(i), support(i));
+  for_closest_points(i, [&](const ClosestPoint &closest) {
+    const Vec3 velocity = velocity_from(closest);
+    const double away = velocity.dot(closest.normal);
+    const double friction = nu * closest.share * 2.0 * eos.rho0 / atom->rho[i] *
+        wall_friction(closest.value, closest.distance / support(i), support(i));
     const Vec3 accel =
-        -pressure_term * rise(foot) - times * friction * (velocity - away * foot.normal);
+        -p_over_rho2 * rise(closest) - times * friction * (velocity - away * closest.normal);
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
-    sheets[foot.sheet].give(foot, -force_on);
+    sheets[closest.sheet].give(closest, -force_on);
     if (!first_push) return;
-    atom->drho[i] += rise(foot).dot(velocity);
-    pair->add_virial(i, foot.distance * foot.normal, force_on);
+    atom->drho[i] += rise(closest).dot(velocity);
+    pair->add_virial(i, closest.distance * closest.normal, force_on);
     if (wetting_wanted) {
-      const double moves = 2.0 * mass * covered(foot);
-      sheets[foot.sheet].wet(foot, Vec3(moves, moves * eos.sound_speed(), 0.0));
+      const double moves = 2.0 * mass * covered(closest);
+      sheets[closest.sheet].wet(closest, Vec3(moves, moves * eos.sound_speed(), 0.0));
     }
   });
 }
 
-double SheetWalls::approach(int i)
+double MeshBoundary::approach(int i)
 {
   double fastest = 0.0;
-  for_feet(i, [&](const Foot &foot) {
-    fastest = std::max(fastest, -velocity_from(foot).dot(foot.normal));
+  for_closest_points(i, [&](const ClosestPoint &closest) {
+    fastest = std::max(fastest, -velocity_from(closest).dot(closest.normal));
   });
   return fastest;
 }
 
-void SheetWalls::hand_over(const std::function<void(int, const Vec3 &)> &take)
+void MeshBoundary::hand_over(const std::function<void(int, const Vec3 &)> &take)
 {
-  for (SheetWall &sheet : sheets) sheet.hand_over(take);
+  for (BoundaryMesh &sheet : sheets) sheet.hand_over(take);
 }
 
-void SheetWalls::end()
+void MeshBoundary::end()
 {
   hand_over([this](int i, const Vec3 &on) {
     for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
   });
   if (!wetting_wanted) return;
-  for (SheetWall &sheet : sheets)
+  for (BoundaryMesh &sheet : sheets)
     sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });
 }

@@ -5,8 +5,8 @@
 #ifndef SPHCLOTH_FLUID_MESH_BOUNDARY_H
 #define SPHCLOTH_FLUID_MESH_BOUNDARY_H
 
-#include "core/sph/plane_wall.h"
 #include "contact/triangle_set.h"
+#include "core/sph/plane_wall.h"
 
 #include <array>
 #include <functional>
@@ -20,7 +20,7 @@ class PairSPHTait;
 
 // the point of a mesh that is nearest to a particle
 
-struct Foot {
+struct ClosestPoint {
   int particle = 0, sheet = 0;
   std::array<int, 3> vertices{};    // slots
   Eigen::Vector3d weight, normal;    // barycentric; from the mesh to the particle
@@ -32,27 +32,27 @@ struct Foot {
   sphcloth::WallTable::Value value{0.0, 0.0}, beyond{0.0, 0.0};    // of plane and border
 };
 
-class SheetWall : protected Pointers {
+class BoundaryMesh : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  SheetWall(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
+  BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
 
   // After each list build: whom each particle may be nearest to until the next one.  reach(i): of the
   // kernel of an owned particle, 0 for one that does not feel this wall.
   void look(double skin, const std::function<double(int)> &reach);
 
   // where particles stand now, those within reach, added to what is there
-  void find_feet(int sheet, std::vector<Foot> &feet);
+  void find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points);
 
-  Vec3 velocity_at(const Foot &) const;
+  Vec3 velocity_at(const ClosestPoint &) const;
 
   // force on the mesh at a foot; handed over to owned vertices, take(atom, force)
-  void give(const Foot &foot, const Vec3 &push) { spread(foot, push, forces); }
+  void give(const ClosestPoint &closest, const Vec3 &push) { spread(closest, push, forces); }
   void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
 
   // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
-  void wet(const Foot &foot, const Vec3 &amount) { spread(foot, amount, wetting); }
+  void wet(const ClosestPoint &closest, const Vec3 &amount) { spread(closest, amount, wetting); }
   void hand_over_wetting(const std::function<void(int, const Vec3 &)> &take)
   {
     sum_up(wetting, take);
@@ -82,8 +82,8 @@ class SheetWall : protected Pointers {
   void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
-  void find_border(const Vec3 &at, const Seeker &, Foot &) const;
-  static void spread(const Foot &, const Vec3 &, std::vector<Vec3> &);
+  void find_border(const Vec3 &at, const Seeker &, ClosestPoint &) const;
+  static void spread(const ClosestPoint &, const Vec3 &, std::vector<Vec3> &);
   void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
 };
 
@@ -92,11 +92,11 @@ class SheetWall : protected Pointers {
 // with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where several meshes
 // are near, each counts as far as it does not lie behind nearer ones.
 
-class SheetWalls : protected Pointers {
+class MeshBoundary : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  SheetWalls(LAMMPS *lmp_, const std::string &label_, int groupbit_) :
+  MeshBoundary(LAMMPS *lmp_, const std::string &label_, int groupbit_) :
       Pointers(lmp_), label(label_), groupbit(groupbit_)
   {
   }
@@ -114,8 +114,8 @@ class SheetWalls : protected Pointers {
   void begin();
   double stretch(int i);
   double density_rate(int i, double back);
-  void push(int i, double pressure_term);
-  void push_more(int i, double pressure_term, double times);
+  void push(int i, double p_over_rho2);
+  void push_more(int i, double p_over_rho2, double times);
   void prolong(double times) { lasts = times; }
   void end();
   // what was pushed so far is handed over now, to take(owned vertex, force)
@@ -136,19 +136,19 @@ class SheetWalls : protected Pointers {
   const int groupbit;
   PairSPHTait *pair = nullptr;
   sphcloth::WallTable table;
-  std::vector<SheetWall> sheets;
-  std::vector<Foot> feet;    // of one particle together, the nearest first
+  std::vector<BoundaryMesh> sheets;
+  std::vector<ClosestPoint> closest_points;    // of one particle together, the nearest first
   std::vector<int> first;    // of an owned particle, -1: none
   bool wetting_wanted = false;
   double lasts = 1.0;    // how many times as long as the step what was pushed acts
   std::vector<Vec3> wetting;    // by owned atom
 
-  template <class Do> void for_feet(int i, Do something);
-  void push(int i, double pressure_term, double times, bool first_push);
+  template <class Do> void for_closest_points(int i, Do something);
+  void push(int i, double p_over_rho2, double times, bool first_push);
   double support(int i) const;
-  static double covered(const Foot &);
-  Vec3 rise(const Foot &) const;
-  Vec3 velocity_from(const Foot &) const;
+  static double covered(const ClosestPoint &);
+  Vec3 rise(const ClosestPoint &) const;
+  Vec3 velocity_from(const ClosestPoint &) const;
 };
 
 }    // namespace LAMMPS_NS

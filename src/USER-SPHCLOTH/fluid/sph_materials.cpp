@@ -2,11 +2,11 @@
 
 #include "fluid/sph_materials.h"
 
-#include "lammps_util/arg_reader.h"
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "lammps_util/arg_reader.h"
 
 #include <algorithm>
 #include <cmath>

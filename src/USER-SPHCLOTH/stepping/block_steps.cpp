@@ -3,10 +3,10 @@
 #include "stepping/block_steps.h"
 
 #include "atom.h"
-#include "lammps_util/atom_tools.h"
 #include "comm.h"
 #include "core/util/bytes.h"
 #include "fix_sph_integrate.h"
+#include "lammps_util/atom_tools.h"
 #include "neighbor.h"
 #include "pair_sph_tait.h"
 #include "update.h"
@@ -48,10 +48,10 @@ void BlockSteps::init(PairSPHTait *style)
 // whole step comes at once, and a fine one bears that no longer than about twice its own acoustic
 // step: while pressures balance, it moves to and fro by p/(2 rho H) times the square of that time.
 
-int BlockSteps::find_apart(int type, int neighbour) const
+int BlockSteps::find_apart(int type, int neighbor_type) const
 {
-  if (!pair->is_fluid(type) || !pair->is_fluid(neighbour)) return apart;
-  const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbour)));
+  if (!pair->is_fluid(type) || !pair->is_fluid(neighbor_type)) return apart;
+  const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbor_type)));
   return octaves > 0.0 ? std::clamp(2 - static_cast<int>(octaves), 0, apart) : apart;
 }
 
@@ -98,7 +98,7 @@ void BlockSteps::set_new(int i)
 
 void BlockSteps::begin_step()
 {
-  at.line.now += TimeLine::ticks(at.deepest);
+  at.line.now += TimeBins::ticks(at.deepest);
   at.chosen = false;
   at.owes = false;
   coarsest = at.line.coarsest();
@@ -120,7 +120,7 @@ std::pair<int, int> BlockSteps::mark_due(double **of, int column) const
 
 bool BlockSteps::ends_root() const
 {
-  return at.line.now + TimeLine::ticks(at.deepest) == TimeLine::ticks(0);
+  return at.line.now + TimeBins::ticks(at.deepest) == TimeBins::ticks(0);
 }
 
 // The last one before an output time ends there, whatever was rounded on the way.
@@ -143,7 +143,7 @@ void BlockSteps::choose()
     want_steps(pair->active_particles(), true);
     find_step_of_scene();
   }
-  if (!at.alike) respect_neighbours();
+  if (!at.alike) respect_neighbors();
   book();
   if (options.sleep > 0.0) fall_asleep();
   at.chosen = true;
@@ -171,13 +171,13 @@ void BlockSteps::begin_root()
   if (!root.one_for_all) {
     marked.clear();
     for (const int i : active)
-      if (pair->pressure_term()[i] == 0.0) marked.push_back(i);
-    const StepLimit among_neighbours = want_steps(marked, true);
-    tightest.tighten(among_neighbours.dt, among_neighbours.by);
+      if (pair->p_over_rho2()[i] == 0.0) marked.push_back(i);
+    const StepLimit among_neighbors = want_steps(marked, true);
+    tightest.tighten(among_neighbors.dt, among_neighbors.by);
     root = find_root(tightest);
   }
   const bool goes_on = begun() && at.alike && at.deepest == 0 && root.one_for_all;
-  const double end = static_cast<double>(TimeLine::ticks(0)), ratio = at.line.root / root.step;
+  const double end = static_cast<double>(TimeBins::ticks(0)), ratio = at.line.root / root.step;
   double *until = rows[UNTIL];
   if (goes_on)
     at.span_of_all = 0.5 - (0.5 * end - end) * ratio / end;
@@ -249,7 +249,7 @@ void BlockSteps::find_step_of_scene()
   const StepLimit vertex = fix->tightest_vertex();
   const int of_vertices = std::max(coarsest, at.line.level_of(vertex.dt));
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
-  int slowest = TimeLine::DEEPEST;
+  int slowest = TimeBins::DEEPEST;
   double until[2] = {-FAR, -FAR};    // -least, most
   const double *by = rows[BY], *call = rows[CALL], *its_until = rows[UNTIL];
   double *its_level = rows[LEVEL], *before = rows[BEFORE];
@@ -272,13 +272,13 @@ void BlockSteps::find_step_of_scene()
   at.alike = at.line.now == 0 && -all[1] >= at.deepest && all[3] == -all[2] && options.sleep == 0.0;
   // none of a new particle reaches anywhere yet
   at.span_of_all = all[3] == 0.0 ? 1.0
-                                 : 0.5 - all[3] / static_cast<double>(TimeLine::ticks(at.deepest));
+                                 : 0.5 - all[3] / static_cast<double>(TimeBins::ticks(at.deepest));
 }
 
 // Nobody's step is longer than `ratio` times a neighbour's, or than that of a vertex that it wets;
 // who is beside a mesh takes the vertex with the shortest step for all.
 
-void BlockSteps::respect_neighbours()
+void BlockSteps::respect_neighbors()
 {
   know_all();
   for (const int i : boundaries) level[i] = vertex_level(i);
@@ -288,7 +288,7 @@ void BlockSteps::respect_neighbours()
   }
   stage = LEVELS;
   comm->forward_comm(fix, 1);
-  if (everyone_begins()) pair->order().take_survey(level.data());
+  if (everyone_begins()) pair->order().measure_block_ranges(level.data());
   for (const int i : pair->active_particles())
     if (is_too_coarse(i)) rows[LEVEL][i] = std::min(at.deepest, level_beside(i));
   for (const int i : pair->active_particles()) level[i] = static_cast<int>(rows[LEVEL][i]);
@@ -298,7 +298,7 @@ void BlockSteps::respect_neighbours()
 
 bool BlockSteps::is_too_coarse(int i)
 {
-  NearLists &lists = pair->order();
+  DualLists &lists = pair->order();
   const int slot = lists.slot(i), own = atom->type[i];
   for (int t = 1; t <= atom->ntypes; t++)
     if (lists.any_above(level[i] + levels_apart(own, t), slot, t, level.data(), everyone_begins()))
@@ -311,7 +311,7 @@ int BlockSteps::level_beside(int i)
   int own = level[i];
   for (int t = 1; t <= atom->ntypes; t++) {
     const int most = levels_apart(atom->type[i], t);
-    const Stretch near = pair->neighbours(i, t);
+    const NeighborSpan near = pair->neighbors(i, t);
     for (int k = 0; k < near.n; k++)
       if (const int j = near.of[k]; level[j] - most > own && pair->inside_support(i, j))
         own = level[j] - most;
@@ -330,8 +330,8 @@ int BlockSteps::vertex_level(int i) const
 void BlockSteps::book()
 {
   const double now = physical_time(update);
-  const double *term = pair->pressure_term(), *its_level = rows[LEVEL];
-  const double half_of_all = 0.5 * static_cast<double>(TimeLine::ticks(at.deepest));
+  const double *term = pair->p_over_rho2(), *its_level = rows[LEVEL];
+  const double half_of_all = 0.5 * static_cast<double>(TimeBins::ticks(at.deepest));
   double *last_term = rows[TERM], *until = rows[UNTIL], *call = rows[CALL];
   for (const int i : pair->active_particles()) {
     if (at.alike) {    // nobody's impulses differ from others'
@@ -361,7 +361,7 @@ void BlockSteps::begin_own_step(int i)
 
 double BlockSteps::half_step(int i) const
 {
-  return 0.5 * static_cast<double>(TimeLine::ticks(static_cast<int>(rows[LEVEL][i])));
+  return 0.5 * static_cast<double>(TimeBins::ticks(static_cast<int>(rows[LEVEL][i])));
 }
 
 /* ----------------------------------------------------------------------
@@ -386,7 +386,7 @@ bool BlockSteps::rests_among_others(int i)
   if (now - rows[SINCE][i] < PATIENCE * fix->sound_time(i) || pair->feels_moving_wall(i))
     return false;
   bool others = true;
-  for_neighbours(i, [&](int j) { others = others && (is_slow(j) || !pair->inside_support(i, j)); });
+  for_neighbors(i, [&](int j) { others = others && (is_slow(j) || !pair->inside_support(i, j)); });
   return others;
 }
 
@@ -444,7 +444,7 @@ void BlockSteps::wake_beside_moving_boundaries()
 {
   for (const int i : boundaries)
     if (!is_slow(i))
-      for_neighbours(i, [&](int j) {
+      for_neighbors(i, [&](int j) {
         if (Pace::before(pace[j]) == Pace::SLEEPER && pair->inside_support(i, j)) touch(j, WAKE);
       });
 }
@@ -485,14 +485,14 @@ bool BlockSteps::catch_up()
 
 void BlockSteps::measure_arrears()
 {
-  const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
+  const double scene = static_cast<double>(TimeBins::ticks(at.deepest));
   const double until = static_cast<double>(at.line.now) - 0.5 * scene;
   impel_active();
   for (const int i : impelled) {
     const bool integrated = atom->mask[i] & fix->groupbit;
     const double behind = integrated && rows[CALL][i] != NEW ? until - rows[UNTIL][i] : 0.0;
     span[i] = std::max(0.0, behind) / scene;
-    impulse[i] = span[i] * pair->pressure_term()[i];
+    impulse[i] = span[i] * pair->p_over_rho2()[i];
     if (behind > 0.0) rows[UNTIL][i] = until;
   }
 }
@@ -579,7 +579,7 @@ void BlockSteps::share_impulses()
   measure_impulses();
   stage = IMPULSES;
   comm->forward_comm(fix, 3);
-  if (everyone_begins()) pair->order().take_survey(pace.data());
+  if (everyone_begins()) pair->order().measure_block_ranges(pace.data());
   std::fill_n(mark.begin() + atom->nlocal, atom->nghost, UNTOUCHED);
   marked.clear();
   slots.clear();
@@ -618,7 +618,7 @@ void BlockSteps::prolong(int i, double times)
 {
   if (times != 0.0)
     for (int d = 0; d < 3; d++) atom->f[i][d] += times * from_particles[3 * i + d];
-  const double term = pair->pressure_term()[i];
+  const double term = pair->p_over_rho2()[i];
   if (span[i] != 1.0 || impulse[i] != term)
     pair->push_walls_more(i, impulse[i] - term, span[i] - 1.0);
 }
@@ -628,8 +628,8 @@ void BlockSteps::prolong(int i, double times)
 
 void BlockSteps::measure_impulses()
 {
-  const double scene = static_cast<double>(TimeLine::ticks(at.deepest));
-  const double *term = pair->pressure_term();
+  const double scene = static_cast<double>(TimeBins::ticks(at.deepest));
+  const double *term = pair->p_over_rho2();
   impel_active();
   for (const int i : impelled) {
     if (sleeps(i)) {
@@ -660,16 +660,16 @@ void BlockSteps::rest(int i)
 {
   const bool fluid = pair->is_fluid(atom->type[i]), asleep = fluid && sleeps(i);
   span[i] = asleep ? -1.0 : 0.0;
-  impulse[i] = fluid && !asleep ? 0.0 : pair->pressure_term()[i];
+  impulse[i] = fluid && !asleep ? 0.0 : pair->p_over_rho2()[i];
   pace[i] = asleep ? Pace::of(0, Pace::SLEEPER)
       : fluid      ? Pace::of(static_cast<int>(rows[LEVEL][i]), Pace::INACTIVE)
                    : Pace::BOUNDARY;
 }
 
-template <class Do> void BlockSteps::for_neighbours(int i, Do something)
+template <class Do> void BlockSteps::for_neighbors(int i, Do something)
 {
   for (int t = 1; t <= atom->ntypes; t++) {
-    const Stretch near = pair->neighbours(i, t);
+    const NeighborSpan near = pair->neighbors(i, t);
     for (int k = 0; k < near.n; k++) something(near.of[k]);
   }
 }
@@ -679,11 +679,11 @@ template <class Do> void BlockSteps::for_neighbours(int i, Do something)
 
 bool BlockSteps::look_around(int i)
 {
-  NearLists &lists = pair->order();
+  DualLists &lists = pair->order();
   const int slot = lists.slot(i), own = pace[i];
   bool in_step = Pace::before(own) != Pace::BROKEN;
   for (int t = 1; t <= atom->ntypes; t++) {
-    const Stretch others = lists.others(own, slot, t, pace.data(), everyone_begins());
+    const NeighborSpan others = lists.others(own, slot, t, pace.data(), everyone_begins());
     if (others.n > 0) in_step = look_at(i, t, others) && in_step;
   }
   return in_step;
@@ -691,7 +691,7 @@ bool BlockSteps::look_around(int i)
 
 // at those of one type who have another pace.  Where everybody begins a step nobody waits for an impulse.
 
-bool BlockSteps::look_at(int i, int type, const Stretch &others)
+bool BlockSteps::look_at(int i, int type, const NeighborSpan &others)
 {
   if (everyone_begins() && options.sleep == 0.0 && pair->is_fluid(type)) return false;
   const int own = pace[i];

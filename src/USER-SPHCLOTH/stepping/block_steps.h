@@ -18,8 +18,8 @@
 #include "pointers.h"
 
 #include "atom.h"
-#include "core/timestep/step_limits.h"
 #include "core/neighbor/dual_lists.h"
+#include "core/timestep/step_limits.h"
 #include "core/timestep/time_bins.h"
 #include "lammps_util/particle_columns.h"
 
@@ -112,7 +112,7 @@ class BlockSteps : protected Pointers {
 
   // where time is, plain for the restart file
   struct Place {
-    sphcloth::TimeLine line;
+    sphcloth::TimeBins line;
     int deepest = 0;    // level of the step of the scene
     sphcloth::Limit limit = sphcloth::Limit::NONE;
     bool alike = true;    // everybody takes that step, and took the same before
@@ -165,10 +165,10 @@ class BlockSteps : protected Pointers {
   std::vector<int> slots;    // of those who need impulses
   std::vector<int> boundaries, impelled;    // owned, the latter in the last evaluation
 
-  int find_apart(int type, int neighbour) const;
-  int levels_apart(int type, int neighbour) const
+  int find_apart(int type, int neighbor_type) const;
+  int levels_apart(int type, int neighbor_type) const
   {
-    return apart_of[type * (atom->ntypes + 1) + neighbour];
+    return apart_of[type * (atom->ntypes + 1) + neighbor_type];
   }
   void make_room();
   void know_all();
@@ -186,7 +186,7 @@ class BlockSteps : protected Pointers {
   Root find_root(sphcloth::StepLimit tightest) const;
   bool may_gain(double least, double gain) const;
   void find_step_of_scene();
-  void respect_neighbours();
+  void respect_neighbors();
   int vertex_level(int i) const;
   bool is_too_coarse(int i);
   int level_beside(int i);
@@ -211,13 +211,13 @@ class BlockSteps : protected Pointers {
   void share_equally();
   void prolong(int i, double times);
   bool look_around(int i);
-  bool look_at(int i, int type, const sphcloth::Stretch &others);
+  bool look_at(int i, int type, const sphcloth::NeighborSpan &others);
   void disturb(int i, int j);
   void touch(int j, int mark_of_it);
   void wake_marked();
   void wake(int i);
   void wake_beside_moving_boundaries();
-  template <class Do> void for_neighbours(int i, Do something);
+  template <class Do> void for_neighbors(int i, Do something);
 };
 
 }    // namespace LAMMPS_NS

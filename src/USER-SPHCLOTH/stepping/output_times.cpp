@@ -2,8 +2,8 @@
 
 #include "stepping/output_times.h"
 
-#include "lammps_util/atom_tools.h"
 #include "input.h"
+#include "lammps_util/atom_tools.h"
 #include "modify.h"
 #include "output.h"
 #include "timer.h"

@@ -24,7 +24,7 @@ struct Sweep {
   Vec3 start, end;
 };
 
-struct Touch {
+struct ContactResult {
   bool hit = false;
   bool through = false;          // it passes through, not only too near
   Vec3 weight = Vec3::Zero();    // barycentric coordinates of the contact point
@@ -145,10 +145,10 @@ inline Volume volume_over(const Sweep &p, const std::array<Sweep, 3> &tri)
 // takes approaching motion away and never pushes, so it cannot add energy.  `slack` is the share of
 // the gap that may be missing; passing through always counts.
 
-inline Touch touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness,
-                   double slack = SEAM)
+inline ContactResult touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness,
+                           double slack = SEAM)
 {
-  Touch result;
+  ContactResult result;
   const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
   const Vec3 q = p.start - tri[0].start;
   const Vec3 normal_start = e1.cross(e2);

@@ -12,19 +12,19 @@ namespace sphcloth {
 
 using Sides = std::uint16_t;
 
-inline constexpr int MOST_SHEETS = 8;
+inline constexpr int MAX_SHEETS = 8;
 
 inline Sides side_of_sheet(int sheet, bool above)
 {
-  return static_cast<Sides>(1u << (above ? sheet : sheet + MOST_SHEETS));
+  return static_cast<Sides>(1u << (above ? sheet : sheet + MAX_SHEETS));
 }
 
 // is there a sheet between the two?
 
 inline bool parted(Sides a, Sides b)
 {
-  const unsigned above_a = a & 0xffu, below_a = a >> MOST_SHEETS;
-  const unsigned above_b = b & 0xffu, below_b = b >> MOST_SHEETS;
+  const unsigned above_a = a & 0xffu, below_a = a >> MAX_SHEETS;
+  const unsigned above_b = b & 0xffu, below_b = b >> MAX_SHEETS;
   return ((above_a & below_b) | (below_a & above_b)) != 0;
 }
 

@@ -4,8 +4,8 @@
 #ifndef SPHCLOTH_CORE_GEOMETRY_BOX_GRID_H
 #define SPHCLOTH_CORE_GEOMETRY_BOX_GRID_H
 
-#include "core/util/bytes.h"
 #include "core/geometry/cell_grid.h"
+#include "core/util/bytes.h"
 
 #include <vector>
 

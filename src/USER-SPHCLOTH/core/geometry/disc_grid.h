@@ -7,8 +7,8 @@
 #ifndef SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
 #define SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
 
-#include "core/util/bytes.h"
 #include "core/geometry/cell_grid.h"
+#include "core/util/bytes.h"
 #include "core/util/simd.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace sphcloth {
 
 struct Disc {
-  Eigen::Vector3d centre, normal;    // without a normal it is a ball
+  Eigen::Vector3d center, normal;    // without a normal it is a ball
   double radius;
   double room = 0.0;    // how far from it the triangle may be
 };
@@ -27,11 +27,11 @@ struct Disc {
 inline Disc disc_around(const Eigen::Vector3d &a, const Eigen::Vector3d &b,
                         const Eigen::Vector3d &c)
 {
-  const Eigen::Vector3d centre = (a + b + c) / 3.0, normal = (b - a).cross(c - a);
+  const Eigen::Vector3d center = (a + b + c) / 3.0, normal = (b - a).cross(c - a);
   const double radius_sq = std::max(
-      {(a - centre).squaredNorm(), (b - centre).squaredNorm(), (c - centre).squaredNorm()});
+      {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()});
   const double area = normal.norm();
-  return {centre, area > 0.0 ? Eigen::Vector3d(normal / area) : Eigen::Vector3d::Zero(),
+  return {center, area > 0.0 ? Eigen::Vector3d(normal / area) : Eigen::Vector3d::Zero(),
           std::sqrt(radius_sq)};
 }
 
@@ -102,14 +102,14 @@ class DiscGrid {
       Box bounds;
       largest = 0.0;
       for (const int d : members) {
-        bounds.extend(discs[d].centre);
+        bounds.extend(discs[d].center);
         largest = std::max(largest, discs[d].radius + discs[d].room);
       }
       grid.bounds = bounds;
       if (members.empty()) return;
       grid.cut(bounds, Eigen::Vector3d::Constant(0.5 * (reach + largest)), members.size());
       const auto cell_of = [&](int d) {
-        const CellGrid::Cell c = grid.of(discs[d].centre);
+        const CellGrid::Cell c = grid.of(discs[d].center);
         return grid.number(c[0], c[1], c[2]);
       };
       first.assign(grid.size() + 1, 0);
@@ -123,9 +123,9 @@ class DiscGrid {
       disc.resize(items.size());
       for (std::size_t n = 0; n < items.size(); n++) {
         disc[n] = discs[items[n]];
-        x[n] = disc[n].centre[0];
-        y[n] = disc[n].centre[1];
-        z[n] = disc[n].centre[2];
+        x[n] = disc[n].center[0];
+        y[n] = disc[n].center[1];
+        z[n] = disc[n].center[2];
       }
     }
 
@@ -175,7 +175,7 @@ class DiscGrid {
     bool reaches(int n, const Eigen::Vector3d &p, double far) const
     {
       const Disc &d = disc[n];
-      const double height = d.normal.dot(p - d.centre), height_sq = height * height;
+      const double height = d.normal.dot(p - d.center), height_sq = height * height;
       const double aside = std::sqrt(std::max(0.0, distance_sq[n] - height_sq)) - d.radius;
       const double most = far + d.room;
       return height_sq + (aside > 0.0 ? aside * aside : 0.0) <= most * most;

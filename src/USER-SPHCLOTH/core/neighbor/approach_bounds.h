@@ -17,19 +17,19 @@
 
 namespace sphcloth {
 
-class Closing {
+class ApproachBounds {
  public:
   struct Place {
     float x, y, z;
   };
 
-  explicit Closing(const Blocks &blocks_) : blocks(blocks_) {}
+  explicit ApproachBounds(const Blocks &blocks_) : blocks(blocks_) {}
 
   // Takes in how far all particles are from a place of theirs: now - centre - held; held may be null.
-  SPHCLOTH_MULTIVERSION void measure(const double *now, const std::array<double, 3> &centre,
+  SPHCLOTH_MULTIVERSION void measure(const double *now, const std::array<double, 3> &center,
                                      const Place *held)
   {
-    held ? measure_all<true>(now, centre, held) : measure_all<false>(now, centre, held);
+    held ? measure_all<true>(now, center, held) : measure_all<false>(now, center, held);
     blocks.spread(boxes, [](Box &box, const Box &more) { take(box, more); });
   }
 
@@ -67,10 +67,10 @@ class Closing {
   }
 
   template <bool HELD>
-  SPHCLOTH_INLINE void measure_all(const double *now, const std::array<double, 3> &centre,
+  SPHCLOTH_INLINE void measure_all(const double *now, const std::array<double, 3> &center,
                                    const Place *held)
   {
-    const double cx = centre[0], cy = centre[1], cz = centre[2];
+    const double cx = center[0], cy = center[1], cz = center[2];
     boxes.own.resize(blocks.rows());
     for (std::size_t r = 0; r < blocks.rows(); r++) {
       Box box;

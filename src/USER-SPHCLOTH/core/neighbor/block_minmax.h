@@ -11,9 +11,9 @@
 
 namespace sphcloth {
 
-class Survey {
+class BlockMinMax {
  public:
-  explicit Survey(const Blocks &blocks_) : blocks(blocks_) {}
+  explicit BlockMinMax(const Blocks &blocks_) : blocks(blocks_) {}
 
   // value: of each particle, owned and ghost
   void take(const int *value)

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/util/bytes.h"
 #include "core/neighbor/cell_lists.h"
+#include "core/util/bytes.h"
 #include "core/util/simd.h"
 
 namespace sphcloth {

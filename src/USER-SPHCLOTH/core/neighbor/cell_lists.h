@@ -16,8 +16,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/util/bytes.h"
 #include "core/contact/sheet_sides.h"
+#include "core/util/bytes.h"
 #include "core/util/simd.h"
 
 namespace sphcloth {
@@ -42,7 +42,7 @@ struct Extent {
 };
 
 struct Bounds : Extent {
-  std::array<double, 3> centre;
+  std::array<double, 3> center;
   double rounding;    // what that may do to a distance
 
   Bounds(const double *x, int n)
@@ -50,7 +50,7 @@ struct Bounds : Extent {
     for (int i = 0; i < n; i++) include(x + 3 * i);
     double extent = 0.0;
     for (int d = 0; d < 3; d++) {
-      centre[d] = 0.5 * (lo[d] + hi[d]);
+      center[d] = 0.5 * (lo[d] + hi[d]);
       extent = std::max(extent, hi[d] - lo[d]);
     }
     rounding = extent * 4.0 * std::numeric_limits<float>::epsilon();
@@ -59,7 +59,7 @@ struct Bounds : Extent {
 
 // one group of neighbours; LANES indices past the end are readable and valid
 
-struct Stretch {
+struct NeighborSpan {
   const int *of = nullptr;
   int n = 0;
 };
@@ -67,7 +67,7 @@ struct Stretch {
 // For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones lie in others
 // behind it: nothing else moves.
 
-class Stretches {
+class NeighborSpans {
  public:
   void start(std::size_t slots, int n_types)
   {
@@ -78,7 +78,7 @@ class Stretches {
     pieces.clear();
     pieces.reserve(slots * n_types);
   }
-  Stretch operator()(int slot, int type) const
+  NeighborSpan operator()(int slot, int type) const
   {
     const Piece &piece = pieces[number(slot, type)];
     return {piece.of, piece.n};
@@ -167,7 +167,7 @@ class Stretches {
   }
 };
 
-class NeighbourLists {
+class CellLists {
  public:
   // x: [n_all][3], owned particles first; reach: [(n_types+1)^2], distance up to which the second
   // type is listed as a neighbour of the first, 0: never; sides: of all particles, or null.  Who is
@@ -235,7 +235,7 @@ class NeighbourLists {
   int begin(int t) const { return slots_of[t]; }
   int slots() const { return static_cast<int>(order.size()); }
   int at(int slot) const { return order[slot]; }
-  Stretch operator()(int slot, int t) const { return lists(slot, t); }
+  NeighborSpan operator()(int slot, int t) const { return lists(slot, t); }
   // a stretch whose order may be changed
   int *open(int slot, int t) { return lists.open(slot, t); }
   double bytes() const
@@ -269,7 +269,7 @@ class NeighbourLists {
   };
 
   std::vector<Grid> grids;    // by type
-  std::array<double, 3> centre;
+  std::array<double, 3> center;
   double slack = 0.0;    // what rounding to single precision may do to a distance
   std::vector<int> slots_of, order;
   std::vector<int> place;    // of a slot among the sorted particles
@@ -280,7 +280,7 @@ class NeighbourLists {
   AlignedVector<float> px, py, pz;
   std::vector<int> candidate;    // of one particle
   std::vector<float> key;
-  Stretches lists;
+  NeighborSpans lists;
   const Sides *sides = nullptr;    // during a build
 
   // Half of how far a type looks among its own, or, if it does not, of what others see of it
@@ -339,7 +339,7 @@ class NeighbourLists {
     sorted = 0;
     if (n_all == 0 || longest == 0.0) return;
     const Bounds bounds(x, n_all);
-    centre = bounds.centre;
+    center = bounds.center;
     slack = bounds.rounding;
 
     cell_start.assign(set_grids(x, type, n_all, n_types, reach) + 1, 0);
@@ -365,9 +365,9 @@ class NeighbourLists {
     id.resize(n_all + LANES);
     for (int p = 0; p < n_all; p++) {
       const int i = id[p];
-      px[p] = static_cast<float>(x[3 * i] - centre[0]);
-      py[p] = static_cast<float>(x[3 * i + 1] - centre[1]);
-      pz[p] = static_cast<float>(x[3 * i + 2] - centre[2]);
+      px[p] = static_cast<float>(x[3 * i] - center[0]);
+      py[p] = static_cast<float>(x[3 * i + 1] - center[1]);
+      pz[p] = static_cast<float>(x[3 * i + 2] - center[2]);
     }
     sorted = n_all;
   }
@@ -449,7 +449,7 @@ class NeighbourLists {
     std::array<int, 3> from, to;
     const std::array<float, 3> at{xi, yi, zi};
     for (int d = 0; d < 3; d++) {
-      const double x = at[d] + centre[d];
+      const double x = at[d] + center[d];
       if (x + reach < grid.lo[d] || x - reach > grid.hi[d]) return 0;
       from[d] = grid.along(d, x - reach);
       to[d] = grid.along(d, x + reach);

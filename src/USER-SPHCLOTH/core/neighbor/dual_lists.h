@@ -20,8 +20,8 @@
 #define SPHCLOTH_CORE_NEIGHBOR_DUAL_LISTS_H
 
 #include "core/neighbor/approach_bounds.h"
-#include "core/neighbor/cell_lists.h"
 #include "core/neighbor/block_minmax.h"
+#include "core/neighbor/cell_lists.h"
 
 namespace sphcloth {
 
@@ -35,7 +35,7 @@ struct Motion {
   std::vector<double> interval;
 };
 
-class NearLists {
+class DualLists {
  public:
   // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin than
   // `most`: somebody else sees that lists are built anew before two that are farther apart than that can meet.
@@ -74,7 +74,7 @@ class NearLists {
     if (outer.slots() == 0) return;
     begin_evaluation();
     steps++;
-    closing.measure(x, centre, held.data());
+    closing.measure(x, center, held.data());
     bool fronts_hold = true, lists_hold = true;
     for_each_front([&](Front &front, int b, int t, int other) {
       const double nearer = closing.between(b, t, other);
@@ -105,7 +105,7 @@ class NearLists {
   // Of a value of each particle: is that of a neighbour of one type above a limit?  Whose is another?  What many
   // are about to ask may be found for whole blocks of space before; `surveyed` says that this was the last
   // survey.
-  void take_survey(const int *value) { survey.take(value); }
+  void measure_block_ranges(const int *value) { survey.take(value); }
   bool any_above(int most, int slot, int other, const int *value, bool surveyed)
   {
     if (surveyed && survey.greatest(block[slot], other) <= most) return false;
@@ -113,11 +113,11 @@ class NearLists {
     return greatest((*this)(slot, other), value) > most;
   }
   // until somebody asks again
-  Stretch others(int same, int slot, int other, const int *value, bool surveyed = false)
+  NeighborSpan others(int same, int slot, int other, const int *value, bool surveyed = false)
   {
     if (surveyed && survey.all_have(same, block[slot], other)) return {nullptr, 0};
     refresh(slot);
-    const Stretch near = (*this)(slot, other);
+    const NeighborSpan near = (*this)(slot, other);
     const int n = pick_others(value, same, near.of, near.n, spare.data());
     if (n > 0) std::fill_n(spare.data() + n, LANES, spare[0]);    // what fills up a group is read
     return {spare.data(), n};
@@ -128,7 +128,10 @@ class NearLists {
   int slots() const { return outer.slots(); }
   int at(int slot) const { return outer.at(slot); }
   // Everyone inside the support and some a little outside, as of the last refresh.
-  Stretch operator()(int slot, int t) const { return {outer(slot, t).of, in_front[of(slot, t)]}; }
+  NeighborSpan operator()(int slot, int t) const
+  {
+    return {outer(slot, t).of, in_front[of(slot, t)]};
+  }
   int slot(int owned) const { return slot_of[owned]; }
   // of the front of one particle, if it were found now
   double inner_skin(int slot, int t) const { return at(block[slot], type_of(slot), t).skin; }
@@ -159,7 +162,7 @@ class NearLists {
   // least inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
 
-  NeighbourLists outer;
+  CellLists outer;
   int types = 0;
   std::vector<int> in_front, slot_of;    // [slot][type], [owned particle]
   std::vector<double> until;    // [slot][type], reading of the odometer
@@ -172,10 +175,10 @@ class NearLists {
   std::vector<double> limit, far, widest, lasting, cost;
   std::vector<double> interval;    // of a type
   Blocks blocks;
-  Closing closing{blocks};
-  Survey survey{blocks};
-  AlignedVector<Closing::Place> held;    // positions from which fronts are found
-  std::array<double, 3> centre{};
+  ApproachBounds closing{blocks};
+  BlockMinMax survey{blocks};
+  AlignedVector<ApproachBounds::Place> held;    // positions from which fronts are found
+  std::array<double, 3> center{};
   AlignedVector<float> key;
   std::vector<int> spare;
 
@@ -226,10 +229,10 @@ class NearLists {
     fronts.assign(static_cast<std::size_t>(blocks.count()) * types * types, Front());
     if (motion.v) closing.measure(motion.v, {0.0, 0.0, 0.0}, nullptr);
     for_each_front([&](Front &front, int b, int t, int other) {
-      const double way = motion.v ? closing.between(b, t, other) * motion.step : 0.0;
+      const double displacement = motion.v ? closing.between(b, t, other) * motion.step : 0.0;
       const int k = pair(t, other);
-      front.skin =
-          std::min(widest[k], std::max(FIRST_SKIN * limit[k], lasting_skin(t, other, way)));
+      front.skin = std::min(widest[k],
+                            std::max(FIRST_SKIN * limit[k], lasting_skin(t, other, displacement)));
       front.lists_until = lasting[k];
     });
   }
@@ -282,10 +285,10 @@ class NearLists {
   // For n evaluations of one particle a skin that is used up in the meantime, with a margin: the
   // front then holds 1 + dim skin/H as many, and finding it costs cost/(n + 1) per evaluation.  The
   // n of least cost.
-  double lasting_skin(int t, int other, double way) const
+  double lasting_skin(int t, int other, double displacement) const
   {
     const int k = pair(t, other);
-    const double nearer = way * interval[t];
+    const double nearer = displacement * interval[t];
     if (!(nearer > 0.0)) return std::min(widest[k], FIRST_SKIN * limit[k]);
     const double n = std::sqrt(cost[k] * limit[k] / (dim * nearer)) - 0.5;
     return std::min(widest[k], 1.1 * nearer * std::floor(std::clamp(n, 0.0, 1000.0)));
@@ -301,13 +304,13 @@ class NearLists {
   void hold(const double *x, int n_all)
   {
     const Bounds bounds(x, n_all);
-    centre = bounds.centre;
+    center = bounds.center;
     rounding = bounds.rounding;
     held.resize(n_all + LANES);
     for (int i = 0; i < n_all; i++)
-      held[i] = {static_cast<float>(x[3 * i] - centre[0]),
-                 static_cast<float>(x[3 * i + 1] - centre[1]),
-                 static_cast<float>(x[3 * i + 2] - centre[2])};
+      held[i] = {static_cast<float>(x[3 * i] - center[0]),
+                 static_cast<float>(x[3 * i + 1] - center[1]),
+                 static_cast<float>(x[3 * i + 2] - center[2])};
     steps = 0;
   }
 
@@ -316,9 +319,9 @@ class NearLists {
     const int types_of_it = pair(t, other);
     const Front &now = at(block[slot], t, other);
     until[of(slot, other)] = now.held + now.skin;
-    const Stretch list = outer(slot, other);
+    const NeighborSpan list = outer(slot, other);
     if (list.n == 0 || limit[types_of_it] == 0.0) return;
-    const Closing::Place self = held[outer.at(slot)];
+    const ApproachBounds::Place self = held[outer.at(slot)];
     static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
@@ -335,7 +338,7 @@ class NearLists {
                                           static_cast<float>(near * near), spare.data());
   }
 
-  SPHCLOTH_MULTIVERSION int greatest(const Stretch &near, const int *value) const
+  SPHCLOTH_MULTIVERSION int greatest(const NeighborSpan &near, const int *value) const
   {
     const int *of = near.of;
     int most = std::numeric_limits<int>::min();

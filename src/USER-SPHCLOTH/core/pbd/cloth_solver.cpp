@@ -31,15 +31,15 @@ namespace {
   SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
 
   template <bool START>
-  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int colour, const ClothState &s)
+  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int color, const ClothState &s)
   {
-    const Vertex *start = s.start, *way = s.way;
-    Vertex *moved = s.change ? s.change : s.way;
-    for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+    const Vertex *start = s.start, *displacement = s.displacement;
+    Vertex *moved = s.change ? s.change : s.displacement;
+    for (int m = c.begin[color]; m < c.begin[color + 1]; m += WIDE) {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
       Rows before, now;
       for (int l = 0; l < WIDE; l++) {
-        const Row &way1 = row(way[one[l]]), &way2 = row(way[two[l]]);
+        const Row &way1 = row(displacement[one[l]]), &way2 = row(displacement[two[l]]);
         before.of[l] = row(start[one[l]]) - row(start[two[l]]);
         now.of[l] = before.of[l] + (way1 - way2);
         take_last(now.of[l], way1 + way2);
@@ -63,7 +63,7 @@ namespace {
       Rows by;
       by.from(step);
       for (int l = 0; l < WIDE; l++) {
-        const double w1 = way[one[l]].w, w2 = way[two[l]].w;
+        const double w1 = displacement[one[l]].w, w2 = displacement[two[l]].w;
         row(moved[one[l]]) += w1 * by.of[l];
         row(moved[two[l]]) -= w2 * by.of[l];
       }
@@ -77,15 +77,15 @@ namespace {
     Column a, e2, b, e1;    // of edge 1 only w is of use
 
     SPHCLOTH_INLINE void read(const Constraints<4> &c, int m, const Vertex *start,
-                              const Vertex *way)
+                              const Vertex *displacement)
     {
       Rows rows_a, rows_2, rows_b, rows_1;
       for (int l = 0; l < WIDE; l++) {
         const int edge = c.slot[1][m + l];
-        const Row &start1 = row(start[edge]), &way1 = row(way[edge]);
+        const Row &start1 = row(start[edge]), &way1 = row(displacement[edge]);
         const auto relative = [&](int vertex, Row &r) {
-          r = (row(start[vertex]) - start1) + (row(way[vertex]) - way1);
-          take_last(r, row(way[vertex]));
+          r = (row(start[vertex]) - start1) + (row(displacement[vertex]) - way1);
+          take_last(r, row(displacement[vertex]));
         };
         relative(c.slot[0][m + l], rows_a.of[l]);
         relative(c.slot[2][m + l], rows_2.of[l]);
@@ -127,7 +127,7 @@ namespace {
       }
     }
 
-    SPHCLOTH_INLINE void move(const Constraints<4> &c, int m, const Vertex *way,
+    SPHCLOTH_INLINE void move(const Constraints<4> &c, int m, const Vertex *displacement,
                               Vertex *moved) const
     {
       Rows by_a, by_2, by_b;
@@ -136,7 +136,7 @@ namespace {
       by_b.from(b);
       for (int l = 0; l < WIDE; l++) {
         const auto add = [&](int vertex, const Row &by) {
-          const double w_of = way[vertex].w;
+          const double w_of = displacement[vertex].w;
           row(moved[vertex]) += w_of * by;
         };
         add(c.slot[0][m + l], by_a.of[l]);
@@ -151,34 +151,34 @@ namespace {
   // A hinge is a long chain, one number waiting for the other.  In loops that only read, only project
   // or only move, a processor begins with the next group before it has ended the last.
 
-  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int colour, const ClothState &s)
+  SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int color, const ClothState &s)
   {
     constexpr int BATCH = 4;
-    const Vertex *start = s.start, *way = s.way;
-    Vertex *moved = s.change ? s.change : s.way;
-    const int end = c.begin[colour + 1];
-    for (int m = c.begin[colour]; m < end; m += BATCH * WIDE) {
+    const Vertex *start = s.start, *displacement = s.displacement;
+    Vertex *moved = s.change ? s.change : s.displacement;
+    const int end = c.begin[color + 1];
+    for (int m = c.begin[color]; m < end; m += BATCH * WIDE) {
       HingeGroup group[BATCH];
       const int n = std::min(BATCH, (end - m) / WIDE);
-      for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, way);
+      for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, displacement);
       for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq);
-      for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, way, moved);
+      for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, displacement, moved);
     }
   }
 
 }    // namespace
 
-void project(Constraints<2> &c, int colour, const ClothState &s)
+void project(Constraints<2> &c, int color, const ClothState &s)
 {
-  s.along_start ? project_distances<true>(c, colour, s) : project_distances<false>(c, colour, s);
+  s.along_start ? project_distances<true>(c, color, s) : project_distances<false>(c, color, s);
 }
 
-void project(Constraints<4> &c, int colour, const ClothState &s) { project_hinges(c, colour, s); }
+void project(Constraints<4> &c, int color, const ClothState &s) { project_hinges(c, color, s); }
 
-SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int colour, const Vertex *p, Vertex *v,
+SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int color, const Vertex *p, Vertex *v,
                                 double share)
 {
-  for (int m = c.begin[colour]; m < c.begin[colour + 1]; m += WIDE) {
+  for (int m = c.begin[color]; m < c.begin[color + 1]; m += WIDE) {
     const int *one = &c.slot[0][m], *two = &c.slot[1][m];
     Rows apart, faster;
     for (int l = 0; l < WIDE; l++) {
@@ -233,7 +233,7 @@ namespace {
   {
     double largest = 0.0;
     for (int m = 0; m < c.size(); m++) {
-      if (!c.in_full[m]) continue;
+      if (!c.hard[m]) continue;
       bool any_moves = false;
       for (std::size_t q = 0; q < N; q++) any_moves = any_moves || p[c.slot[q][m]].w > 0.0;
       if (!any_moves) continue;

@@ -11,8 +11,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/util/bytes.h"
 #include "core/pbd/constraints.h"
+#include "core/util/bytes.h"
 #include "core/util/simd.h"
 
 namespace sphcloth {
@@ -30,13 +30,13 @@ using Vertices = AlignedVector<Vertex>;
 
 template <std::size_t N> class Constraints {
  public:
-  void clear(int colours, int idle_vertex)
+  void clear(int colors, int idle_vertex)
   {
     idle = idle_vertex;
     begin.assign(1, 0);
-    begin.reserve(colours + 1);
+    begin.reserve(colors + 1);
     for (auto &s : slot) s.clear();
-    in_full.clear();
+    hard.clear();
     for (auto *list : {&rest, &k, &compliance, &most, &lambda, &given}) list->clear();
     acting = 1.0;
   }
@@ -47,12 +47,12 @@ template <std::size_t N> class Constraints {
     for (std::size_t q = 0; q < N; q++) slot[q].push_back(vertices[q]);
     rest.push_back(spring.rest);
     k.push_back(share * spring.k);
-    in_full.push_back(spring.k == 1.0);
+    hard.push_back(spring.k == 1.0);
     compliance.push_back(spring.compliance);
     most.push_back(spring.most);
     lambda.push_back(0.0);
   }
-  void close_colour()
+  void close_color()
   {
     std::array<int, N> vertices;
     vertices.fill(idle);
@@ -62,17 +62,17 @@ template <std::size_t N> class Constraints {
 
   // The springs that the constraints are where they do what k says, in steps whose square is one over
   // `ratio` of that there: see the share of a spring in constraints.h.
-  void keep_springs(double ratio)
+  void rescale_stiffness(double ratio)
   {
     if (ratio == acting) return;
     if (given.empty()) given = k;
     acting = ratio;
     for (int m = 0; m < size(); m++)
-      if (!in_full[m]) k[m] = share_of_spring(given[m], ratio);
+      if (!hard[m]) k[m] = rescaled_stiffness(given[m], ratio);
   }
 
   int size() const { return static_cast<int>(rest.size()); }
-  int colours() const { return static_cast<int>(begin.size()) - 1; }
+  int colors() const { return static_cast<int>(begin.size()) - 1; }
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
@@ -84,7 +84,7 @@ template <std::size_t N> class Constraints {
   std::vector<int> begin{0};    // of each colour, and the end
   std::array<std::vector<int>, N> slot;
   AlignedVector<double> rest, k, compliance, most, lambda;
-  std::vector<char> in_full;    // not in part, as (9) with k < 1
+  std::vector<char> hard;    // not in part, as (9) with k < 1
 
  private:
   int idle = 0;
@@ -98,17 +98,18 @@ template <std::size_t N> class Constraints {
 
 struct ClothState {
   const Vertex *start = nullptr;    // places
-  Vertex *way = nullptr;    // since then, moved (Gauss-Seidel); the inverse masses are these
+  Vertex *displacement =
+      nullptr;    // since then, moved (Gauss-Seidel); the inverse masses are these
   bool along_start = false;    // project edges along the directions that they had at the start
   Vertex *change = nullptr;    // Jacobi: add up here what the ways would change by, or null
   double inv_dt_sq = 0.0;
 };
 
-void project(Constraints<2> &, int colour, const ClothState &);
-void project(Constraints<4> &, int colour, const ClothState &);
+void project(Constraints<2> &, int color, const ClothState &);
+void project(Constraints<4> &, int color, const ClothState &);
 
 // takes the share of the stretching motion out of the velocities v of one colour
-void damp(const Constraints<2> &, int colour, const Vertex *p, Vertex *v, double share);
+void damp(const Constraints<2> &, int color, const Vertex *p, Vertex *v, double share);
 
 // C + a lambda, which vanishes in a converged step: largest of the constraints that are to be met in
 // full and are not slack.  Of lengths it is relative, to the rest length or to `length` if that is 0.

@@ -14,13 +14,13 @@
 namespace sphcloth {
 
 template <std::size_t N>
-std::vector<int> colour_constraints(const std::vector<std::array<int, N>> &constraints,
-                                    int n_vertices, int &n_colours)
+std::vector<int> color_constraints(const std::vector<std::array<int, N>> &constraints,
+                                   int n_vertices, int &n_colors)
 {
   std::vector<std::vector<bool>> used(
       n_vertices);    // used[v][c]: v is in a constraint of colour c
-  std::vector<int> colour(constraints.size());
-  n_colours = 0;
+  std::vector<int> color(constraints.size());
+  n_colors = 0;
   const auto taken = [&](const std::array<int, N> &vertices, std::size_t c) {
     for (int v : vertices)
       if (c < used[v].size() && used[v][c]) return true;
@@ -33,10 +33,10 @@ std::vector<int> colour_constraints(const std::vector<std::array<int, N>> &const
       if (used[v].size() <= c) used[v].resize(c + 1, false);
       used[v][c] = true;
     }
-    colour[m] = static_cast<int>(c);
-    if (colour[m] >= n_colours) n_colours = colour[m] + 1;
+    color[m] = static_cast<int>(c);
+    if (color[m] >= n_colors) n_colors = color[m] + 1;
   }
-  return colour;
+  return color;
 }
 
 }    // namespace sphcloth

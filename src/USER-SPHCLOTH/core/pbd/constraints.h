@@ -33,7 +33,7 @@ inline double stiffness_per_iteration(double k, int n) { return -std::expm1(std:
 // k = W/(W + a), a = compliance/dt^2, so that k/(1 - k) is as the square of the step.  The share of the
 // same spring where the square of the step is one over `ratio` of that for which k holds:
 
-SPHCLOTH_INLINE double share_of_spring(double k, double ratio)
+SPHCLOTH_INLINE double rescaled_stiffness(double k, double ratio)
 {
   return k / (k + (1.0 - k) * ratio);
 }
@@ -86,11 +86,11 @@ SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, doub
 // long for its tension: a string of links of length l and masses m under a tension T swings ever
 // higher if dt^2 T > m l, which is a pull of 2.  pull: what its ends are moved, over its length.
 
-inline constexpr double MOST_PULL = 0.5;
+inline constexpr double MAX_PULL = 0.5;
 
 SPHCLOTH_INLINE bool start_is_void(double cosine, double before, double pull)
 {
-  return !(cosine >= 0.5 * before && before > 0.0 && pull < MOST_PULL);
+  return !(cosine >= 0.5 * before && before > 0.0 && pull < MAX_PULL);
 }
 
 // The same along the direction (sx, sy, sz) that the edge had at the start of the step, as SHAKE

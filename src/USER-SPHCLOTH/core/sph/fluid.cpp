@@ -39,7 +39,7 @@ bool Fluid::select(const Particles &p)
 int Fluid::count_inside(const Particles &p, int owned, int type, int most)
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
-  const Stretch list = neighbours(owned, type);
+  const NeighborSpan list = neighbors(owned, type);
   const double *x = p.x + 3 * owned;
   int n = 0;
   for (int k = 0; k < list.n && n < most; k++) {

@@ -13,8 +13,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/sph/kernel.h"
 #include "core/neighbor/dual_lists.h"
+#include "core/sph/kernel.h"
 #include "core/sph/tait.h"
 
 namespace sphcloth {
@@ -28,10 +28,10 @@ enum class Precision : int { DOUBLE, MIXED };
 enum class Friction : int { NONE, ARTIFICIAL, ANY };
 
 // whom forces are for
-enum class On { ALL, FLUID, BOUNDARIES };
+enum class Target { ALL, FLUID, BOUNDARIES };
 
 // what is found beside the forces: d rho/dt, the speed at which the fastest neighbour comes near
-enum class Also : int { NOTHING, RATE, RATE_AND_APPROACH };
+enum class Outputs : int { NOTHING, RATE, RATE_AND_APPROACH };
 
 // one pair of types
 
@@ -48,7 +48,7 @@ struct PairTerms {
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
-  Also also = Also::NOTHING;
+  Outputs also = Outputs::NOTHING;
   std::vector<Role> role;          // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
@@ -146,7 +146,7 @@ class Fluid {
   virtual void record(const Particles &) = 0;
 
   // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
-  virtual void forces(const Particles &, On) = 0;
+  virtual void forces(const Particles &, Target) = 0;
 
   // Impulses of particles that take steps of their own, given to both partners of a pair: instead of
   // its pressure, every particle has it times the time for which it acts, and `span` is that time,
@@ -164,10 +164,10 @@ class Fluid {
   virtual double lattice_sum(double support, double spacing) const = 0;
   virtual double bytes() const = 0;
 
-  const NearLists &order() const { return lists; }
-  NearLists &order() { return lists; }
+  const DualLists &order() const { return lists; }
+  DualLists &order() { return lists; }
   // neighbours of one type inside the support, and some a little outside it
-  Stretch neighbours(int owned, int type)
+  NeighborSpan neighbors(int owned, int type)
   {
     lists.refresh(lists.slot(owned));
     return lists(lists.slot(owned), type);
@@ -176,7 +176,7 @@ class Fluid {
   int count_inside(const Particles &, int owned, int type, int most);
 
  protected:
-  NearLists lists;
+  DualLists lists;
   Selection selection;
   bool everyone = false;    // is selected, of these lists
 };

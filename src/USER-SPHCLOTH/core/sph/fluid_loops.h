@@ -53,7 +53,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *pressure) override;
   void record(const Particles &p) override { record_all(p); }
-  void forces(const Particles &, On) override;
+  void forces(const Particles &, Target) override;
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
   void impulses(const Particles &, const std::vector<int> &slots) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -84,13 +84,13 @@ template <class K, class P> class FluidLoops : public Fluid {
     const double *group(int from) const { return of + from * step; }
   };
 
-  template <Also ALSO, bool VIRIAL> struct Sums {
+  template <Outputs ALSO, bool VIRIAL> struct Sums {
     LaneSum<LANES> x, y, z, drho, virial[VIRIAL ? 6 : 0];
     alignas(64) Real approach_sq[LANES] = {};
     Acceleration total() const
     {
       Acceleration a{x.total(), y.total(), z.total(), drho.total(), 0.0, {}};
-      if (ALSO == Also::RATE_AND_APPROACH)
+      if (ALSO == Outputs::RATE_AND_APPROACH)
         a.approach = std::sqrt(*std::max_element(approach_sq, approach_sq + LANES));
       if (VIRIAL)
         for (int m = 0; m < 6; m++) a.virial[m] = 0.5 * virial[m].total();
@@ -143,35 +143,37 @@ template <class K, class P> class FluidLoops : public Fluid {
   void settle();
   const Terms &pair(int t, int other) const { return terms[t * (model.n_types + 1) + other]; }
   template <bool WEIGHTED>
-  double shape_sum(int i, const Stretch &, const Terms &, Masses, Columns &) const;
+  double shape_sum(int i, const NeighborSpan &, const Terms &, Masses, Columns &) const;
   void sum_up(const Particles &, bool sum);
-  void fill_sites(Columns &, const Stretch &, int from, Coordinate far) const;
-  void fill(Columns &, const Stretch &, int from, Coordinate far) const;
+  void fill_sites(Columns &, const NeighborSpan &, int from, Coordinate far) const;
+  void fill(Columns &, const NeighborSpan &, int from, Coordinate far) const;
   static void fill_up(Columns &, int n, Coordinate far);
-  Masses masses(const Particles &, const Stretch &, int type);
+  Masses masses(const Particles &, const NeighborSpan &, int type);
   void fill_spans(Columns &, const int *near) const;
 
-  template <Also ALSO, bool VIRIAL>
+  template <Outputs ALSO, bool VIRIAL>
   static void add(Sums<ALSO, VIRIAL> &, int lane, double amount, Real fx, Real fy, Real fz,
                   Real rate, Real dx, Real dy, Real dz);
-  template <Also ALSO, bool VIRIAL>
+  template <Outputs ALSO, bool VIRIAL>
   static void meet(Sums<ALSO, VIRIAL> &, int lane, Real v_dot_r, Real r_sq, Real support_sq);
   void apply(const Particles &, int i, bool fluid, const Acceleration &) const;
-  template <Friction F, Also ALSO, bool VIRIAL>
-  void all_forces(const Particles &, On, Receiver, void *);
-  template <Also ALSO> void forces_and(const Particles &, On);
+  template <Friction F, Outputs ALSO, bool VIRIAL>
+  void all_forces(const Particles &, Target, Receiver, void *);
+  template <Outputs ALSO> void forces_and(const Particles &, Target);
   template <Friction F> void all_impulses(const Particles &, const std::vector<int> &slots);
-  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
+  template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE>
   void all_on(const Particles &, int slot, int t, Columns &, Receiver, void *);
-  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
-  void fluid_on_fluid(int i, const Stretch &, const Terms &, Masses, Columns &,
+  template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE>
+  void fluid_on_fluid(int i, const NeighborSpan &, const Terms &, Masses, Columns &,
                       Sums<ALSO, VIRIAL> &) const;
-  template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
-  void across_boundary(int i, const Stretch &, const Terms &, Masses, Columns &,
+  template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
+  void across_boundary(int i, const NeighborSpan &, const Terms &, Masses, Columns &,
                        Sums<ALSO, VIRIAL> &) const;
-  Differences density_differences(int i, const Stretch &, const Terms &, Masses, Columns &) const;
+  Differences density_differences(int i, const NeighborSpan &, const Terms &, Masses,
+                                  Columns &) const;
   template <bool FROM_BOUNDARY, bool DIFFUSION>
-  double density_rate(int i, const Stretch &, const Terms &, Masses, double back, Columns &) const;
+  double density_rate(int i, const NeighborSpan &, const Terms &, Masses, double back,
+                      Columns &) const;
 };
 
 /* ----------------------------------------------------------------------
@@ -232,7 +234,7 @@ template <class K, class P> void FluidLoops<K, P>::settle()
 }
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::fill_sites(Columns &c, const Stretch &near, int from,
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill_sites(Columns &c, const NeighborSpan &near, int from,
                                                   Coordinate far) const
 {
   columns(&sites[0].x, near.of + from, c.x, c.y, c.z, c.own);
@@ -254,7 +256,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill_up(Columns &c, int n, Coordinate far
 }
 
 template <class K, class P>
-SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int from,
+SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const NeighborSpan &near, int from,
                                             Coordinate far) const
 {
   columns(&motions[0].u, near.of + from, c.u, c.v, c.w, c.pressure);
@@ -263,7 +265,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill(Columns &c, const Stretch &near, int
 
 template <class K, class P>
 SPHCLOTH_INLINE typename FluidLoops<K, P>::Masses
-FluidLoops<K, P>::masses(const Particles &p, const Stretch &near, int type)
+FluidLoops<K, P>::masses(const Particles &p, const NeighborSpan &near, int type)
 {
   if (model.mass[type] > 0.0) return {&equal_mass[type * LANES], 0};
   for (int k = 0; k < near.n; k++) unequal_mass[k] = p.amount[near.of[k]];
@@ -284,7 +286,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fill_spans(Columns &c, const int *near) c
 
 template <class K, class P>
 template <bool WEIGHTED>
-SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(int i, const Stretch &near, const Terms &t,
+SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(int i, const NeighborSpan &near, const Terms &t,
                                                    Masses masses, Columns &c) const
 {
   const Site self = sites[i];
@@ -322,7 +324,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
       if (!sum || !fluid) continue;
       double rho = p.amount[i] * at_self;
       for (int other = 1; other <= n_types; other++) {
-        const Stretch near = lists(slot, other);
+        const NeighborSpan near = lists(slot, other);
         if (near.n == 0) continue;
         const PairTerms &whole = model.pair(t, other);
         const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : whole.rho0;
@@ -365,7 +367,7 @@ void FluidLoops<K, P>::volumes(const Particles &, int type, double *amount)
 // one pair: its force and rate per the amount of the neighbour, in lane m
 
 template <class K, class P>
-template <Also ALSO, bool VIRIAL>
+template <Outputs ALSO, bool VIRIAL>
 SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<ALSO, VIRIAL> &s, int m, double amount, Real fx,
                                            Real fy, Real fz, Real rate, Real dx, Real dy, Real dz)
 {
@@ -373,7 +375,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<ALSO, VIRIAL> &s, int m, double 
   s.x.of[m] += x;
   s.y.of[m] += y;
   s.z.of[m] += z;
-  if (ALSO != Also::NOTHING) s.drho.of[m] += amount * rate;
+  if (ALSO != Outputs::NOTHING) s.drho.of[m] += amount * rate;
   if (VIRIAL) {
     s.virial[0].of[m] += dx * x;
     s.virial[1].of[m] += dy * y;
@@ -387,11 +389,11 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add(Sums<ALSO, VIRIAL> &s, int m, double 
 // The square of the largest speed at which a neighbour inside the support comes near
 
 template <class K, class P>
-template <Also ALSO, bool VIRIAL>
+template <Outputs ALSO, bool VIRIAL>
 SPHCLOTH_INLINE void FluidLoops<K, P>::meet(Sums<ALSO, VIRIAL> &s, int m, Real v_dot_r, Real r_sq,
                                             Real support_sq)
 {
-  if (ALSO != Also::RATE_AND_APPROACH) return;
+  if (ALSO != Outputs::RATE_AND_APPROACH) return;
   const Real closing = std::min(v_dot_r, Real(0));
   const Real speed_sq = closing * closing / std::max(r_sq, std::numeric_limits<Real>::min());
   s.approach_sq[m] = std::max(s.approach_sq[m], r_sq < support_sq ? speed_sq : Real(0));
@@ -402,9 +404,9 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::meet(Sums<ALSO, VIRIAL> &s, int m, Real v
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
 
 template <class K, class P>
-template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
-SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(int i, const Stretch &near, const Terms &t,
-                                                      Masses masses, Columns &c,
+template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE>
+SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(int i, const NeighborSpan &near,
+                                                      const Terms &t, Masses masses, Columns &c,
                                                       Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
@@ -455,9 +457,9 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(int i, const Stretch &near
 // boundary, its neighbours are fluid, the result is a force per volume.
 
 template <class K, class P>
-template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
-SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(int i, const Stretch &near, const Terms &t,
-                                                       Masses masses, Columns &c,
+template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
+SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(int i, const NeighborSpan &near,
+                                                       const Terms &t, Masses masses, Columns &c,
                                                        Sums<ALSO, VIRIAL> &sums) const
 {
   const Site site = sites[i];
@@ -508,7 +510,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(int i, const Stretch &nea
 // everything that one particle feels
 
 template <class K, class P>
-template <Friction F, Also ALSO, bool VIRIAL, bool IMPULSE>
+template <Friction F, Outputs ALSO, bool VIRIAL, bool IMPULSE>
 SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int t, Columns &c,
                                               Receiver receive, void *context)
 {
@@ -520,7 +522,8 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
   Sums<ALSO, VIRIAL> sums;
   int met = 0;
   for (int other = 1; other <= model.n_types; other++) {
-    const Stretch found = gives ? lists(slot, other) : lists.others(0, slot, other, acts.data());
+    const NeighborSpan found = gives ? lists(slot, other)
+                                     : lists.others(0, slot, other, acts.data());
     if (found.n == 0 || !(fluid || is_fluid(other))) continue;
     met += found.n;
     const Terms &of_pair = pair(t, other);
@@ -533,7 +536,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
                                                       sums);
   }
   const Acceleration a = sums.total();
-  if (ALSO == Also::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
+  if (ALSO == Outputs::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
   if (!met) return;
   if (VIRIAL)
     receive(context, i, a);
@@ -542,13 +545,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::all_on(const Particles &p, int slot, int 
 }
 
 template <class K, class P>
-template <Friction F, Also ALSO, bool VIRIAL>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, On whom,
+template <Friction F, Outputs ALSO, bool VIRIAL>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Target whom,
                                                         Receiver receive, void *context)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
-    if (whom == (is_fluid(t) ? On::BOUNDARIES : On::FLUID)) continue;
+    if (whom == (is_fluid(t) ? Target::BOUNDARIES : Target::FLUID)) continue;
     for (const int slot : selection.of(t))
       all_on<F, ALSO, VIRIAL, false>(p, slot, t, c, receive, context);
   }
@@ -561,7 +564,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_impulses(const Particles &p,
 {
   Columns c;
   for (const int slot : slots)
-    all_on<F, Also::NOTHING, false, true>(p, slot, p.type[lists.at(slot)], c, nullptr, nullptr);
+    all_on<F, Outputs::NOTHING, false, true>(p, slot, p.type[lists.at(slot)], c, nullptr, nullptr);
 }
 
 template <class K, class P>
@@ -600,18 +603,18 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
   if (fluid) p.drho[i] += a.drho;
 }
 
-template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p, On whom)
+template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p, Target whom)
 {
   switch (model.also) {
-    case Also::NOTHING: return forces_and<Also::NOTHING>(p, whom);
-    case Also::RATE: return forces_and<Also::RATE>(p, whom);
-    case Also::RATE_AND_APPROACH: return forces_and<Also::RATE_AND_APPROACH>(p, whom);
+    case Outputs::NOTHING: return forces_and<Outputs::NOTHING>(p, whom);
+    case Outputs::RATE: return forces_and<Outputs::RATE>(p, whom);
+    case Outputs::RATE_AND_APPROACH: return forces_and<Outputs::RATE_AND_APPROACH>(p, whom);
   }
 }
 
 template <class K, class P>
-template <Also ALSO>
-void FluidLoops<K, P>::forces_and(const Particles &p, On whom)
+template <Outputs ALSO>
+void FluidLoops<K, P>::forces_and(const Particles &p, Target whom)
 {
   switch (model.friction) {
     case Friction::NONE: return all_forces<Friction::NONE, ALSO, false>(p, whom, nullptr, nullptr);
@@ -627,7 +630,7 @@ void FluidLoops<K, P>::forces_and(const Particles &p, On whom)
 template <class K, class P>
 void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
 {
-  all_forces<Friction::ANY, Also::NOTHING, true>(p, On::ALL, receive, context);
+  all_forces<Friction::ANY, Outputs::NOTHING, true>(p, Target::ALL, receive, context);
 }
 
 /* ----------------------------------------------------------------------
@@ -642,7 +645,7 @@ void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *conte
 // a linear field on one side, too.
 
 template <class K, class P>
-SPHCLOTH_INLINE Differences FluidLoops<K, P>::density_differences(int i, const Stretch &near,
+SPHCLOTH_INLINE Differences FluidLoops<K, P>::density_differences(int i, const NeighborSpan &near,
                                                                   const Terms &t, Masses masses,
                                                                   Columns &c) const
 {
@@ -684,7 +687,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
     if (!is_fluid(t)) continue;
     for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
-      const Stretch found = lists(slot, t);
+      const NeighborSpan found = lists(slot, t);
       const std::array<double, 3> of_i =
           density_differences(i, found, pair(t, t), masses(p, found, t), c)
               .gradient(model.dimension);
@@ -695,8 +698,9 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
 
 template <class K, class P>
 template <bool FROM_BOUNDARY, bool DIFFUSION>
-SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(int i, const Stretch &near, const Terms &t,
-                                                      Masses masses, double back, Columns &c) const
+SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(int i, const NeighborSpan &near,
+                                                      const Terms &t, Masses masses, double back,
+                                                      Columns &c) const
 {
   const Site site = sites[i];
   const Motion motion = motions[i];
@@ -758,7 +762,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
       const int i = lists.at(slot);
       double sum = 0.0;
       for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = lists(slot, other);
+        const NeighborSpan found = lists(slot, other);
         if (found.n == 0) continue;
         const Terms &of_pair = pair(t, other);
         if (!is_fluid(other))
@@ -786,7 +790,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
       double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
-        const Stretch found = lists(slot, other);
+        const NeighborSpan found = lists(slot, other);
         const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
@@ -810,7 +814,7 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
     double sum = 0.0, weights = 0.0;
     for (int other = 1; other <= model.n_types; other++) {
       if (!is_fluid(other)) continue;
-      const Stretch found = lists(slot, other);
+      const NeighborSpan found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {
         const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
         sum += w * p.pressure[found.of[k]];

@@ -13,7 +13,7 @@ namespace sphcloth {
 // The determinant of the matrix over that of the isotropic one of the same trace is 1 inside the
 // fluid, 0.6 in the corner of a square and 0.3 in that of a cube, and 0 if all neighbours lie in one
 // plane (on one line).  Below this there is no gradient.
-inline constexpr double LEAST_SPREAD = 0.1;
+inline constexpr double MIN_SPREAD = 0.1;
 
 struct Differences {
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;    // inverse of L
@@ -27,7 +27,7 @@ struct Differences {
     const double cxx = yy * third - yz * yz, cxy = xz * yz - xy * third, cxz = xy * yz - yy * xz;
     const double cyy = xx * third - xz * xz, cyz = xy * xz - xx * yz, czz = xx * yy - xy * xy;
     const double det = xx * cxx + xy * cxy + xz * cxz;
-    if (!(det > LEAST_SPREAD * mean * mean * mean)) return {0.0, 0.0, 0.0};
+    if (!(det > MIN_SPREAD * mean * mean * mean)) return {0.0, 0.0, 0.0};
     return {(cxx * x + cxy * y + cxz * z) / det, (cxy * x + cyy * y + cyz * z) / det,
             (cxz * x + cyz * y + czz * z) / det};
   }

@@ -41,7 +41,7 @@ inline double spacing_of(double volume, int dim)
 
 // what the neighbours of one particle add up to
 
-struct Crowd {
+struct ConcentrationGradient {
   std::array<double, 3> gradient{};    // of the concentration
   double cover = 0.0;    // divergence of position over d
   std::array<double, 9> grad_v{};    // d v_a / d x_b
@@ -49,14 +49,14 @@ struct Crowd {
 
 // one neighbour: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
 
-struct Neighbour {
+struct NeighborTerm {
   std::array<double, 3> r;
   double volume, volume_at_rest;
 };
 
 template <class K>
-void add_neighbour(Crowd &crowd, const Neighbour &n, const KernelScale &s, double shape_at_spacing,
-                   double clumping, int dim)
+void add_neighbor(ConcentrationGradient &crowd, const NeighborTerm &n, const KernelScale &s,
+                  double shape_at_spacing, double clumping, int dim)
 {
   const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
   const double q = std::sqrt(r_sq) * s.inv_support;
@@ -70,8 +70,8 @@ void add_neighbour(Crowd &crowd, const Neighbour &n, const KernelScale &s, doubl
 // what it adds to the gradient of the velocity; v = v_i - v_j
 
 template <class K>
-void add_velocity(Crowd &crowd, const Neighbour &n, const std::array<double, 3> &v,
-                  const KernelScale &s)
+void add_velocity(ConcentrationGradient &crowd, const NeighborTerm &n,
+                  const std::array<double, 3> &v, const KernelScale &s)
 {
   const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
   const double weight = n.volume * s.f * K::slope_over_q(std::sqrt(r_sq) * s.inv_support);

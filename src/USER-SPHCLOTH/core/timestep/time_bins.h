@@ -16,7 +16,7 @@
 
 namespace sphcloth {
 
-class TimeLine {
+class TimeBins {
  public:
   static constexpr int DEEPEST = 30;
 
@@ -61,7 +61,7 @@ class TimeLine {
 class WantedSteps {
  public:
   static constexpr int PARTS = 32;    // of an octave
-  static constexpr int N = PARTS * TimeLine::DEEPEST;
+  static constexpr int N = PARTS * TimeBins::DEEPEST;
 
   std::array<int, N> count{};    // to be summed over ranks
 
@@ -81,7 +81,7 @@ class WantedSteps {
     double best = least, best_cost = of_ladder(0, end, 0, overhead).per_shortest / (gain * least);
     for (int shift = 0; shift < PARTS; shift++) {
       const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
-      const Work work = of_ladder(shift, end, TimeLine::DEEPEST, overhead);
+      const Work work = of_ladder(shift, end, TimeBins::DEEPEST, overhead);
       const double cost = work.per_shortest / shortest;
       if (cost >= best_cost) continue;
       best_cost = cost;
@@ -128,7 +128,7 @@ class WantedSteps {
 
   double cost_of(double root, double least, int end, double overhead) const
   {
-    const TimeLine line{root};
+    const TimeBins line{root};
     const int deepest = line.level_of(least);
     const double above = std::log2(least / line.step(deepest));
     const int shift = std::max(0, static_cast<int>(std::ceil(PARTS * above)));

@@ -220,6 +220,47 @@ def test_every_link_leads_somewhere(page: Path) -> None:
         assert re.search(rf"\b{function}(<\w+>)?\(", CODE) or function in TO_BE_WRITTEN, function
 
 
+# text
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_a_long_page_begins_with_a_summary(page: Path) -> None:
+    """Above 1500 words four or five lines, without a list, stand between the title and the rest."""
+    text = page.read_text()
+    if len(text.split()) > 1500 and page.name != "CHANGELOG.md":
+        summary = re.match(r"# [^\n]+\n\n((?:\w|`)[^\n]+\n(?:[^\n#|*-][^\n]+\n){3,4})\n", text)
+        assert summary, "no summary of four lines behind the title"
+
+
+# British spelling, and particles as persons; not in code
+REFUSED = re.compile(
+    r"\b(?:neighbour\w*|colour\w*|behaviour\w*|centre[sd]?|metres?|grey|analyse[ds]?|licence"
+    r"|modell(?:ed|ing)|normalis\w+|whoever|somebody|everybody|nobody)\b",
+    re.IGNORECASE,
+)
+
+
+@pytest.mark.parametrize("page", [*PAGES, TUTORIAL], ids=lambda page: str(page.relative_to(ROOT)))
+def test_words_are_american_and_of_the_field(page: Path) -> None:
+    prose = re.sub(r"<!-- table.*?<!-- end -->", "", prose_of(page), flags=re.DOTALL)
+    assert not REFUSED.findall(re.sub(r"`[^`\n]+`", "", prose))
+
+
+def test_the_bibliography_and_its_page_agree() -> None:
+    """Every key has a head on the page, with the same title and year."""
+    entries = re.findall(
+        r"^@\w+\{(\w+),\n(.*?)^\}", (ROOT / "docs/references.bib").read_text(), re.M | re.S
+    )
+    page = (ROOT / "docs/references.md").read_text()
+    shown = dict(re.findall(r"^### (\w+)\n\n(.+)$", page, re.MULTILINE))
+    assert [key for key, _ in entries] == list(shown)
+    for key, fields in entries:
+        title = re.search(r"title\s*=\s*\{(.*)\},?$", fields, re.MULTILINE)[1]
+        assert re.sub("[{}]", "", title) in shown[key]
+        year = re.search(r"year\s*=\s*\{(\d+)\}", fields)
+        assert year is None or f"({year[1]})" in shown[key]
+
+
 # LAMMPS input
 
 # what the fragments of the pages take for granted: a script up to the box, up to the atoms with

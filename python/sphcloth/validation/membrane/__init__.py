@@ -162,7 +162,7 @@ def shear(runner: Runner, net: Net, gamma: float, cells: int = CELLS) -> float:
     """Return twice the energy per area over the square of the shear, the border held."""
     values = {"what": "shear", "gamma": gamma, "cells": cells, **SHEARED}
     run = runner.run(f"{net.label}_{gamma:g}", SHEARED_FOR, {**net.variables(cells), **values})
-    return 2 * float(run.thermo["f_sheet[7]"][-1]) / net.width(cells) / gamma**2
+    return 2 * float(run.thermo["c_energy"][-1]) / net.width(cells) / gamma**2
 
 
 def pull_study(runner: Runner) -> list[dict[str, object]]:
@@ -245,7 +245,7 @@ def hang(
         sweeps,
         seed,
         depth=0.5 - float(place[:, 2].min()),
-        strain=float(run.thermo["f_sheet[4]"][-1]),
+        strain=float(run.thermo["c_strain"][-1]),
         asymmetry=float(max(mirrored)),
         twist=math.degrees(math.atan2(across[1], across[0])),
         speed=float(np.max(np.linalg.norm(last.velocities, axis=1))),

@@ -61,7 +61,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "reach": rows[-1, 0] / elastica.reach - 1,
         "shape": float(np.max(np.linalg.norm(rows[2:] - exact[2:], axis=1))),
         "twist": _twist(fine) / values["free"],
-        "strain": float(fine.thermo["f_sheet[4]"][-1]),
+        "strain": float(fine.thermo["c_strain"][-1]),
         "speed": float(np.max(np.abs(last.velocities))),
         "order": pair.order([drop / elastica.drop - 1 for drop in drops]),
     }

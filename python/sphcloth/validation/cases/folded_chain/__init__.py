@@ -62,7 +62,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "fall_measured": falls[-1],
         "fall_reference": ideal,
         "path": float(np.max(error)),
-        "strain": float(np.max(fine.thermo["f_chain[4]"])),
+        "strain": float(np.max(fine.thermo["c_strain"])),
         "order": pair.order([fall / ideal - 1 for fall in falls]),
     }
 

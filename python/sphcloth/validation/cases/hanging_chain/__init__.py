@@ -49,7 +49,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run the chain to rest, and again for a table over sweeps and time steps."""
     chain = chain_of(values)
     run = run_chain(values, runner, "converged")
-    heights, force = heights_of(run), float(run.thermo["f_chain[3]"][-1])
+    heights, force = heights_of(run), float(run.thermo["c_force[3]"][-1])
     at_rest = chain.links * chain.length
     errors, forces = {}, {}
     for share in STEPS:
@@ -57,7 +57,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
             changed = {**values, "dt": share * values["dt"], "iterations": sweeps}
             each = run_chain(changed, runner, f"dt_{share:g}_sweeps_{sweeps}")
             errors[share, sweeps] = (-heights_of(each)[-1] - at_rest) / chain.stretch - 1
-            forces[share, sweeps] = each.thermo["f_chain[3]"][-1] / _carried(chain) - 1
+            forces[share, sweeps] = each.thermo["c_force[3]"][-1] / _carried(chain) - 1
     few = SWEEPS[0]
     _plot(chain, heights, values["dt"], errors, runner.picture)
     return {

@@ -59,8 +59,8 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "lowest": max(lowest, key=abs),
         "lowest_reference": deepest,
         "growth": max(_growth(run, values, deepest) for run in runs),
-        "strain_softest": float(np.max(runs[0].thermo["f_sheet[4]"])),
-        "strain_stiffest": float(np.max(runs[-1].thermo["f_sheet[4]"])),
+        "strain_softest": float(np.max(runs[0].thermo["c_strain"])),
+        "strain_stiffest": float(np.max(runs[-1].thermo["c_strain"])),
         "rows": rows[0],
         "order": compare.order(rows, [1, 1 / REFINED]),
     }

@@ -63,7 +63,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "path": largest[-1],
         "tip": float(errors[-1][-1]),
         "energy": _energy(runs[-1], values),
-        "strain": float(runs[-1].thermo["f_chain[4]"][-1]),
+        "strain": float(runs[-1].thermo["c_strain"][-1]),
         "order": order,
         "order_missing": max(0.0, ORDER - order),
         "order_period": compare.order(periods, _rates(swings)),

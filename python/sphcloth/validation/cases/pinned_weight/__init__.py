@@ -88,7 +88,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "order": pair.order(errors),
         "sag": _sag(fine),
         "sag_coarse": _sag(coarse),
-        "strain": _mean(fine, "f_sheet[4]"),
+        "strain": _mean(fine, "c_strain"),
         "speed": _mean(fine, "v_speed"),
         "weight": load.weight,
     }

@@ -49,7 +49,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "held": float(np.max(np.abs(held))),
         "returned": float(np.max(np.abs(returned[-1]))),
         "unfolded": float(np.max(np.abs(unfolded[-1]))),
-        "strain": float(back.thermo["f_sheet[4]"][-1]),
+        "strain": float(back.thermo["c_strain"][-1]),
     }
 
 

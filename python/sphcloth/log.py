@@ -93,8 +93,8 @@ class ThermoTable:
         if len(rows) == 1:
             return np.where(steps == rows[0], times[0], np.nan)
         interval = np.clip(np.searchsorted(rows, steps) - 1, 0, len(rows) - 2)
-        pace = np.diff(times)[interval] / np.diff(rows)[interval]
-        return times[interval] + (steps - rows[interval]) * pace
+        time_per_step = np.diff(times)[interval] / np.diff(rows)[interval]
+        return times[interval] + (steps - rows[interval]) * time_per_step
 
 
 def error_lines(path: Path) -> list[str]:

@@ -88,7 +88,7 @@ class ClothMesh:
     triangles: NDArray[np.int64]
 
     def __post_init__(self) -> None:
-        """Raise UserError if two neighbouring triangles are wound in opposite senses."""
+        """Raise UserError if two neighboring triangles are wound in opposite senses."""
         if len(np.unique(self._sides, axis=0)) < len(self._sides):
             raise UserError("neighbouring cloth triangles are wound in opposite senses")
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from sphcloth.errors import UserError
 
-# MPICH's ranks wait without a pause; where cores are fewer they keep those out for whom they wait
-PATIENT = {
+# MPICH's ranks poll while they wait; with fewer cores they delay the ranks they wait for
+YIELDING = {
     "MPIR_CVAR_CH4_PROGRESS_THROTTLE": "1",
     "MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT": "1",
     "MPIR_CVAR_ENABLE_HEAVY_YIELD": "1",
@@ -38,8 +38,8 @@ def lammps_on(ranks: int, bare: bool = False) -> list[str]:
     """
     if bare and ranks == 1:
         return [str(program("lmp"))]
-    crowded = ranks > len(os.sched_getaffinity(0))
-    settings = [pair for pair in PATIENT.items() if crowded and pair[0] not in os.environ]
+    oversubscribed = ranks > len(os.sched_getaffinity(0))
+    settings = [pair for pair in YIELDING.items() if oversubscribed and pair[0] not in os.environ]
     told = [word for pair in settings for word in ("-genv", *pair)]
     return [str(program("mpiexec")), *told, "-n", str(ranks), str(program("lmp"))]
 

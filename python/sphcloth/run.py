@@ -21,7 +21,7 @@ from sphcloth.examples import find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
 from sphcloth.resume import join, kept, newest_restart, set_aside
-from sphcloth.summary import summarise
+from sphcloth.summary import summarize
 
 LOG, SCREEN = "log.lammps", "screen.txt"
 POLL_SECONDS = 0.2
@@ -94,7 +94,7 @@ def run_example(
         _show_failure(out, outcome.status, console)
         return 1
     with console.status("measuring and drawing"):
-        summary = summarise(out, name, frames)
+        summary = summarize(out, name, frames)
     for file in (out / "summary.json", json_file):
         if file is not None:
             summary.write(file)
@@ -264,12 +264,12 @@ def kill(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def wait_for_lammps(command: list[str], out: Path, patience: float) -> int | None:
-    """Run LAMMPS to its end; returns its status, None if it was killed after patience in s."""
+def wait_for_lammps(command: list[str], out: Path, timeout: float) -> int | None:
+    """Run LAMMPS to its end; returns its status, None if it was killed after timeout in s."""
     with endings_interrupt():
         process = start_lammps(command, out)
         try:
-            return process.wait(patience)
+            return process.wait(timeout)
         except subprocess.TimeoutExpired:
             return None
         finally:

@@ -113,7 +113,7 @@ class Summary:
         return rows
 
 
-def summarise(folder: Path, name: str, frames: int | None) -> Summary:
+def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     """Measure a run from its files, and draw it.
 
     Args:

@@ -189,7 +189,7 @@ def test_a_few_fast_particles_set_the_step_for_all(tmp_path: Path) -> None:
 
 
 def test_a_skin_that_is_too_thin(tmp_path: Path) -> None:
-    skin = float(topics(water(tmp_path, skin="0.002"))["neighbour lists"].split()[1])
+    skin = float(topics(water(tmp_path, skin="0.002"))["neighbor lists"].split()[1])
     assert 0.01 < skin <= 0.18
 
 

@@ -66,8 +66,8 @@ def test_a_small_benchmark_from_end_to_end(tmp_path: Path) -> None:
         for code in codes.values():
             assert code["pair_ns"]["value"] > 0
             assert 100 < code["bytes_per_particle"] < 1e6
-    # a jittered cubic lattice has 26 to 32 neighbours within two spacings
-    assert 26 < figures["scenes"]["block"]["neighbours_inside"] < 33
+    # a jittered cubic lattice has 26 to 32 neighbors within two spacings
+    assert 26 < figures["scenes"]["block"]["neighbors_inside"] < 33
 
 
 def test_an_unknown_benchmark_is_named() -> None:
@@ -132,9 +132,9 @@ def test_what_ranks_send_is_counted(tmp_path: Path) -> None:
         sent[newton] = long.less(short, 10)
     assert sent["off"].messages == 2 * 2 and sent["on"].messages == 3 * 2
     # those that a rank gets from itself need no message
-    of_neighbours = sent["off"].bytes / (8 * 13)
-    assert 0.3 * ghosts < of_neighbours < ghosts
-    assert sent["on"].bytes == pytest.approx(8 * 18 * of_neighbours)
+    of_neighbors = sent["off"].bytes / (8 * 13)
+    assert 0.3 * ghosts < of_neighbors < ghosts
+    assert sent["on"].bytes == pytest.approx(8 * 18 * of_neighbors)
 
 
 def test_what_is_expected_of_a_cluster() -> None:
@@ -187,5 +187,5 @@ def test_activity_from_end_to_end() -> None:
     assert [corner["share"] for corner in result["corners"]] == [0.01, 0.05, 0.2]
     for corner in result["corners"]:
         assert 0 < corner["active"] < 0.5
-        assert corner["over_everybody"]["value"] > 0
+        assert corner["over_all"]["value"] > 0
     assert "per particle left out" in said.getvalue()

@@ -135,17 +135,17 @@ def test_masses_of_a_data_file(cloth_data: Path) -> None:
 
 
 def test_a_turning_body_has_momentum_spin_and_energy() -> None:
-    """Rigid motion v = u + w x r: P = M u, L about the centre = I w, E = (M u^2 + w . I w) / 2."""
+    """Rigid motion v = u + w x r: P = M u, L about the center = I w, E = (M u^2 + w . I w) / 2."""
     frame = make_frame(0, RNG.random((40, 3)), np.empty((0, 3)))
     mass = RNG.random(40) + 0.5
-    centre = mass @ frame.positions / mass.sum()
-    arms = frame.positions - centre
+    center = mass @ frame.positions / mass.sum()
+    arms = frame.positions - center
     u, w = np.array([1.0, -2.0, 0.5]), np.array([0.3, 0.7, -1.1])
     moving = _moving(frame, u + np.cross(w, arms))
     inertia = np.einsum("n,nij->ij", mass, [r @ r * np.eye(3) - np.outer(r, r) for r in arms])
     np.testing.assert_allclose(metrics.momentum(moving, mass), mass.sum() * u)
-    np.testing.assert_allclose(metrics.angular_momentum(moving, mass, centre), inertia @ w)
-    orbital = mass.sum() * np.cross(centre, u)
+    np.testing.assert_allclose(metrics.angular_momentum(moving, mass, center), inertia @ w)
+    orbital = mass.sum() * np.cross(center, u)
     np.testing.assert_allclose(metrics.angular_momentum(moving, mass), inertia @ w + orbital)
     energy = 0.5 * (mass.sum() * u @ u + w @ inertia @ w)
     assert metrics.kinetic_energy(moving, mass) == pytest.approx(energy)

@@ -11,7 +11,7 @@ from sphcloth.errors import UserError
 from sphcloth.programs import PATIENT, lammps_on
 from sphcloth.stress import endurance, page
 from sphcloth.stress.case import SPACING
-from sphcloth.stress.endurance import Growth, Look, Memory
+from sphcloth.stress.endurance import Growth, Memory, Sample
 from sphcloth.stress.equality import SAME_PLACE, Found, Scene, Way
 
 PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "reliability.md"
@@ -49,7 +49,7 @@ def test_a_restart_is_the_same_to_the_last_bit_or_fails(place, complaint):
 
 
 def test_mass_and_momentum_stay():
-    found = endurance.drift("block", 200, looks=10)
+    found = endurance.drift("block", 200, samples=10)
     assert found.mass == 0 and found.momentum < 1e-12 and found.energy_left < 1
 
 
@@ -63,8 +63,8 @@ def test_looks_at_a_run_that_pours(tmp_path):
 
 
 def test_growth_is_from_when_the_scene_is_full():
-    looks = [Look(k, k, 1, k, 100 + (k < 10), 1000 + k, 10) for k in range(100)]
-    assert Growth.of(looks) == Growth(0, 70, 0)
+    samples = [Sample(k, k, 1, k, 100 + (k < 10), 1000 + k, 10) for k in range(100)]
+    assert Growth.of(samples) == Growth(0, 70, 0)
 
 
 def test_memory_that_is_kept_is_seen():

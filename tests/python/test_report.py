@@ -206,13 +206,13 @@ def test_the_page_in_a_browser(browser, results: Path, tmp_path: Path) -> None:
 
     wait(lambda: state("frame") == "4", "the last frame is drawn")
     assert browser.title == "In a browser"
-    colours = browser.execute_script(
+    colors = browser.execute_script(
         "const c = arguments[0], d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
         "let blue = 0; for (let i = 0; i < d.length; i += 4) blue += d[i + 2] > d[i] + 60;"
         "return blue",
         find("canvas"),
     )
-    assert colours > 500, "no water in the picture"
+    assert colors > 500, "no water in the picture"
     before, yaw, pitch = picture(), state("yaw"), state("pitch")
     ActionChains(browser).click_and_hold(find("canvas")).move_by_offset(120, 40).release().perform()
     wait(lambda: state("yaw") != yaw and state("pitch") != pitch, "dragging turns the scene")

@@ -80,7 +80,7 @@ SEEN = {
     "crossed": (checks.nothing_crosses, outcome(at(0.1), at(-0.1, 1))),
     "lost": (checks.nothing_lost, outcome(at(0.1), make_frame(1, [], FLAT))),
     "momentum": (checks.momentum(1e-9), outcome(at(0.1), at(0.1, 1), at(0.1, 2, vx=1e-8))),
-    "centre": (checks.centre_stays(1e-9), outcome(at(0.1), at(0.1 + 1e-7, 1))),
+    "center": (checks.center_stays(1e-9), outcome(at(0.1), at(0.1 + 1e-7, 1))),
     "column": (checks.column("Dt", 0, 2e-3), outcome(at(0.1), log={"Dt": [1e-3, 3e-3]})),
     "last row": (checks.column("Dt", 2, 3, last=True), outcome(at(0.1), log={"Dt": [2.5, 1.0]})),
     "density": (checks.compressed_by(0.1), outcome(at(0.1, rho=1101.0))),

@@ -17,7 +17,7 @@ from sphcloth.advice.unused import Finding, unused
 from sphcloth.errors import UserError
 from sphcloth.results import write_json
 
-# share of the largest way by which an end may differ without what is tried to count as needed
+# part of the largest displacement by which an end may differ: what is tried is not needed then
 SAME = 0.01
 
 
@@ -103,19 +103,22 @@ def check(script: Path, run: Evidence) -> None:
 
 def _tried(probe: Probe, run: Evidence, folder: Path) -> Iterator[Finding]:
     """Run the scene again without hinges, and without viscosity, and compare the ends."""
-    for name, who, before, line in _trials(run):
+    for name, kind, before, line in _trials(run):
         other = folder / name
         again = probe.run(other, before=before)
         if again.steps != run.steps:
             continue
-        apart, way = moved(folder / "probe", other, who)
-        if np.isfinite(way) and way > 0 and apart < SAME * way:
-            said = f"without it the {who} ends {apart:.2g} elsewhere, after a way of {way:.2g}"
+        apart, moved_by = moved(folder / "probe", other, kind)
+        if np.isfinite(moved_by) and moved_by > 0 and apart < SAME * moved_by:
+            said = (
+                f"without it the {kind} ends {apart:.2g} elsewhere, "
+                f"after a displacement of {moved_by:.2g}"
+            )
             yield Finding(name, said, line)
 
 
 def _trials(run: Evidence) -> Iterator[tuple[str, str, list[str], str]]:
-    """What can be left out, whom it moves, the commands that do so, and the line to type."""
+    """What can be left out, what it moves, the commands that do so, and the line to type."""
     commands = run.commands
     stiff = {kind: words for kind, words in commands.hinges.items() if words[:1] != ("0",)}
     if commands.dihedral_style[:1] == ("pbd",) and stiff:

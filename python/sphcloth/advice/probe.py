@@ -28,7 +28,7 @@ USED, CUT = "advise.used", "advise.cut"
 # every how many steps a row is written
 EVERY = 5
 # a script that does not look at the clock is killed after this
-PATIENCE, GRACE_SECONDS = 3.0, 20.0
+TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 20.0
 
 # a run command, also one in the quotes of an `if`
 _RUN = re.compile(r"^\s*run\s+(.+?)\s*$")
@@ -73,7 +73,7 @@ class Probe:
         copy = self._copy(folder, before, edits or {})
         command = lammps_command(Path(copy.name), self.ranks, self.variables)
         begin = time.monotonic()
-        status = wait_for_lammps(command, folder, PATIENCE * self.seconds + GRACE_SECONDS)
+        status = wait_for_lammps(command, folder, TIMEOUT_FACTOR * self.seconds + GRACE_SECONDS)
         # one that took too long is read as far as it came
         if status:
             said = " ".join(last_words(folder)) or f"exit status {status}"
@@ -164,20 +164,20 @@ def gather(script: Path) -> dict[Path, str]:
     return found
 
 
-def moved(folder: Path, other: Path, who: str) -> tuple[float, float]:
+def moved(folder: Path, other: Path, kind: str) -> tuple[float, float]:
     """Compare where two probes have left their atoms.
 
     Args:
         folder: of a probe.
         other: of another one of the same script.
-        who: ``water`` or ``cloth``.
+        kind: ``water`` or ``cloth``.
 
     Returns:
-        Largest distance between the two ends, and largest way of the first probe; NaN where
-        atoms came or went, or there are none.
+        Largest distance between the two ends, and largest displacement of the first probe; NaN
+        where atoms came or went, or there are none.
     """
     start, end, theirs = (
-        _places(place, who) for place in (folder / FIRST, folder / FINAL, other / FINAL)
+        _places(place, kind) for place in (folder / FIRST, folder / FINAL, other / FINAL)
     )
     both = np.intersect1d(end.ids, theirs.ids)
     lived = np.intersect1d(start.ids, end.ids)
@@ -185,8 +185,8 @@ def moved(folder: Path, other: Path, who: str) -> tuple[float, float]:
         return math.nan, math.nan
     apart = end.shortest(end.positions - theirs.positions)
     rows, first = np.isin(end.ids, lived), np.isin(start.ids, lived)
-    way = end.shortest(end.positions[rows] - start.positions[first])
-    return tuple(float(np.linalg.norm(each, axis=1).max()) for each in (apart, way))
+    displacement = end.shortest(end.positions[rows] - start.positions[first])
+    return tuple(float(np.linalg.norm(each, axis=1).max()) for each in (apart, displacement))
 
 
 def _fixes(text: str) -> list[re.Match]:
@@ -273,8 +273,8 @@ def _read_table(path: Path) -> dict[str, NDArray[np.float64]]:
     return {name: np.concatenate(each) for name, each in columns.items()}
 
 
-def _places(dump: Path, who: str) -> Frame:
+def _places(dump: Path, kind: str) -> Frame:
     """Return the atoms of one kind in a file by ``write_dump``."""
     frame = Trajectory(dump)[-1]
-    chosen = frame.columns[f"v_advise_{who}"] > 0
+    chosen = frame.columns[f"v_advise_{kind}"] > 0
     return replace(frame, columns={name: each[chosen] for name, each in frame.columns.items()})

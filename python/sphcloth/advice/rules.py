@@ -84,7 +84,7 @@ def _builds(run: Evidence) -> Iterator[Finding]:
     builds, words = _total(run, "v_advise_builds"), run.commands.neighbor
     skin = f"skin {float(words[0]):.3g}" if words else "the usual skin"
     often = f"built every {run.steps / builds:.3g} steps" if builds else "never built again"
-    yield Finding("neighbour lists", f"{often}, {skin}")
+    yield Finding("neighbor lists", f"{often}, {skin}")
 
 
 def _strains(run: Evidence) -> Iterator[Finding]:
@@ -135,7 +135,7 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
 def _limited(run: Evidence, stepper: Fix, name: str) -> float | None:
     """Return the mean number of particles whose tightest limit it is, while it sets the step.
 
-    None for ``max``, which nobody is near, and for limits of vertices, counted once for each cloth.
+    None for ``max``, which no particle is near, and for limits of vertices, one for each cloth.
     """
     number = ALL_NUMBERS.get(name)
     if number is None or name in ("wetted", "cloth", "max"):
@@ -228,7 +228,7 @@ def _coefficient(fluid: Fluid, sound: float) -> str:
 
 
 def _skin(run: Evidence) -> Iterator[Finding]:
-    """How often neighbour lists are built."""
+    """How often neighbor lists are built."""
     builds = _total(run, "v_advise_builds")
     words, fluids = run.commands.neighbor, run.commands.fluids.values()
     if not words or not builds or not fluids:
@@ -240,7 +240,7 @@ def _skin(run: Evidence) -> Iterator[Finding]:
     better = min(max(better, LEAST_SKIN * support), MOST_SKIN * support)
     is_off = (between < OFTEN and better > skin * 1.2) or (between > SELDOM and better < skin / 1.2)
     if is_off:
-        yield Finding("neighbour lists", said, f"neighbor {better:.2g} bin")
+        yield Finding("neighbor lists", said, f"neighbor {better:.2g} bin")
 
 
 def _total(run: Evidence, name: str) -> float:

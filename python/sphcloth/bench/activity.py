@@ -1,7 +1,7 @@
 """``sphcloth bench activity``: what a step costs where only some particles are updated.
 
 A block at rest under block steps, with a corner in which steps are an eighth: most steps
-update the corner alone, some what is beside it, one in eight everybody.
+update the corner alone, some what is beside it, one in eight all particles.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ class Steps:
     Attributes:
         active: share of the particles that the usual step updates.
         few: its time.
-        everybody: time of a step that updates all.
+        whole: time of a step that updates all.
     """
 
     active: float
     few: float
-    everybody: float
+    whole: float
 
     @property
     def left_out(self) -> float:
         """What a particle costs in a step that does not update it, ns."""
-        return (self.few - self.active * self.everybody) / (1 - self.active)
+        return (self.few - self.active * self.whole) / (1 - self.active)
 
 
 def bench_activity(rounds: int, across: int, steps: int, console: Console) -> dict:
@@ -96,7 +96,7 @@ def time_steps(
 
 
 def usual_steps(ns: NDArray[np.float64], active: NDArray[np.float64]) -> Steps:
-    """Pick the steps that update everybody, and the usual ones of the others.
+    """Pick the steps that update all particles, and the usual ones of the others.
 
     Args:
         ns: time of each step per particle of the block.
@@ -105,24 +105,24 @@ def usual_steps(ns: NDArray[np.float64], active: NDArray[np.float64]) -> Steps:
     Raises:
         UserError: there are too few of one of them.
     """
-    everybody = active == 1
-    usual = np.median(active[~everybody]) if not everybody.all() else 1.0
-    few = ~everybody & (np.abs(active - usual) <= NEAR * usual)
-    if min(np.count_nonzero(few), np.count_nonzero(everybody)) < FEW:
+    whole = active == 1
+    usual = np.median(active[~whole]) if not whole.all() else 1.0
+    few = ~whole & (np.abs(active - usual) <= NEAR * usual)
+    if min(np.count_nonzero(few), np.count_nonzero(whole)) < FEW:
         raise UserError("bench activity: too few steps: raise --steps")
-    return Steps(float(usual), float(np.median(ns[few])), float(np.median(ns[everybody])))
+    return Steps(float(usual), float(np.median(ns[few])), float(np.median(ns[whole])))
 
 
 def figures_of(rounds: list[Steps]) -> dict:
     """Return the cost of both kinds of steps, and of a particle that is left out.
 
-    The last follows from t = a t_everybody + (1 - a) t_out, where a share a is updated.
+    The last follows from t = a t_all + (1 - a) t_out, where a share a is updated.
     """
     return {
         "active": rounds[0].active,
         "step_ns": figure([each.few for each in rounds]),
-        "everybody_ns": figure([each.everybody for each in rounds]),
-        "over_everybody": figure([each.few / each.everybody for each in rounds]),
+        "all_ns": figure([each.whole for each in rounds]),
+        "over_all": figure([each.few / each.whole for each in rounds]),
         "left_out_ns": figure([each.left_out for each in rounds]),
     }
 
@@ -133,10 +133,10 @@ def show(result: dict, console: Console) -> None:
         title=f"block steps, {result['particles']} particles, {result['rounds']} rounds; "
         "ns per particle of the block"
     )
-    heads = ("updated", "step", "step of everybody", "over that", "per particle left out")
+    heads = ("updated", "step", "step of all", "over that", "per particle left out")
     for head in heads:
         table.add_column(head, justify="right")
     for corner in result["corners"]:
-        names = ("step_ns", "everybody_ns", "over_everybody", "left_out_ns")
+        names = ("step_ns", "all_ns", "over_all", "left_out_ns")
         table.add_row(f"{corner['active']:.1%}", *(cell(corner[name]) for name in names))
     console.print(table)

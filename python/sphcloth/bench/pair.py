@@ -48,7 +48,7 @@ class PairRunner(Runner):
         )
 
     def pairs_inside(self, scene: str) -> float:
-        """Return the mean number of neighbours inside the support, from the positions alone."""
+        """Return the mean number of neighbors inside the support, from the positions alone."""
         lines = (self.folder / f"start.{scene}.data").read_text().split("Atoms", 1)[1].splitlines()
         rows = [line.split() for line in lines[2:]]
         end = next(k for k, row in enumerate(rows) if not row)
@@ -114,13 +114,13 @@ def measure_scene(run: PairRunner, scene: str, rounds: int, peak: float, console
                 best[code].append(run.time(scene=scene, code=code, skin=skins[code], steps=long))
             two.append(run.time(2, scene=scene, code="double", skin=skins["double"], steps=long))
     inside = run.pairs_inside(scene)
-    figures: dict = {"neighbours_inside": inside, "codes": {}}
+    figures: dict = {"neighbors_inside": inside, "codes": {}}
     for code in CODES:
         pair = [t.per_particle(t.pair) for t in equal[code]]
         rate = inside * FLOPS_PER_PAIR / statistics.median(pair) * 1e9
         figures["codes"][code] = {
             "pair_ns": figure(pair),
-            "pair_ns_per_neighbour": figure([ns / inside for ns in pair]),
+            "pair_ns_per_neighbor": figure([ns / inside for ns in pair]),
             "list_ns_per_step": figure([t.per_particle(t.lists) for t in equal[code]]),
             "steps_per_build": figure([t.steps / max(t.builds, 1) for t in best[code]]),
             "share_of_peak": None if code == "stock" else rate / peak,
@@ -143,12 +143,12 @@ def measure_scene(run: PairRunner, scene: str, rounds: int, peak: float, console
 
 def show(scene: str, figures: dict, console: Console) -> None:
     """Print the figures of one scene."""
-    table = Table(title=f"{scene}, {figures['neighbours_inside']:.1f} neighbours in the support")
+    table = Table(title=f"{scene}, {figures['neighbors_inside']:.1f} neighbors in the support")
     for head in ("", *CODES):
         table.add_column(head, justify="left" if not head else "right")
     rows = {
         "pair, ns per particle and step": "pair_ns",
-        "pair, ns per neighbour": "pair_ns_per_neighbour",
+        "pair, ns per neighbor": "pair_ns_per_neighbor",
         "lists, ns per particle and step": "list_ns_per_step",
         "best skin / support": "best_skin",
         "step at the best skin, ns per particle": "step_ns_at_best_skin",

@@ -82,7 +82,7 @@ class Point:
     seconds: list[float] = field(default_factory=list)  # per simulated second
     steps: int = 0
     error: DensityError | None = None
-    centre: tuple[float, float] = (math.nan, math.nan)  # of mass at the end, x and z (m)
+    center: tuple[float, float] = (math.nan, math.nan)  # of mass at the end, x and z (m)
     failure: str = ""
 
     def book(self, seconds: float, steps: int, frames: list, spacing: float) -> None:
@@ -91,7 +91,7 @@ class Point:
         self.steps = steps
         if self.error is None:
             last = frames[-1]
-            self.centre = (float(last[:, 0].mean()), float(last[:, 2].mean()))
+            self.center = (float(last[:, 0].mean()), float(last[:, 2].mean()))
             self.error = density_error(frames[round(CALM / EVERY) :], spacing)
 
     def as_json(self) -> dict:
@@ -103,7 +103,7 @@ class Point:
             "cpu_s_per_s": figure(self.seconds),
             "steps": self.steps,
             "density_error": vars(self.error),
-            "centre_of_mass": {"x": self.centre[0], "z": self.centre[1]},
+            "center_of_mass": {"x": self.center[0], "z": self.center[1]},
         }
 
 
@@ -338,7 +338,7 @@ def show(result: dict, console: Console) -> None:
         "steps": "right",
         "density error, mean; 99 %": "right",
         "over ours at the same": "right",
-        "centre x; z (m)": "right",
+        "center x; z (m)": "right",
     }.items():
         table.add_column(head, justify=how)
     for code, rows in result["water"].items():
@@ -362,7 +362,7 @@ def show(result: dict, console: Console) -> None:
 def _cells(row: dict) -> list[str]:
     if "failed" in row:
         return ["failed", "", "", "", ""]
-    error, centre = row["density_error"], row["centre_of_mass"]
+    error, center = row["density_error"], row["center_of_mass"]
     ratios = ""
     if "over_ours" in row:
         ratios = "; ".join(
@@ -373,5 +373,5 @@ def _cells(row: dict) -> list[str]:
         str(row["steps"]),
         f"{error['mean']:.2%}; {error['tail']:.2%}",
         ratios,
-        f"{centre['x']:.2f}; {centre['z']:.2f}",
+        f"{center['x']:.2f}; {center['z']:.2f}",
     ]

@@ -70,7 +70,7 @@ def main() -> None:
     """Do the task."""
     task = json.loads(Path(sys.argv[1]).read_text())
     sheet = Sheet(task)
-    # the first step colours the constraints
+    # the first step colors the constraints
     sheet.step(task["before"], task["iterations"][0])
     process, thread = time.process_time(), time.thread_time()
     seconds = [sheet.step(task["steps"], n) for n in task["iterations"]]

@@ -47,7 +47,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: list[float]) -> Spread:
-        """Summarise measured values."""
+        """Summarize measured values."""
         return cls(statistics.median(values), min(values), max(values))
 
     def __str__(self) -> str:

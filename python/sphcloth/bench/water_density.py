@@ -21,7 +21,9 @@ SUPPORT = 3.0  # spacings
 PROBE, GAP = 2.5, 1.1  # spacings
 TAIL = 0.99  # quantile
 
-_STEPS = np.array([way for way in itertools.product((-1, 0, 1), repeat=3) if any(way)], dtype=float)
+_STEPS = np.array(
+    [step for step in itertools.product((-1, 0, 1), repeat=3) if any(step)], dtype=float
+)
 _STEPS = _STEPS[np.argsort(np.abs(_STEPS).sum(axis=1), kind="stable")]  # along the axes first
 DIRECTIONS = _STEPS / np.linalg.norm(_STEPS, axis=1)[:, None]
 

@@ -61,7 +61,7 @@ class Particles:
         typer.Option(help="Of the particles.", show_default="from the data file, or found out"),
     ] = None
     colour_by: Annotated[
-        str, typer.Option(help="speed, pressure, density or none: water's own colour.")
+        str, typer.Option(help="speed, pressure, density or none: water's own color.")
     ] = "none"
     fluid: Annotated[
         str | None,

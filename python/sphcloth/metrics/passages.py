@@ -157,7 +157,7 @@ def _evaluate(cubic: Sequence[NDArray] | NDArray, s: NDArray) -> NDArray:
 
 
 def _monotone_knots(cubic: NDArray) -> NDArray:
-    """Split [0, 1] where the cubic turns, shape (M, 4): it is monotone between neighbours."""
+    """Split [0, 1] where the cubic turns, shape (M, 4): it is monotone between neighbors."""
     a, b, c = 3 * cubic[3], 2 * cubic[2], cubic[1]
     with np.errstate(divide="ignore", invalid="ignore"):
         q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
@@ -198,7 +198,7 @@ def _overlapping_boxes(left: NDArray, right: NDArray) -> tuple[NDArray, NDArray]
     """Return all pairs of boxes that overlap; boxes are lower and upper corners, (2, N, D)."""
     reach_left = (left[1] - left[0]).max(axis=1) / 2
     reach_right = (right[1] - right[0]).max() / 2
-    # slack: neighbours at exactly the reach must not be lost to round-off
+    # slack: neighbors at exactly the reach must not be lost to round-off
     radii = (reach_left + reach_right) * (1 + _EDGE_SLACK)
     tree = cKDTree(right.mean(axis=0))
     near = tree.query_ball_point(left.mean(axis=0), radii, p=np.inf)

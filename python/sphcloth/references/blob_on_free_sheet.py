@@ -23,7 +23,7 @@ class Collision:
         drop: mass of the drop, kg.
         sheet: mass of the sheet, kg.
         speed: of the drop, m/s.
-        angle: between its way and the sheet, degrees; 90 for a normal impact.
+        angle: between its path and the sheet, degrees; 90 for a normal impact.
 
     Raises:
         UserError: a value for which there is no such scene.
@@ -39,7 +39,7 @@ class Collision:
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocity of the drop, m/s: along the sheet, across its way, and upwards."""
+        """Velocity of the drop, m/s: along the sheet, across its path, and upwards."""
         slope = math.radians(self.angle)
         return self.speed * np.array([math.cos(slope), 0.0, -math.sin(slope)])
 

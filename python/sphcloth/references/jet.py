@@ -48,7 +48,7 @@ class Jet:
 
     @property
     def sheets(self) -> tuple[float, float]:
-        """Thickness of the sheets that flow off on and against the way of the jet, m."""
+        """Thickness of the sheets that flow off along and against the direction of the jet, m."""
         share = (1 + math.cos(math.radians(self.angle))) / 2
         return self.thickness * share, self.thickness * (1 - share)
 

@@ -1,7 +1,7 @@
 """A plane jet that a sheet turns, without gravity.
 
 What flows in brings the momentum rho B v per time and depth along the jet, v times as much as its
-mass; what flows off at the angle theta from the way of the jet takes the part cos(theta) away,
+mass; what flows off at the angle theta from the jet takes the part cos(theta) away,
 if its speed is still v. In the mean over a steady flow the ends of the sheet bear the rest,
 
     F = rho Q v (1 - cos(theta)),   Q = B v

@@ -21,7 +21,7 @@ from sphcloth.references.checks import check_positive
 
 TOLERANCE = 1e-12
 # longest time to look for a period, in that of small oscillations; at most 1.42 are needed
-PATIENCE = 3.0
+PERIODS = 3.0
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class EllipticDrop:
         small = 2 * math.pi / (math.sqrt(2) * self.omega)
         return solve_ivp(
             rates,
-            (0, PATIENCE * small),
+            (0, PERIODS * small),
             (0.0, self.sigma),
             method="DOP853",
             dense_output=True,

@@ -2,12 +2,12 @@
 // particles are shaded discs, triangles are filled, and a depth buffer says what is in front.
 "use strict";
 
-const LIGHT = normalised([-0.45, -0.55, 0.75]);
-const COLOURS = { front: [226, 138, 62], back: [188, 96, 66], obstacle: [150, 152, 160], wall: [176, 180, 188] };
+const LIGHT = normalized([-0.45, -0.55, 0.75]);
+const COLORS = { front: [226, 138, 62], back: [188, 96, 66], obstacle: [150, 152, 160], wall: [176, 180, 188] };
 const SLOW = [21, 84, 158], MIDDLE = [72, 158, 219], FAST = [232, 248, 255];
 const LARGEST_RADIUS = 40, FULL = 65535, FRAME_MS = 80, SAMPLE = 12000;
 
-function normalised(v) {
+function normalized(v) {
   const length = Math.hypot(...v);
   return v.map(x => x / length);
 }
@@ -58,7 +58,7 @@ class Viewer {
     }));
     this.palette = Array.from({ length: 256 }, (_, i) =>
       i < 128 ? mixed(SLOW, MIDDLE, i / 128) : mixed(MIDDLE, FAST, (i - 128) / 127));
-    this.centre = this.middle();
+    this.center = this.middle();
     this.reset();
     this.frame = this.frames.length - 1;
     this.slider.max = this.frame;
@@ -180,7 +180,7 @@ class Viewer {
     if (!this.distance) this.fit();
     const frame = this.frames[this.frame];
     this.drawMesh(frame.vertices);
-    this.drawBalls(this.walls, 0.2, () => COLOURS.wall);
+    this.drawBalls(this.walls, 0.2, () => COLORS.wall);
     this.drawBalls(frame.water, 0.5, i => this.palette[frame.speed[i]]);
     context.putImageData(this.picture, 0, 0);
     this.label.textContent = frame.label;
@@ -210,7 +210,7 @@ class Viewer {
 
   // x, y and depth on the screen of a point in the unit cube; depth <= 0 behind the eye
   project(x, y, z, out) {
-    x -= this.centre[0]; y -= this.centre[1]; z -= this.centre[2];
+    x -= this.center[0]; y -= this.center[1]; z -= this.center[2];
     const { right, up, away } = this;
     const depth = this.distance + away[0] * x + away[1] * y + away[2] * z;
     const scale = this.focus / depth;
@@ -220,24 +220,24 @@ class Viewer {
     return scale;
   }
 
-  drawBalls(places, share, colour) {
+  drawBalls(places, share, color) {
     const radius = share * this.data.spacing / this.data.size, out = [0, 0, 0];
     for (let i = 0; i < places.length; i += 3) {
       const scale = this.project(places[i] / FULL, places[i + 1] / FULL, places[i + 2] / FULL, out);
       if (out[2] <= 0.01) continue;
       const size = Math.max(1, Math.min(LARGEST_RADIUS, Math.round(scale * radius)));
-      this.drawBall(Math.round(out[0]), Math.round(out[1]), out[2], size, radius, colour(i / 3));
+      this.drawBall(Math.round(out[0]), Math.round(out[1]), out[2], size, radius, color(i / 3));
     }
   }
 
-  drawBall(cx, cy, depth, size, radius, colour) {
+  drawBall(cx, cy, depth, size, radius, color) {
     for (const [dx, dy, dz, lit] of sprite(size)) {
       const x = cx + dx, y = cy + dy;
       if (x < 0 || y < 0 || x >= this.width || y >= this.height) continue;
       const at = y * this.width + x, z = depth - dz * radius;
       if (z >= this.depth[at]) continue;
       this.depth[at] = z;
-      this.pixels[at] = packed(colour, lit);
+      this.pixels[at] = packed(color, lit);
     }
   }
 
@@ -258,11 +258,11 @@ class Viewer {
     if (!area) return;
     const [p, q, r] = [...corners].map(n => vertices.subarray(3 * n, 3 * n + 3));
     const u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]], v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
-    const normal = normalised([
+    const normal = normalized([
       u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]);
     const lit = 0.5 + 0.55 * Math.abs(normal[0] * LIGHT[0] + normal[1] * LIGHT[1] + normal[2] * LIGHT[2]);
-    const colour = isCloth ? (area < 0 ? COLOURS.front : COLOURS.back) : COLOURS.obstacle;
-    const value = packed(colour, lit);
+    const color = isCloth ? (area < 0 ? COLORS.front : COLORS.back) : COLORS.obstacle;
+    const value = packed(color, lit);
     const left = Math.max(0, Math.floor(Math.min(a[0], b[0], c[0])));
     const last = Math.min(this.width - 1, Math.ceil(Math.max(a[0], b[0], c[0])));
     const top = Math.max(0, Math.floor(Math.min(a[1], b[1], c[1])));
@@ -281,8 +281,8 @@ class Viewer {
 }
 
 // one opaque pixel, as ImageData stores it on little-endian machines
-function packed(colour, lit = 1) {
-  const [r, g, b] = colour.map(x => Math.min(255, x * lit) | 0);
+function packed(color, lit = 1) {
+  const [r, g, b] = color.map(x => Math.min(255, x * lit) | 0);
   return (255 << 24 | b << 16 | g << 8 | r) >>> 0;
 }
 

@@ -145,8 +145,8 @@ class Case:
         if len(here) == 0:
             return ""
         trees = cKDTree(here.positions), cKDTree(there.positions)
-        ways = trees[1].query(here.positions)[0], trees[0].query(there.positions)[0]
-        distance = max(way.max() for way in ways)
+        distances = trees[1].query(here.positions)[0], trees[0].query(there.positions)[0]
+        distance = max(each.max() for each in distances)
         if distance > self.same:
             return f"{distance:.1e} m from where it is on one rank, allowed {self.same:.0e}"
         return ""
@@ -207,32 +207,34 @@ def momentum(relative: float) -> Check:
     return momentum_stays
 
 
-def centre_stays(within: float) -> Check:
-    """Return a check that the centre of mass stays where it is, within this in m."""
+def center_stays(within: float) -> Check:
+    """Return a check that the center of mass stays where it is, within this in m."""
 
     def it_stays(outcome: Outcome) -> str:
         frames = outcome.frames[0], outcome.frames[-1]
         mass = frames[0].columns["mass"]
         start, end = (mass @ frame.positions / mass.sum() for frame in frames)
-        way = np.abs(end - start).max()
-        return "" if way <= within else f"centre of mass moved by {way:.1e} m, allowed {within:g}"
+        moved = np.abs(end - start).max()
+        return (
+            "" if moved <= within else f"center of mass moved by {moved:.1e} m, allowed {within:g}"
+        )
 
     return it_stays
 
 
-def column(name: str, least: float, most: float, *, last: bool = False) -> Check:
+def column(name: str, minimum: float, maximum: float, *, last: bool = False) -> Check:
     """Return a check of a column of the log; last: of its last row alone."""
 
     def column_is_within(outcome: Outcome) -> str:
         values = outcome.log[name][-1:] if last else outcome.log[name]
-        if values.min() >= least and values.max() <= most:
+        if values.min() >= minimum and values.max() <= maximum:
             return ""
-        return f"{name} is {values.min():.4g} to {values.max():.4g}, not {least:g} to {most:g}"
+        return f"{name} is {values.min():.4g} to {values.max():.4g}, not {minimum:g} to {maximum:g}"
 
     return column_is_within
 
 
-def strain_below(most: float, at_step: float) -> Check:
+def strain_below(maximum: float, at_step: float) -> Check:
     """Return a check of the largest strain of a flat, pinned sheet of stiffness 1; at_step in s.
 
     A sweep takes back a share of the sag w that is the strain, and that is as w^2: what a load
@@ -242,30 +244,32 @@ def strain_below(most: float, at_step: float) -> Check:
 
     def strain_is_within(outcome: Outcome) -> str:
         found, step = outcome.log["v_strain"].max(), outcome.log["Dt"].max()
-        allowed = most * (step / at_step) ** (4 / 3)
+        allowed = maximum * (step / at_step) ** (4 / 3)
         return "" if found <= allowed else f"strain {found:.3g}, allowed {allowed:.3g}"
 
     return strain_is_within
 
 
-def compressed_by(most: float) -> Check:
+def compressed_by(maximum: float) -> Check:
     """Return a check of the largest rho / 1000 - 1 of water in any frame."""
 
     def density_is_within(outcome: Outcome) -> str:
         found = max(frame.select(WATER).columns["rho"].max(initial=0) for frame in outcome.frames)
         return (
-            "" if found / 1000 - 1 <= most else f"density {found:.4g}, allowed {1000 * (1 + most)}"
+            ""
+            if found / 1000 - 1 <= maximum
+            else f"density {found:.4g}, allowed {1000 * (1 + maximum)}"
         )
 
     return density_is_within
 
 
-def speed_below(most: float) -> Check:
+def speed_below(maximum: float) -> Check:
     """Return a check of the largest speed in any frame, m/s."""
 
     def speed_is_within(outcome: Outcome) -> str:
         each = [np.linalg.norm(frame.velocities, axis=1).max(initial=0) for frame in outcome.frames]
-        return "" if max(each) <= most else f"speed {max(each):.4g} m/s, allowed {most:g}"
+        return "" if max(each) <= maximum else f"speed {max(each):.4g} m/s, allowed {maximum:g}"
 
     return speed_is_within
 
@@ -275,8 +279,8 @@ def stays_where_it_is(kind: int | None = None, within: float = 0.0) -> Check:
 
     def nothing_moves(outcome: Outcome) -> str:
         frames = [f.select(kind) if kind else f for f in (outcome.frames[0], outcome.frames[-1])]
-        way = np.abs(frames[1].positions - frames[0].positions).max(initial=0)
-        return "" if way <= within else f"moved by {way:.2e} m, allowed {within:g}"
+        moved = np.abs(frames[1].positions - frames[0].positions).max(initial=0)
+        return "" if moved <= within else f"moved by {moved:.2e} m, allowed {within:g}"
 
     return nothing_moves
 

@@ -39,7 +39,7 @@ JsonFile = Annotated[Path | None, typer.Option("--json", help="Write the result 
 KEPT = 1e-9
 # bytes by which memory may grow from when the scene is full to the end
 FLAT = 1 << 20
-# seconds between two looks at the memory
+# seconds between two samples of the memory
 LOOK = 10.0
 MEGABYTE = float(1 << 20)
 # bytes for each cycle that the package may leave beyond what the wheel does
@@ -65,11 +65,11 @@ class Memory:
 
     @classmethod
     def now(cls) -> Memory:
-        """Look at this process."""
+        """Sample this process."""
         pages = int(Path("/proc/self/statm").read_text().split()[1])
-        look = ctypes.CDLL(None).mallinfo2
-        look.restype = _Allocator
-        found = look()
+        ask = ctypes.CDLL(None).mallinfo2
+        ask.restype = _Allocator
+        found = ask()
         return cls(pages * os.sysconf("SC_PAGE_SIZE"), found.uordblks + found.hblkhd)
 
 
@@ -113,30 +113,30 @@ class Drift:
     passed: bool
 
 
-def drift(scheme: str, steps: int, looks: int = 100) -> Drift:
-    """Run a free sheet and water in a periodic box for many steps, and look at them in between."""
+def drift(scheme: str, steps: int, samples: int = 100) -> Drift:
+    """Run a free sheet and water in a periodic box for many steps, and sample them in between."""
     with tempfile.TemporaryDirectory() as folder:
-        found, heaps, seconds = _drift_in(folder, scheme, steps, looks)
+        found, heaps, seconds = _drift_in(folder, scheme, steps, samples)
     begin = found[0]
     mass = float(np.ptp(found[:, 0]) / begin[0])
     momentum = float(np.abs(found[:, 1:4] - begin[1:4]).max() / begin[4])
     rise = float(found[:, 5].max() / begin[5] - 1)
-    memory = heaps[-1] - heaps[looks // 10]
+    memory = heaps[-1] - heaps[samples // 10]
     passed = bool(mass == 0 and momentum < KEPT and rise < KEPT and memory < FLAT)
     left = float(found[-1, 5] / begin[5])
     return Drift(scheme, steps, seconds, mass, momentum, rise, left, memory, passed)
 
 
 def _drift_in(
-    folder: str, scheme: str, steps: int, looks: int
+    folder: str, scheme: str, steps: int, samples: int
 ) -> tuple[np.ndarray, list[int], float]:
-    """Return mass, momentum, sum of m |v| and energy at each look, the heap there, and the time."""
+    """Return mass, momentum, sum of m |v| and energy of each sample, its heap, and the time."""
     os.chdir(folder)
     lmp = _start("drift", scheme=scheme, steps=1, every=steps)
     lmp.commands_string("undump scene\nthermo_style custom step time ke pe\nthermo_modify norm no")
     found, heaps = [], []
-    for _ in range(looks):
-        lmp.command(f"run {steps // looks} post no")
+    for _ in range(samples):
+        lmp.command(f"run {steps // samples} post no")
         found.append(_state(lmp))
         heaps.append(Memory.now().heap)
     seconds = lmp.get_thermo("time")
@@ -180,8 +180,8 @@ def _schemes(text: str) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Look:
-    """One look at a run: wall time in s, step, particles, poured so far, and memory in bytes."""
+class Sample:
+    """One sample of a run: wall time in s, step, particles, poured so far, and memory in bytes."""
 
     wall_s: float
     step: int
@@ -192,8 +192,8 @@ class Look:
     own: int  # what LAMMPS says that it holds
 
 
-def pouring(minutes: float, load: float, scheme: str, by_id: str) -> list[Look]:
-    """Pour water on a sheet and let it run off; return looks at the memory.
+def pouring(minutes: float, load: float, scheme: str, by_id: str) -> list[Sample]:
+    """Pour water on a sheet and let it run off; return samples of the memory.
 
     Args:
         minutes: of wall time.
@@ -201,7 +201,7 @@ def pouring(minutes: float, load: float, scheme: str, by_id: str) -> list[Look]:
         scheme: of the time step.
         by_id: how atoms are found by ID: yes, array or hash.
     """
-    looks: list[Look] = []
+    samples: list[Sample] = []
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
         lmp = _start("endure", log, scheme=scheme, map=by_id)
@@ -212,15 +212,15 @@ def pouring(minutes: float, load: float, scheme: str, by_id: str) -> list[Look]:
             time.sleep((time.monotonic() - begin) * (1 / load - 1))
             if time.monotonic() - last >= min(LOOK, 0.6 * minutes):
                 last = time.monotonic()
-                looks.append(_look(lmp, last - start, log))
+                samples.append(_sample(lmp, last - start, log))
         lmp.close()
-    return looks
+    return samples
 
 
-def _look(lmp: lammps, wall: float, log: Path) -> Look:
+def _sample(lmp: lammps, wall: float, log: Path) -> Sample:
     memory = Memory.now()
     step, poured = lmp.extract_global("ntimestep"), int(lmp.extract_fix("pour", 0, 0))
-    return Look(wall, step, lmp.get_natoms(), poured, memory.resident, memory.heap, _own(log))
+    return Sample(wall, step, lmp.get_natoms(), poured, memory.resident, memory.heap, _own(log))
 
 
 def _own(log: Path) -> int:
@@ -233,17 +233,17 @@ def _own(log: Path) -> int:
 
 @dataclass(frozen=True)
 class Growth:
-    """Bytes from when the scene was full, a fifth of the time, to the end: means of ten looks."""
+    """Bytes from when the scene was full, a fifth of the time, to the end: means of ten samples."""
 
     resident: float
     heap: float
     own: float
 
     @classmethod
-    def of(cls, looks: Sequence[Look]) -> Growth:
+    def of(cls, samples: Sequence[Sample]) -> Growth:
         """Compare the end with the state when the scene was full."""
-        values = np.array([[look.resident, look.heap, look.own] for look in looks], dtype=float)
-        full = len(looks) // 5
+        values = np.array([[each.resident, each.heap, each.own] for each in samples], dtype=float)
+        full = len(samples) // 5
         return cls(*(values[-10:].mean(axis=0) - values[full : full + 10].mean(axis=0)).tolist())
 
 
@@ -256,16 +256,16 @@ def pour(
     json_file: JsonFile = None,
 ) -> None:
     """Memory of a scene through which water runs."""
-    looks = pouring(minutes, load, *_schemes(scheme), by_id)
-    growth = Growth.of(looks)
+    samples = pouring(minutes, load, *_schemes(scheme), by_id)
+    growth = Growth.of(samples)
     passed = growth.resident < FLAT and growth.heap < FLAT
     table = Table("min", "steps", "particles", "poured", "resident, MB", "heap, MB", "LAMMPS, MB")
-    for look in looks[:: max(1, len(looks) // 12)]:
-        memory = (f"{n / MEGABYTE:.2f}" for n in (look.resident, look.heap, look.own))
-        row = (f"{look.wall_s / 60:.1f}", str(look.step), str(look.atoms), str(look.poured))
+    for sample in samples[:: max(1, len(samples) // 12)]:
+        memory = (f"{n / MEGABYTE:.2f}" for n in (sample.resident, sample.heap, sample.own))
+        row = (f"{sample.wall_s / 60:.1f}", str(sample.step), str(sample.atoms), str(sample.poured))
         table.add_row(*row, *memory)
     found = {"map": by_id, "scheme": scheme, "load": load, "growth": asdict(growth)}
-    _end(table, found | {"looks": [asdict(look) for look in looks]}, passed, json_file)
+    _end(table, found | {"looks": [asdict(sample) for sample in samples]}, passed, json_file)
 
 
 # ---- ten thousand instances ----------------------------------------------------------------------
@@ -328,8 +328,8 @@ def leak(kind: str, times: int) -> Leak:
     )
     if run.returncode:
         raise UserError(f"cycles of {kind}: {run.stderr[-500:]}")
-    looks = np.array(json.loads(run.stdout.splitlines()[-1]), dtype=float)
-    half = looks[len(looks) // 2 :]
+    samples = np.array(json.loads(run.stdout.splitlines()[-1]), dtype=float)
+    half = samples[len(samples) // 2 :]
     each = max(1, times // 100)
     slopes = np.polyfit(each * np.arange(len(half)), half, 1)[0]
     return Leak(kind, times, *slopes.tolist(), time.monotonic() - start)
@@ -338,7 +338,7 @@ def leak(kind: str, times: int) -> Leak:
 def report(kind: str, times: str) -> None:
     """Print the memory over the cycles as JSON."""
     found = cycle(*CYCLES[kind], int(times))
-    print(json.dumps([[look.resident, look.heap] for look in found]))
+    print(json.dumps([[sample.resident, sample.heap] for sample in found]))
 
 
 @app.command()

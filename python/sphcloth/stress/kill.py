@@ -1,7 +1,7 @@
 """Runs are killed at random moments and go on from their last restart file.
 
 ``python -m sphcloth.stress.kill --times 100``. What goes on must end, to the last bit, where the
-run that nobody killed ends.
+run that was not killed ends.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from sphcloth.errors import UserError
 from sphcloth.programs import lammps_on
 from sphcloth.results import write_json
 from sphcloth.stress.case import SCENES, SCHEMES
-from sphcloth.stress.processes import descendants, run_to_end, slay, start
+from sphcloth.stress.processes import descendants, kill_all, run_to_end, start
 
 SCRIPT = SCENES / "in.kill"
 # seconds that the others have to end after one of them was killed, and a run at all
-GRACE, PATIENCE = 60.0, 300.0
+GRACE_SECONDS, TIMEOUT_SECONDS = 60.0, 300.0
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Trial:
         at: seconds after its start.
         in_time: whether it still ran then.
         had_file: whether there was a restart file to go on from; otherwise it began anew.
-        complaint: what went wrong, empty if it ended as the run that nobody killed.
+        complaint: what went wrong, empty if it ended as the run that was not killed.
     """
 
     scheme: str
@@ -57,7 +57,7 @@ def trials(times: int, ranks: Sequence[int], schemes: Sequence[str], seed: int) 
     """Kill so many runs, by turns of each scheme and number of ranks.
 
     Raises:
-        UserError: the run that nobody kills does not come to its end.
+        UserError: the run that is not killed does not come to its end.
     """
     dice = random.Random(seed)
     with tempfile.TemporaryDirectory() as scratch:
@@ -107,15 +107,15 @@ def _run_and_kill(
     family = descendants(run.pid)
     one = [pid for pid in family if _is_rank(pid)][-1:] if killed == "one" else []
     victims = one or family
-    slay(victims)
+    kill_all(victims)
     try:
         # before it has started its ranks it comes to its end
-        run.wait(GRACE if victims else PATIENCE)
+        run.wait(GRACE_SECONDS if victims else TIMEOUT_SECONDS)
     except subprocess.TimeoutExpired:
-        return in_time, f"the other ranks went on for {GRACE:g} s"
+        return in_time, f"the other ranks went on for {GRACE_SECONDS:g} s"
     finally:
-        slay([*family, *descendants(run.pid)])
-        slay([run.pid] if run.poll() is None else [])
+        kill_all([*family, *descendants(run.pid)])
+        kill_all([run.pid] if run.poll() is None else [])
         run.wait()
     return in_time, ""
 
@@ -132,7 +132,7 @@ def _is_rank(pid: int) -> bool:
 
 def _finish(folder: Path, scheme: str, ranks: int, again: str) -> str:
     """Run to the end, from the beginning or the restart file; return what went wrong."""
-    code, text = run_to_end(_command(scheme, ranks, again), folder, PATIENCE)
+    code, text = run_to_end(_command(scheme, ranks, again), folder, TIMEOUT_SECONDS)
     if code is None:
         return "it did not end"
     return "" if code == 0 else f"ended with {text[-300:]}"

@@ -120,7 +120,7 @@ def bugs(path: Path) -> str:
 def _test(caught: str) -> str:
     file, _, test = caught.partition("::")
     if not test:
-        return caught or "**nobody**"
+        return caught or "**none**"
     return f"`{Path(file).name}`: `{test}`"
 
 

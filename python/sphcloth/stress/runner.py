@@ -13,7 +13,7 @@ from sphcloth.stress.case import Case, Outcome
 from sphcloth.stress.processes import run_to_end
 
 # seconds after which a run counts as hung
-PATIENCE = 900.0
+TIMEOUT_SECONDS = 900.0
 
 
 @dataclass(frozen=True)
@@ -74,5 +74,5 @@ def run_script(script: Path, folder: Path, settings: Mapping[str, object], ranks
     shutil.copy(script, folder)
     words = [word for name, value in settings.items() for word in ("-var", name, str(value))]
     command = [*lammps_on(ranks, bare=True), "-in", script.name, *words]
-    code, text = run_to_end(command, folder, PATIENCE)
+    code, text = run_to_end(command, folder, TIMEOUT_SECONDS)
     return Outcome(folder, settings, code, text)

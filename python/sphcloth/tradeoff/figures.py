@@ -22,7 +22,7 @@ from sphcloth.tradeoff.front import COSTS, Point, choices, pareto
 from sphcloth.tradeoff.scene import AS_WRITTEN, Quantity
 from sphcloth.tradeoff.study import Study
 
-# colours that stay apart for all readers, and in grey (Okabe and Ito 2008); one mark each
+# colors that stay apart for all readers, and in gray (Okabe and Ito 2008); one mark each
 STYLES = {
     "constant": ("#0072B2", "o"),
     "global": ("#E69F00", "s"),
@@ -104,7 +104,7 @@ def _number_narrow_axes(axes: Axes) -> None:
 
 
 def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str) -> None:
-    colour, mark = STYLES[scheme]
+    color, mark = STYLES[scheme]
     mine = [point for point in study.points if point.scheme == scheme]
     finished = [point for point in mine if point.failure is None]
     well = _visible(finished, quantity)
@@ -112,8 +112,8 @@ def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str
     notes = {"unstable": len(mine) - len(finished), "off the scale": off}
     said = ", ".join(f"{count} {note}" for note, count in notes.items() if count)
     label = f"{scheme} ({said})" if said else scheme
-    axes.plot(*_curve(well, quantity, cost), mark, color=colour, ms=5, label=label)
-    axes.plot(*_curve(pareto(well, quantity, cost), quantity, cost), "-", color=colour, lw=1)
+    axes.plot(*_curve(well, quantity, cost), mark, color=color, ms=5, label=label)
+    axes.plot(*_curve(pareto(well, quantity, cost), quantity, cost), "-", color=color, lw=1)
 
 
 def _ring(axes: Axes, point: Point, quantity: str, cost: str) -> Line2D:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
-# the honest baselines: what a user would take who does not want individual steps
+# the baselines: what a user would take instead of individual steps
 BASELINES = ("constant", "global")
 COSTS = {"updates": "particle updates", "wall_s": "wall time (s)"}
 

@@ -38,7 +38,7 @@ from sphcloth.tradeoff.scene import Scene
 
 RECORD = "result.json"
 # a run is stopped when it takes so many times as long as the reference, and these seconds
-PATIENCE, GRACE_SECONDS = 3.0, 20.0
+TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 20.0
 STOPPED = "stopped; what has finished is kept: the same command goes on from there"
 # schemes under which a step is not a step of every particle
 PARTIAL = ("individual", "block")
@@ -136,7 +136,7 @@ class Workshop:
             raise UserError(f"{path}: not what a run keeps ({error}): remove its folder") from error
 
     def run(
-        self, settings: list[Setting], repeat: int = 1, patience: float = math.inf
+        self, settings: list[Setting], repeat: int = 1, timeout: float = math.inf
     ) -> list[Record]:
         """Return the records of all settings; runs what is missing, ``jobs`` at a time.
 
@@ -144,7 +144,7 @@ class Workshop:
             settings: what to run, in this order.
             repeat: how often each wall time is measured: all settings once, then all again, so
                 that a slow spell of the machine does not hit one setting alone.
-            patience: seconds after which a run is given up.
+            timeout: seconds after which a run is given up.
 
         Raises:
             UserError: the user stopped it. What has finished is kept.
@@ -154,7 +154,7 @@ class Workshop:
         for times in range(1, repeat + 1):
             missing = [each for each in each_once if not self._has(each, times)]
             if missing:
-                self._run_missing(missing, patience)
+                self._run_missing(missing, timeout)
         return [self.find(setting) for setting in settings]
 
     def thermo(self, setting: Setting) -> ThermoTable:
@@ -169,8 +169,8 @@ class Workshop:
     def _fingerprint(self) -> str:
         return _fingerprint(self.scene.script)
 
-    def _run_missing(self, missing: list[Setting], patience: float) -> None:
-        crew = Crew(patience)
+    def _run_missing(self, missing: list[Setting], timeout: float) -> None:
+        crew = Crew(timeout)
         bar = Progress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=20),
@@ -224,8 +224,8 @@ class Workshop:
 class Crew:
     """The LAMMPS processes that run at the moment."""
 
-    def __init__(self, patience: float) -> None:
-        self.patience = patience
+    def __init__(self, timeout: float) -> None:
+        self.timeout = timeout
         self.stopped = False
         self._running: set[subprocess.Popen[bytes]] = set()
         self._lock = threading.Lock()
@@ -239,7 +239,7 @@ class Crew:
             self._running.add(process)
         begin = time.monotonic()
         try:
-            status = process.wait(None if math.isinf(self.patience) else self.patience)
+            status = process.wait(None if math.isinf(self.timeout) else self.timeout)
         except subprocess.TimeoutExpired:
             kill(process)
             return f"not finished after {time.monotonic() - begin:.0f} s: given up"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 
-# schemes of run_style sph/adaptive, in the order of tables and colours
+# schemes of run_style sph/adaptive, in the order of tables and colors
 SCHEMES = ("constant", "global", "individual", "block")
 # the scheme of a script that has no variable of that name
 AS_WRITTEN = "as written"

@@ -15,7 +15,7 @@ from sphcloth.errors import UserError
 from sphcloth.results import versions, write_json
 from sphcloth.run import check_no_link
 from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, mean, pareto
-from sphcloth.tradeoff.runs import GRACE_SECONDS, PATIENCE, Record, Setting, Workshop
+from sphcloth.tradeoff.runs import GRACE_SECONDS, TIMEOUT_FACTOR, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import History, Quantity, Scene, Values
 
 RUNS = "runs"
@@ -171,9 +171,9 @@ def study(
         _exact(scene, reference, first, workshop)
         for reference, first in zip(references, firsts, strict=True)
     ]
-    patience = PATIENCE * jobs * max(first.elapsed_s for first in firsts) + GRACE_SECONDS
+    timeout = TIMEOUT_FACTOR * jobs * max(first.elapsed_s for first in firsts) + GRACE_SECONDS
     records = iter(
-        workshop.run([each for _, settings in starts for each in settings], repeat, patience)
+        workshop.run([each for _, settings in starts for each in settings], repeat, timeout)
     )
     at_zero, points, shared = [], [], False
     for (reference, settings), first, histories in zip(starts, firsts, exact, strict=True):

@@ -21,8 +21,8 @@ class Parameter:
         default: value of the full case; its type is the type of all values.
         unit: unit of the value, "1" for a pure number.
         description: what it is, in a few words.
-        least: smallest value allowed, itself included.
-        most: largest value allowed, itself included.
+        minimum: smallest value allowed, itself included.
+        maximum: largest value allowed, itself included.
         choices: the words allowed, for a parameter that is a word.
         quick: value with ``--quick``; None for the default.
     """
@@ -31,8 +31,8 @@ class Parameter:
     default: Value
     unit: str
     description: str
-    least: float = -math.inf
-    most: float = math.inf
+    minimum: float = -math.inf
+    maximum: float = math.inf
     choices: tuple[str, ...] = ()
     quick: Value | None = None
 
@@ -42,7 +42,7 @@ class Parameter:
         if self.choices:
             return ", ".join(self.choices)
         kind = "a whole number" if isinstance(self.default, int) else "a number"
-        return f"{kind} from {self.least:g} to {self.most:g}"
+        return f"{kind} from {self.minimum:g} to {self.maximum:g}"
 
     def parse(self, text: str) -> Value:
         """Turn the text of a ``--set`` into a value; UserError if it is not allowed."""
@@ -57,7 +57,7 @@ class Parameter:
     def _allows(self, value: Value) -> bool:
         if self.choices:
             return value in self.choices
-        return self.least <= value <= self.most
+        return self.minimum <= value <= self.maximum
 
     def _refusal(self, text: str) -> UserError:
         return UserError(f"--set {self.name}={text}: {self.description} must be {self.allowed}")

@@ -52,7 +52,7 @@ def numerics(
 def lattice_density(values: Mapping[str, Value], height_over_width: float = 1.0) -> float:
     """Return the density that particles on a lattice find over their mass per area.
 
-    With continuity every particle starts with the rest density, whatever its neighbours are.
+    With continuity every particle starts with the rest density, whatever its neighbors are.
     """
     if values["density"] == "continuity":
         return 1.0

@@ -118,7 +118,7 @@ WHOLE = (Net("square", border=1.0), Net("diagonal", border=1.0), Net("equilatera
 def stiffness(net: Net) -> NDArray[np.float64]:
     """Return the stiffness of the infinite net in Voigt's notation, N/m.
 
-    At small strain all springs of a net whose vertices are centres of symmetry follow the mean
+    At small strain all springs of a net whose vertices are centers of symmetry follow the mean
     strain: they add up k l^2 n n n n over the area of a cell.
     """
     area = math.sqrt(0.75) if net.pattern == "equilateral" else 1.0
@@ -312,13 +312,13 @@ def plot_pull(points: Sequence[Mapping[str, object]], path: Path) -> None:
     """Draw modulus and Poisson's ratio over the angle; lines are infinite nets."""
     figure, panels = compare.panels(1, 2)
     fine = np.linspace(0, 135, 136)
-    for colour, net in enumerate(NETS):
+    for color, net in enumerate(NETS):
         mine = [point for point in points if point["sheet"] == net.name]
         exact = np.array([moduli(stiffness(net), degrees) for degrees in fine])
         for axes, key, column in zip(panels, ("modulus", "poisson"), (0, 1), strict=True):
-            axes.plot(fine, exact[:, column], color=f"C{colour}", lw=1)
+            axes.plot(fine, exact[:, column], color=f"C{color}", lw=1)
             angle, value = zip(*((point["angle"], point[key]) for point in mine), strict=True)
-            axes.plot(angle, value, "os^vD*P"[colour], color=f"C{colour}", label=net.name)
+            axes.plot(angle, value, "os^vD*P"[color], color=f"C{color}", label=net.name)
     panels[0].set(xlabel="angle of the pull / degrees", ylabel="Young's modulus / (N/m)")
     panels[1].set(xlabel="angle of the pull / degrees", ylabel="Poisson's ratio")
     figure.set_size_inches(14, 4)

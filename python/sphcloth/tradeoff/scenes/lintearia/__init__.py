@@ -16,7 +16,7 @@ CHOSEN = {"acoustic": ("1.6",), "force": ("0.1", "0.2", "0.4"), "iterations": SU
 
 
 def clock(values: Mapping[str, float]) -> Clock:
-    """Return the times of the way to rest."""
+    """Return the times until rest."""
     smoothing = 0.5 * values["support"] * values["L"] / values["across"]
     return Clock(smoothing / values["sound"], values["t_end"] / SAMPLES)
 

@@ -23,7 +23,7 @@ SCENE = Scene(
     script=Path(__file__).parent / "in.resting-pool",
     quantities=(
         Quantity("kinetic", "kinetic energy", column("v_kinetic")),
-        Quantity("drop", "height of the drop's centre", column("v_drop"), by_range=True),
+        Quantity("drop", "height of the drop's center", column("v_drop"), by_range=True),
         Quantity("potential", "potential energy", column("v_potential"), by_range=True),
     ),
     variations=ONE_RESOLUTION

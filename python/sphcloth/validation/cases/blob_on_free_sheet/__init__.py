@@ -32,7 +32,7 @@ PARAMETERS = (
     Parameter("grazing", 10.0, "degrees", "angle of the grazing impacts", 5.0, 60.0),
     Parameter("areal", 2.0, "kg/m^2", "mass per area of the sheet", 1e-2, 1e3),
     Parameter("compliance", 1e-4, "m/N", "of its edges", 0.0, 1.0),
-    Parameter("length", 12.0, "radius", "of the sheet along the way of the drop", 6.0, 50.0),
+    Parameter("length", 12.0, "radius", "of the sheet along the path of the drop", 6.0, 50.0),
     Parameter("width", 8.0, "radius", "of the sheet", 4.0, 50.0),
     Parameter("across", 6, "1", "particles over the radius", 3, 40, quick=4),
     Parameter("mesh", 1.5, "spacing", "spacing of the sheet", 0.5, 3.0),
@@ -149,7 +149,7 @@ def _impact(
     dropped = ("fastest", "grazing", "most_ranks")
     shared = {name: values[name] for name in values if name not in dropped}
     collision = Collision(1.0, 1.0, speed * values["sound"], angle)
-    # along a grazing way the drop comes down slowly, and must not leave the sheet
+    # along a grazing path the drop comes down slowly, and must not leave the sheet
     down = max(-float(collision.velocity[2]), 0.3 * collision.speed)
     t_end = FAR * values["radius"] / down
     run = runner.run(

@@ -157,7 +157,7 @@ def _plot(column: Column, seen: Mapping[str, Front], run: Run, shift: float, pat
     front.plot(fine.times + shift, fine.places, "C3-", lw=1, label=f"fine, shifted by {shift:.2f}")
     times = dam_break.COMPARED
     lower, upper = dam_break.band(times)
-    front.fill_between(times, 0.95 * lower, 1.05 * upper, color="grey", alpha=0.2, label="limit")
+    front.fill_between(times, 0.95 * lower, 1.05 * upper, color="gray", alpha=0.2, label="limit")
     for marker, (name, points) in zip("os", dam_break.EXPERIMENTS.items(), strict=True):
         front.plot(*points.T, marker, color="k", ms=4, label=name)
     front.set(xlabel="t sqrt(2 g / a)", ylabel="x / a")

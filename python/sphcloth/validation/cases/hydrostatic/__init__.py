@@ -59,7 +59,7 @@ class State:
         depth: undisturbed depth of each particle, m.
         pressure: of each particle, Pa.
         level: height of each particle, m.
-        inside: whether a particle and all of its neighbours have no free surface in reach.
+        inside: whether a particle and all of its neighbors have no free surface in reach.
     """
 
     depth: NDArray[np.float64]
@@ -172,7 +172,7 @@ def _plot(column: TaitColumn, rest: State, run: Run, path: Path) -> None:
     pressure.plot(rest.pressure, rest.depth, ".", label="SPH")
     pressure.set(xlabel="pressure (Pa)", ylabel="undisturbed depth (m)")
     pressure.legend()
-    error.plot(100 * rest.error(column), rest.depth, ".", color="lightgrey", label="surface")
+    error.plot(100 * rest.error(column), rest.depth, ".", color="lightgray", label="surface")
     error.plot(100 * rest.error(column)[rest.inside], rest.depth[rest.inside], ".", label="inside")
     error.set(xlabel="error of the pressure (% of rho0 g H)")
     error.legend()

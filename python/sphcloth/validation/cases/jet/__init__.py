@@ -44,7 +44,7 @@ QUANTITIES = (
     Quantity("force_halves", "1", "mean of the second half of the window over the first - 1"),
     Quantity("leaving", "U", "mean velocity across the plate of what flows off"),
     Quantity("sheet_speed", "U", "mean speed of what flows off"),
-    Quantity("divided", "1", "share that flows off on the way of the jet"),
+    Quantity("divided", "1", "share that flows off along the direction of the jet"),
     Quantity("divided_reference", "1", "(1 + cos(angle)) / 2"),
     Quantity("order", "1", "order of convergence of the force"),
 )
@@ -132,7 +132,7 @@ def _plot(jet: Jet, runs: Mapping[str, Run], window: tuple[float, float], path: 
         (line,) = force.plot(time, trace, lw=0.3, alpha=0.4)
         force.plot(time, smooth, color=line.get_color(), lw=1, label=f"{label}, smoothed")
     force.axhline(1, color="k", lw=0.8, ls="--", label="rho B U^2 sin(angle)")
-    force.axvspan(window[0] / scale, window[1] / scale, color="grey", alpha=0.15)
+    force.axvspan(window[0] / scale, window[1] / scale, color="gray", alpha=0.15)
     force.set(xlabel="t U / B", ylabel="force on the plate / reference", ylim=(0, 2))
     force.legend(loc="lower right")
     frame = run.trajectory[len(run.trajectory) // 2]

@@ -61,7 +61,7 @@ QUANTITIES = (
     Quantity("force_measured", "N/m", "the mean force itself, per depth"),
     Quantity("force_reference", "N/m", "rho0 Q v (1 - cos turning)"),
     Quantity("balance", "1", "the same with the speed at which the water leaves"),
-    Quantity("turning", "degrees", "of what leaves the sheet from the way of the jet"),
+    Quantity("turning", "degrees", "of what leaves the sheet from the direction of the jet"),
     Quantity("leaving_speed", "v", "mean speed of what leaves the sheet"),
     Quantity("force_halves", "1", "mean of the second half of the window over the first - 1"),
     Quantity("sag", "B", "of the sheet's middle"),
@@ -201,7 +201,7 @@ def _plot(
         (line,) = force.plot(time, trace, lw=0.3, alpha=0.4)
         force.plot(time, smooth, color=line.get_color(), lw=1, label=f"{label}, smoothed")
     force.axhline(1, color="k", lw=0.8, ls="--", label="rho Q v (1 - cos(turning))")
-    force.axvspan(window[0] / scale, window[1] / scale, color="grey", alpha=0.15)
+    force.axvspan(window[0] / scale, window[1] / scale, color="gray", alpha=0.15)
     force.set(xlabel="t v / B", ylabel="force of the pins / reference", ylim=(0, 2))
     force.legend(loc="lower right")
     run = runs["fine"]

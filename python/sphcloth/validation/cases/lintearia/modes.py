@@ -19,8 +19,8 @@ from sphcloth.validation.case import Value
 from sphcloth.validation.cases.lintearia import Pool, curve_of, pool_of, resolutions
 from sphcloth.validation.runner import Run
 
-# colours of the runs of one mode, the coarsest first
-COLOURS = ("tab:orange", "tab:blue", "tab:green", "tab:red")
+# colors of the runs of one mode, the coarsest first
+COLORS = ("tab:orange", "tab:blue", "tab:green", "tab:red")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -73,16 +73,16 @@ def _column(
     finest = max(runs)
     run, pool = runs[finest]
     water = run.trajectory[-1].select(1).positions
-    shape.plot(water[:, 0], water[:, 2] - pool.pins, ".", ms=1, color="tab:grey")
+    shape.plot(water[:, 0], water[:, 2] - pool.pins, ".", ms=1, color="tab:gray")
     curve = exact.shape(pool.arc) - [0.0, exact.sag]
     shape.plot(*curve.T, "k-", lw=0.8, label="exact")
     level = exact.depth - exact.sag
     wet = curve[curve[:, 1] < level, 0]
     shape.plot([wet[0], wet[-1]], [level, level], "k-", lw=0.8)
-    for (across, (_, each)), colour in zip(sorted(runs.items()), COLOURS, strict=False):
+    for (across, (_, each)), color in zip(sorted(runs.items()), COLORS, strict=False):
         label = f"{across} over L"
-        shape.plot(*each.sheet.T, "o", ms=3, mfc="none", color=colour, label=label)
-        error.plot(each.arc, 1e3 * each.distances(exact), color=colour, label=label)
+        shape.plot(*each.sheet.T, "o", ms=3, mfc="none", color=color, label=label)
+        error.plot(each.arc, 1e3 * each.distances(exact), color=color, label=label)
     for axes in (shape, error):
         axes.grid(alpha=0.3)
         axes.legend(fontsize="small", loc="upper center")

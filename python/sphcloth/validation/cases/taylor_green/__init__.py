@@ -133,10 +133,10 @@ def _plot(flow: TaylorGreen, seen: Mapping[str, Decay], path: Path) -> None:
     figure, (decay, error) = compare.panels(2)
     for label, each in seen.items():
         (line,) = decay.semilogy(each.times, each.largest, label=f"{label}, largest speed")
-        colour = line.get_color()
+        color = line.get_color()
         root = np.sqrt(each.energy)
-        decay.semilogy(each.times, root, ":", color=colour, label=f"{label}, root of the energy")
-        error.plot(each.times, each.errors, color=colour, label=label)
+        decay.semilogy(each.times, root, ":", color=color, label=f"{label}, root of the energy")
+        error.plot(each.times, each.errors, color=color, label=label)
     times = each.times[[0, -1]]
     decay.semilogy(times, np.exp(-flow.rate * times), "k--", lw=0.8, label="exact")
     decay.set(ylabel="over the value at the start")

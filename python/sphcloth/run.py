@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from sphcloth.errors import UserError
-from sphcloth.examples import find_example
+from sphcloth.examples import Example, find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
 from sphcloth.resume import join, kept, newest_restart, set_aside
@@ -76,11 +76,7 @@ def run_example(
     check_no_link(out / "pictures")
     log, dump = out / LOG, out / f"{name}.lammpstrj"
     if resume:
-        if "again" not in example.defaults():
-            raise UserError(f"{name} cannot go on: its script has no variable 'again'")
-        variables |= {"again": "yes", "state": newest_restart(out, name).name}
-        join(log, dump)
-        set_aside(log, dump)
+        variables |= _go_on(example, out, log, dump)
     else:
         _remove_old_run(out, name)
     _remove_old_results(out)
@@ -100,6 +96,16 @@ def run_example(
             summary.write(file)
     summary.show(console)
     return 0 if summary.passed and not outcome.interrupted else 1
+
+
+def _go_on(example: Example, out: Path, log: Path, dump: Path) -> dict[str, str]:
+    """Set aside what a run has written; return the variables with which the script goes on."""
+    if "again" not in example.defaults():
+        raise UserError(f"{example.name} cannot go on: its script has no variable 'again'")
+    variables = {"again": "yes", "state": newest_restart(out, example.name).name}
+    join(log, dump)
+    set_aside(log, dump)
+    return variables
 
 
 def _end_time(variables: Mapping[str, str]) -> float:

@@ -12,7 +12,8 @@ import os
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -183,6 +184,14 @@ class Samples:
         pairs = zip(self.few["both"], self.many["both"], strict=True)
         return [1e9 * (few - FEW * (many - few) / (MANY - FEW)) / vertices for few, many in pairs]
 
+    def figures(self, counts: Mapping[str, int], vertices: int) -> dict:
+        """Return the cost of a projection of each kind, and of a step."""
+        return {
+            **{f"{kind}_ns": figure(self.projections(kind, n)) for kind, n in counts.items()},
+            "step_ns": figure(self.steps(vertices)),
+            "bare_step_ns": figure(self.bare_steps(vertices)),
+        }
+
 
 def bench_cloth(rounds: int, across: int, steps: int, console: Console) -> dict:
     """Measure, print tables and return all figures.
@@ -231,74 +240,94 @@ def compare_falls(sheet: Sheet, theirs: NDArray[np.float64]) -> dict:
     }
 
 
+@dataclass
+class Rounds:
+    """Timings of all rounds, in their order.
+
+    Attributes:
+        ours, theirs: of the projections.
+        plain, two, renewed: of the plain step on one rank and on two, and with lists in each step.
+        ways, pairs: of other steps, by name.
+    """
+
+    ours: Samples = field(default_factory=Samples.none)
+    theirs: Samples = field(default_factory=Samples.none)
+    plain: list[Timing] = field(default_factory=list)
+    two: list[Timing] = field(default_factory=list)
+    renewed: list[Timing] = field(default_factory=list)
+    ways: dict[str, list[Timing]] = field(default_factory=lambda: {way: [] for way in WAYS})
+    pairs: dict[str, list[Timing]] = field(default_factory=lambda: {pair: [] for pair in PAIRS})
+
+    def add(self, run: ClothRunner, pypbd: Pypbd | None) -> None:
+        """Measure everything once more."""
+        for kind, given in KINDS.items():
+            few, many = (run.time(iterations=n, **given) for n in (FEW, MANY))
+            self.ours.add(kind, few.cpu / few.steps, many.cpu / many.steps)
+            if pypbd:
+                self.theirs.add(kind, *pypbd(kind))
+        self.plain.append(few)
+        self.two.append(run.time(2))
+        for way, given in WAYS.items():
+            self.ways[way].append(run.time(**given))
+        self.renewed.append(run.time(lists="delay 0 check no"))
+        for pair, given in PAIRS.items():
+            self.pairs[pair].append(run.time(**given, **WET))
+
+    def of_codes(self, counts: Mapping[str, int], vertices: int) -> dict:
+        """Return the cost of projections and steps by code, and the ratios of the two codes."""
+        ours, theirs = self.ours, self.theirs
+        codes, ratios = {}, {}
+        for code, samples in {"sphcloth": ours, "pypbd": theirs}.items():
+            if samples.few["both"]:
+                codes[code] = samples.figures(counts, vertices)
+        if "pypbd" in codes:
+            for kind, n in counts.items():
+                ratios[f"{kind}_ns"] = _ratios(
+                    theirs.projections(kind, n), ours.projections(kind, n)
+                )
+            ratios["step_ns"] = _ratios(theirs.steps(vertices), ours.steps(vertices))
+        return {"codes": codes, "ratios": ratios}
+
+    def of_steps(self) -> dict:
+        """Return what other steps cost over the plain one, and what lists and pair styles cost."""
+        cpu = [t.cpu for t in self.plain]
+        more = zip(self.renewed, self.plain, strict=True)
+        return {
+            "two_ranks": _ratios([t.loop for t in self.plain], [t.loop for t in self.two]),
+            # without the waits for a core that other programs have
+            "two_ranks_cpu": _ratios(cpu, [t.cpu for t in self.two]),
+            "ways": {
+                way: _ratios([t.cpu for t in timings], cpu) for way, timings in self.ways.items()
+            },
+            "steps_per_renewal": figure([t.steps / max(t.builds, 1) for t in self.plain]),
+            "lists_ns": figure([a.per_particle(a.cpu) - b.per_particle(b.cpu) for a, b in more]),
+            # the part of the loop that LAMMPS counts as Pair, in processor time
+            "dry_pair_ns": {
+                pair: figure([t.per_particle(t.pair * t.cpu / t.loop) for t in timings])
+                for pair, timings in self.pairs.items()
+            },
+        }
+
+
 def measure(
     run: ClothRunner, pypbd: Pypbd | None, sheet: Sheet, rounds: int, console: Console
 ) -> dict:
     """Measure everything in alternating rounds."""
-    ours, theirs = Samples.none(), Samples.none()
-    ways: dict[str, list[Timing]] = {way: [] for way in WAYS}
-    plain: list[Timing] = []
-    two: list[Timing] = []
-    renewed: list[Timing] = []
-    pairs: dict[str, list[Timing]] = {pair: [] for pair in PAIRS}
+    found = Rounds()
     for k in range(rounds):
         with console.status(f"round {k + 1} of {rounds}"):
-            for kind, given in KINDS.items():
-                few, many = (run.time(iterations=n, **given) for n in (FEW, MANY))
-                ours.add(kind, few.cpu / few.steps, many.cpu / many.steps)
-                if pypbd:
-                    theirs.add(kind, *pypbd(kind))
-            plain.append(few)
-            two.append(run.time(2))
-            for way, given in WAYS.items():
-                ways[way].append(run.time(**given))
-            renewed.append(run.time(lists="delay 0 check no"))
-            for pair, given in PAIRS.items():
-                pairs[pair].append(run.time(**given, **WET))
+            found.add(run, pypbd)
     with console.status("memory"):
         bare = run.time(projected="no")
-
     counts = {"edges": len(sheet.edges), "hinges": len(sheet.hinges)}
     counts["both"] = sum(counts.values())
-    vertices = len(sheet.rest)
-
-    def per_vertex(more: list[Timing], less: list[Timing]) -> list[float]:
-        return [
-            a.per_particle(a.cpu) - b.per_particle(b.cpu) for a, b in zip(more, less, strict=True)
-        ]
-
-    figures: dict = {"codes": {}, "ratios": {}}
-    for code, samples in {"sphcloth": ours, "pypbd": theirs}.items():
-        if not samples.few["both"]:
-            continue
-        figures["codes"][code] = {
-            **{f"{kind}_ns": figure(samples.projections(kind, n)) for kind, n in counts.items()},
-            "step_ns": figure(samples.steps(vertices)),
-            "bare_step_ns": figure(samples.bare_steps(vertices)),
-        }
-    if pypbd:
-        for kind, n in counts.items():
-            figures["ratios"][f"{kind}_ns"] = _ratios(
-                theirs.projections(kind, n), ours.projections(kind, n)
-            )
-        figures["ratios"]["step_ns"] = _ratios(theirs.steps(vertices), ours.steps(vertices))
-    figures["two_ranks"] = _ratios([t.loop for t in plain], [t.loop for t in two])
-    # without the waits for a core that other programs have
-    figures["two_ranks_cpu"] = _ratios([t.cpu for t in plain], [t.cpu for t in two])
-    figures["ways"] = {
-        way: _ratios([t.cpu for t in timings], [t.cpu for t in plain])
-        for way, timings in ways.items()
+    vertices, memory = len(sheet.rest), found.plain[0].memory
+    return {
+        **found.of_codes(counts, vertices),
+        **found.of_steps(),
+        "bytes_per_vertex": memory / vertices,
+        "fix_bytes_per_vertex": (memory - bare.memory) / vertices,
     }
-    figures["steps_per_renewal"] = figure([t.steps / max(t.builds, 1) for t in plain])
-    figures["lists_ns"] = figure(per_vertex(renewed, plain))
-    # the part of the loop that LAMMPS counts as Pair, in processor time
-    figures["dry_pair_ns"] = {
-        pair: figure([t.per_particle(t.pair * t.cpu / t.loop) for t in timings])
-        for pair, timings in pairs.items()
-    }
-    figures["bytes_per_vertex"] = plain[0].memory / vertices
-    figures["fix_bytes_per_vertex"] = (plain[0].memory - bare.memory) / vertices
-    return figures
 
 
 def _ratios(over: list[float], under: list[float]) -> dict[str, float]:

@@ -101,6 +101,24 @@ def box_mesh() -> str:
     return "\n".join([*("v {} {} {}".format(*corner) for corner in corners), *faces]) + "\n"
 
 
+def _stepping(method: str, spacing: float, setting: dict[str, float]) -> dict:
+    """Return what a method needs to choose its time step, and its own settings."""
+    if method == "wcsph":
+        sound = setting["sound"]
+        return {
+            "cflMethod": 0,
+            "timeStepSize": setting["courant"] * spacing / sound,
+            "WCSPH": {"stiffness": 1000 * sound**2 / GAMMA, "exponent": GAMMA},
+        }
+    return {
+        "cflMethod": 1,
+        "cflFactor": 1,
+        "cflMaxTimeStepSize": 0.005,
+        "timeStepSize": 0.001,
+        "DFSPH": {"maxError": setting["max_error"], "maxErrorV": 2 * setting["max_error"]},
+    }
+
+
 def scene(
     method: str,
     counts: tuple[int, int, int],
@@ -120,29 +138,14 @@ def scene(
     """
     lower, upper = tank
     size = upper - lower
-    configuration = {
-        "particleRadius": spacing / 2,
-        "simulationMethod": METHODS[method],
-        "gravitation": [0, 0, -9.81],
-        "boundaryHandlingMethod": 2,
-    }
-    if method == "wcsph":
-        sound = setting["sound"]
-        configuration |= {
-            "cflMethod": 0,
-            "timeStepSize": setting["courant"] * spacing / sound,
-            "WCSPH": {"stiffness": 1000 * sound**2 / GAMMA, "exponent": GAMMA},
-        }
-    else:
-        configuration |= {
-            "cflMethod": 1,
-            "cflFactor": 1,
-            "cflMaxTimeStepSize": 0.005,
-            "timeStepSize": 0.001,
-            "DFSPH": {"maxError": setting["max_error"], "maxErrorV": 2 * setting["max_error"]},
-        }
     return {
-        "Configuration": configuration,
+        "Configuration": {
+            "particleRadius": spacing / 2,
+            "simulationMethod": METHODS[method],
+            "gravitation": [0, 0, -9.81],
+            "boundaryHandlingMethod": 2,
+            **_stepping(method, spacing, setting),
+        },
         "Materials": [
             {
                 "id": "Fluid",

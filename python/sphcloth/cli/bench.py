@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -19,6 +20,29 @@ sphcloth bench cloth --rounds 3 --json cloth.json
 
 sphcloth bench peers --rounds 3 --json peers.json
 """
+
+
+def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
+    """Return name -> function, usual number of rounds, particles across and steps."""
+    from sphcloth.bench.activity import bench_activity
+    from sphcloth.bench.cloth import bench_cloth
+    from sphcloth.bench.coupling import bench_coupling
+    from sphcloth.bench.messages import bench_messages
+    from sphcloth.bench.pair import bench_pair
+    from sphcloth.bench.peers import bench_peers
+    from sphcloth.bench.size import bench_size
+    from sphcloth.bench.watch import bench_watch
+
+    return {
+        "pair": (bench_pair, 5, 48, 30),
+        "cloth": (bench_cloth, 5, 160, 40),
+        "coupling": (bench_coupling, 5, 40, 60),
+        "watch": (bench_watch, 5, 20, 60),
+        "messages": (bench_messages, 3, 24, 20),
+        "peers": (bench_peers, 1, 20, 18),
+        "size": (bench_size, 5, 100, 30),
+        "activity": (bench_activity, 5, 32, 400),
+    }
 
 
 def bench(
@@ -56,26 +80,9 @@ def bench(
     json_file: JsonFile = None,
 ) -> None:
     """Measure speed as ratios, side by side in one run, with the spread."""
-    from sphcloth.bench.activity import bench_activity
-    from sphcloth.bench.cloth import bench_cloth
-    from sphcloth.bench.coupling import bench_coupling
-    from sphcloth.bench.messages import bench_messages
-    from sphcloth.bench.pair import bench_pair
-    from sphcloth.bench.peers import bench_peers
-    from sphcloth.bench.size import bench_size
-    from sphcloth.bench.watch import bench_watch
     from sphcloth.results import write_json
 
-    known = {
-        "pair": (bench_pair, 5, 48, 30),
-        "cloth": (bench_cloth, 5, 160, 40),
-        "coupling": (bench_coupling, 5, 40, 60),
-        "watch": (bench_watch, 5, 20, 60),
-        "messages": (bench_messages, 3, 24, 20),
-        "peers": (bench_peers, 1, 20, 18),
-        "size": (bench_size, 5, 100, 30),
-        "activity": (bench_activity, 5, 32, 400),
-    }
+    known = _known()
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")
     measure, usual_rounds, usual_across, usual_steps = known[name]

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
 from sphcloth.cli.options import JsonFile, grouped
 from sphcloth.errors import UserError
+
+if TYPE_CHECKING:
+    from sphcloth.tradeoff.scene import Scene
+    from sphcloth.tradeoff.study import Plan
 
 EXAMPLES = """
 Examples:
@@ -60,6 +64,22 @@ class Settings:
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="Settings of the run that is taken for exact."),
     ] = None
+
+    def plan(self, scene: Scene, error: float, quick: bool) -> Plan:
+        """Return the plan of a study of a scene."""
+        from sphcloth.examples import parse_settings
+        from sphcloth.tradeoff import command
+        from sphcloth.tradeoff.study import Plan
+
+        return Plan(
+            command.find_schemes(scene, self.scheme),
+            command.parse_variations(self.vary or []),
+            parse_settings(self.settings or []),
+            parse_settings(self.reference or [], "--reference"),
+            error,
+            quick,
+            command.parse_variations(self.over or [], "--over"),
+        )
 
 
 @dataclass(frozen=True)
@@ -116,10 +136,9 @@ def tradeoff(
     show_list: Annotated[bool, typer.Option("--list", help="Show the packaged scenes.")] = False,
 ) -> None:
     """Run a scene with many settings: error against particle updates and wall time."""
-    from sphcloth.examples import parse_settings
     from sphcloth.tradeoff import command
     from sphcloth.tradeoff.report import show, write_all
-    from sphcloth.tradeoff.study import Plan, study
+    from sphcloth.tradeoff.study import study
 
     console = Console()
     if show_list:
@@ -128,15 +147,7 @@ def tradeoff(
     if scene is None:
         raise UserError("which scene? sphcloth tradeoff --list shows them")
     found = command.find_scene(scene, quantity or [], last_run)
-    plan = Plan(
-        command.find_schemes(found, settings.scheme),
-        command.parse_variations(settings.vary or []),
-        parse_settings(settings.settings or []),
-        parse_settings(settings.reference or [], "--reference"),
-        error,
-        quick,
-        command.parse_variations(settings.over or [], "--over"),
-    )
+    plan = settings.plan(found, error, quick)
     folder = out or Path(f"sphcloth-tradeoff-{found.name}")
     result = study(
         found,

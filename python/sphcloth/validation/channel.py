@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -50,7 +50,7 @@ class Start(Protocol):
 
 PARAMETERS = (
     Parameter("gap", 1e-3, "m", "distance of the plates L", 1e-6, 10.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("nu", 1e-6, "m^2/s", "kinematic viscosity", 1e-9, 1.0),
     Parameter("sound", 20.0, "V", "speed of sound at rest c0", 5.0, 1000.0),
     Parameter("across", 40, "1", "particles across the gap", 16, 400, quick=24),

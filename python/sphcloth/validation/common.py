@@ -1,4 +1,4 @@
-"""Parameters that the cases with water share."""
+"""Parameters that cases share."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from collections.abc import Mapping
 
 from sphcloth.validation.case import Parameter, Value
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
+
+GRAVITY = Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3)
+REST_DENSITY = Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5)
 
 
 def numerics(

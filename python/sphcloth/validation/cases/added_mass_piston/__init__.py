@@ -14,7 +14,7 @@ from scipy.optimize import curve_fit
 from sphcloth.references.added_mass_piston import Piston
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import numerics
+from sphcloth.validation.common import REST_DENSITY, numerics
 from sphcloth.validation.runner import Run, Runner
 
 # time in which the water settles on the sheet, which is held, and rate of its damping: h/c0, c0/h
@@ -31,7 +31,7 @@ PARAMETERS = (
     Parameter("runs", 4, "1", "number of masses", 1, 20),
     Parameter("stiffness", 1e6, "N/m^3", "of the springs, per area", 1e3, 1e9),
     Parameter("height", 0.5, "m", "of the water", 1e-2, 10.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("gravity", 9.81, "m/s^2", "acceleration g, of the water", 1e-2, 1e3),
     Parameter("sound", 5.0, "sqrt(k_A h/rho0)", "speed of sound at rest c0", 2.0, 100.0),
     Parameter("layers", 20, "1", "particles over the height", 12, 100, quick=12),

@@ -15,7 +15,7 @@ from sphcloth.metrics import crossings
 from sphcloth.references.blob_on_free_sheet import Collision
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density_in_space, numerics
+from sphcloth.validation.common import REST_DENSITY, lattice_density_in_space, numerics
 from sphcloth.validation.runner import Run, Runner
 
 # the run goes on until the drop would have gone so far across the sheet; radii of the drop
@@ -26,7 +26,7 @@ FRAMES = 100
 
 PARAMETERS = (
     Parameter("radius", 0.1, "m", "of the drop", 1e-3, 10.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("sound", 20.0, "m/s", "speed of sound at rest c0", 0.1, 1e4),
     Parameter("fastest", 3.0, "c0", "largest speed of the drop", 0.1, 10.0),
     Parameter("grazing", 10.0, "degrees", "angle of the grazing impacts", 5.0, 60.0),

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -25,7 +26,7 @@ PARAMETERS = (
     Parameter("gamma", 5.0, "1", "w L^3 / B of weight and stiffness", 0.1, 100.0),
     Parameter("free", 1.0, "m", "free length L", 1e-2, 100.0),
     Parameter("areal", 0.2, "kg/m^2", "mass per area", 1e-4, 1e3),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("links", 20, "1", "cells along the strip, a clamped one included", 6, 200),
     Parameter("settle", 20.0, "1/omega", "time to rest, omega the lowest mode", 1.0, 1e3),
     *cloth.solver(2e-4, 50, method="substeps", quick_iterations=20),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sphcloth.references.catenary import HangingPolygon
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the drag in sqrt(g / length)
@@ -25,7 +26,7 @@ PARAMETERS = (
     Parameter("span", 0.6, "L", "distance of the fixed points", 0.3, 0.99),
     Parameter("mass", 0.05, "kg", "mass at each joint", 1e-6, 1e3),
     Parameter("compliance", 0.0, "m/N", "compliance of a link; 0 for k = 1", 0.0, 1.0),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("settle", 40.0, "sqrt(L/g)", "time to rest", 1.0, 1e4),
     *cloth.solver(1e-3, 1000),
 )

@@ -15,7 +15,7 @@ from sphcloth.references import dam_break
 from sphcloth.references.dam_break import Column
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.common import GRAVITY, REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement
 from sphcloth.validation.runner import Run, Runner
 
@@ -29,8 +29,8 @@ FRAMES = 66
 
 PARAMETERS = (
     Parameter("width", 0.05715, "m", "width a of the column, 2 a high", 1e-3, 100.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    REST_DENSITY,
+    GRAVITY,
     Parameter("sound", 20.0, "sqrt(2 g a)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("nu", 1e-6, "m^2/s", "kinematic viscosity", 0.0, 1.0),
     Parameter("slip", "no", "1", "whether the walls are smooth", choices=("no", "yes")),

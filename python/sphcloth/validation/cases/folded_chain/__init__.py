@@ -13,6 +13,7 @@ from scipy.interpolate import CubicSpline
 from sphcloth.references import folded_chain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.refinement import Refinement
 from sphcloth.validation.runner import Run, Runner
 
@@ -27,7 +28,7 @@ PARAMETERS = (
     Parameter("links", 101, "1", "links N, odd: the next odd number is taken", 11, 401, quick=61),
     Parameter("length", 1.0, "m", "length L of the chain", 1e-2, 100.0),
     Parameter("mass", 1.0, "kg", "mass of the chain", 1e-6, 1e6),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     *cloth.solver(2e-5, 50),
 )
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.runner import Run, Runner
 
 # drag that calms the slowest motion along the chain without a swing, in its angular frequency
@@ -27,7 +28,7 @@ PARAMETERS = (
     Parameter("mass", 0.05, "kg", "mass m of each", 1e-6, 1e3),
     Parameter("length", 0.05, "m", "length of a link at rest", 1e-3, 10.0),
     Parameter("compliance", 1e-3, "m/N", "compliance alpha of a link", 1e-9, 1.0),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("settle", 60.0, "1/omega", "time to rest, omega the slowest", 5.0, 1e4),
     Parameter("table", "all", "1", "sweeps of the table", choices=("all", "few"), quick="few"),
     *cloth.solver(1 / 60, 100, direction="current"),

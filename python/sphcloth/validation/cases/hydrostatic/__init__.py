@@ -15,7 +15,7 @@ from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -28,8 +28,8 @@ LATE = 0.1
 
 PARAMETERS = (
     Parameter("height", 1.0, "m", "undisturbed height H", 1e-3, 100.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    REST_DENSITY,
+    GRAVITY,
     Parameter("sound", 10.0, "sqrt(g H)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("layers", 50, "1", "particles over the height", 24, 400, quick=40),
     Parameter("across", 10, "1", "particles over the periodic width", 8, 100),

@@ -14,7 +14,7 @@ from sphcloth.references.jet import Jet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -29,7 +29,7 @@ PARAMETERS = (
     Parameter("thickness", 0.1, "m", "thickness B of the jet", 1e-4, 10.0),
     Parameter("speed", 2.0, "m/s", "speed U of the jet", 1e-3, 100.0),
     Parameter("angle", 90.0, "degrees", "between jet and plate", 30.0, 90.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("sound", 10.0, "U", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 32, "1", "particles over the thickness", 8, 200, quick=16),
     Parameter("length", 12.0, "B", "length of the jet", 8.0, 100.0),

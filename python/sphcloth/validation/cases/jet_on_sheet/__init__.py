@@ -14,7 +14,7 @@ from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density_in_space, numerics
+from sphcloth.validation.common import REST_DENSITY, lattice_density_in_space, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -29,7 +29,7 @@ FRAMES = 80
 PARAMETERS = (
     Parameter("thickness", 0.1, "m", "thickness B of the jet", 1e-3, 10.0),
     Parameter("speed", 2.0, "m/s", "speed v of the jet", 1e-2, 100.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("sound", 10.0, "v", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 12, "1", "particles over the thickness", 4, 100, quick=8),
     Parameter("depth", 6, "1", "particles over the periodic depth", 6, 100),

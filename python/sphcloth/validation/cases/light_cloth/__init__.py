@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sphcloth.references import light_cloth
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.runner import Run, Runner
 
 FRAMES = 20
@@ -24,7 +25,7 @@ PARAMETERS = (
     Parameter("softest", 1e2, "N/m", "least stiffness of an edge", 1.0, 1e9),
     Parameter("stiffest", 1e5, "N/m", "largest stiffness of an edge", 1.0, 1e9),
     Parameter("runs", 4, "1", "number of stiffnesses", 2, 20),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("time", 0.2, "s", "time of the fall", 1e-3, 10.0),
     *cloth.solver(1e-3, 10),
 )

@@ -20,7 +20,7 @@ from sphcloth.references.lintearia import HeavyLintearia, Lintearia
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import numerics
+from sphcloth.validation.common import GRAVITY, numerics
 from sphcloth.validation.lattice import cubic_density_sum
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
@@ -41,7 +41,7 @@ PARAMETERS = (
     Parameter("A", 0.08, "m^2", "cross-section of the water", 1e-6, 1e4),
     Parameter("areal", 0.2, "kg/m^2", "mass of the sheet per area", 1e-3, 1e3),
     Parameter("rho0", 1000.0, "kg/m^3", "density of the water", 1.0, 1e5),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("mode", "wall", "1", "what couples water and sheet", choices=MODES),
     Parameter("sound", 10.0, "sqrt(g depth)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 80, "1", "particles over L", 40, 1000, quick=40),

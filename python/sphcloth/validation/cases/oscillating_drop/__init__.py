@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import lattice_density, numerics
+from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -27,7 +27,7 @@ FRAMES_PER_PERIOD = 50
 
 PARAMETERS = (
     Parameter("radius", 1.0, "m", "radius R", 1e-3, 100.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
+    REST_DENSITY,
     Parameter("omega", 1.0, "1/s", "of the force field -omega^2 r", 1e-2, 1e2),
     Parameter("sigma", 0.5, "omega", "rate of strain at the start", 0.05, 2.0),
     Parameter("sound", 20.0, "omega R", "speed of sound at rest c0", 5.0, 100.0),

@@ -14,6 +14,7 @@ from sphcloth.references.chain import LinkedPendulum
 from sphcloth.references.pendulum import pendulum_period
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.runner import Run, Runner
 
 # time steps of the coarse runs of the order of convergence, in that of the fine ones
@@ -26,7 +27,7 @@ PARAMETERS = (
     Parameter("length", 1.0, "m", "length L of the chain", 1e-2, 100.0),
     Parameter("mass", 1.0, "kg", "mass of the chain, at the outer ends of the links", 1e-6, 1e6),
     Parameter("angle", 90.0, "degrees", "amplitude of the single link", 1.0, 170.0),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("time", 1.0, "s", "time over which the chain is followed", 0.1, 10.0),
     *cloth.solver(5e-4, 50),
 )

@@ -16,7 +16,7 @@ from sphcloth.metrics import above_sheet, crossings
 from sphcloth.references.pinned_weight import Load
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import numerics
+from sphcloth.validation.common import GRAVITY, numerics
 from sphcloth.validation.lattice import cubic_density_sum
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
@@ -31,7 +31,7 @@ PARAMETERS = (
     Parameter("areal", 0.2, "kg/m^2", "mass of the sheet per area", 1e-2, 1e3),
     Parameter("rho0", 1000.0, "kg/m^3", "density of the water", 1.0, 1e5),
     Parameter("water", 0.03125, "side^3", "volume of the water", 1e-3, 0.05),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("mode", "both", "1", "what couples water and sheet", choices=MODES),
     Parameter("sound", 10.0, "sqrt(g depth)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 24, "1", "edges and particles over the side", 12, 200, quick=16),

@@ -16,7 +16,7 @@ from sphcloth.errors import UserError
 from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import WALL, lattice_density, numerics
+from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
 
@@ -28,8 +28,8 @@ COARSE = 2 / 3
 PARAMETERS = (
     Parameter("depth", 1.0, "m", "undisturbed depth H", 1e-3, 100.0),
     Parameter("length", 2.0, "m", "wavelength", 1e-3, 1000.0),
-    Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    REST_DENSITY,
+    GRAVITY,
     Parameter("sound", 10.0, "sqrt(g H)", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("steepness", 0.14, "1", "k A of the start, A the amplitude", 0.01, 0.3),
     Parameter("layers", 60, "1", "particles over the depth", 12, 400, quick=32),

@@ -13,6 +13,7 @@ from matplotlib.tri import Triangulation
 from sphcloth.references import stiffness
 from sphcloth.validation import cloth
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.common import GRAVITY
 from sphcloth.validation.runner import Run, Runner
 
 STIFFNESSES = (0.0, 0.3, 1.0)
@@ -25,7 +26,7 @@ PARAMETERS = (
     Parameter("size", 1.0, "m", "side of the sheet", 1e-2, 100.0),
     Parameter("areal", 0.2, "kg/m^2", "mass per area", 1e-4, 1e3),
     Parameter("bend", 0.0, "1", "stiffness of the hinges", 0.0, 1.0),
-    Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3),
+    GRAVITY,
     Parameter("frame", 0.02, "s", "time from frame to frame", 1e-3, 1.0),
     *cloth.solver(1e-3, 10, direction="current"),
 )

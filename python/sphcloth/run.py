@@ -284,13 +284,13 @@ def wait_for_lammps(command: list[str], out: Path, timeout: float) -> int | None
 
 
 def last_words(out: Path) -> list[str]:
-    """Return what LAMMPS, or else the launcher, said last in a folder."""
+    """Return the last words of LAMMPS, or else of the launcher in a folder."""
     screen = (out / SCREEN).read_text(errors="replace").splitlines()
     return error_lines(out / LOG) or screen[-5:]
 
 
 def _show_failure(out: Path, status: int, console: Console) -> None:
-    """Print what LAMMPS said last."""
+    """Print the last words of LAMMPS."""
     console.print(f"[red]LAMMPS ended with status {status}[/]")
     for line in last_words(out):
         console.print(f"  {line}", markup=False, soft_wrap=True)

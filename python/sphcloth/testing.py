@@ -84,7 +84,7 @@ def sphcloth_run(tmp_path: Path) -> Callable[..., SceneRun]:
     ``sphcloth_run(script, *, ranks=1, timeout=600.0, **variables)``: the script is a path, or its
     text if it has more than one line; variables are those of ``lmp -var``. Files beside the script
     that it names are copied along. A run that fails, or takes more seconds than ``timeout``, fails
-    the test with what LAMMPS said.
+    the test with the output of LAMMPS.
     """
 
     def run(

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from sphcloth.errors import UserError
-from sphcloth.programs import PATIENT, lammps_on
+from sphcloth.programs import YIELDING, lammps_on
 from sphcloth.stress import endurance, page
 from sphcloth.stress.case import SPACING
 from sphcloth.stress.endurance import Growth, Memory, Sample
@@ -19,10 +19,10 @@ PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "reliability.md"
 
 def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):
     monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1})
-    for name in PATIENT:
+    for name in YIELDING:
         monkeypatch.delenv(name, raising=False)
     assert lammps_on(2)[1:3] == ["-n", "2"]
-    assert lammps_on(3).count("-genv") == len(PATIENT)
+    assert lammps_on(3).count("-genv") == len(YIELDING)
     monkeypatch.setenv("MPIR_CVAR_ENABLE_HEAVY_YIELD", "0")
     assert "MPIR_CVAR_ENABLE_HEAVY_YIELD" not in lammps_on(3)
 

@@ -110,11 +110,11 @@ def _tried(probe: Probe, run: Evidence, folder: Path) -> Iterator[Finding]:
             continue
         apart, moved_by = moved(folder / "probe", other, kind)
         if np.isfinite(moved_by) and moved_by > 0 and apart < SAME * moved_by:
-            said = (
+            measured = (
                 f"without it the {kind} ends {apart:.2g} elsewhere, "
                 f"after a displacement of {moved_by:.2g}"
             )
-            yield Finding(name, said, line)
+            yield Finding(name, measured, line)
 
 
 def _trials(run: Evidence) -> Iterator[tuple[str, str, list[str], str]]:
@@ -130,7 +130,7 @@ def _trials(run: Evidence) -> Iterator[tuple[str, str, list[str], str]]:
 
 
 def _proven(proposal: Proposal, probe: Probe, run: Evidence, folder: Path) -> Finding:
-    """Try an advice; what does not help loses its line, and what it showed is said."""
+    """Try an advice; what does not help loses its line, and what it showed is added."""
     finding, trial = proposal
     if trial is None:
         return finding
@@ -139,8 +139,8 @@ def _proven(proposal: Proposal, probe: Probe, run: Evidence, folder: Path) -> Fi
     except UserError as error:
         return Finding(finding.topic, f"{finding.measured}; '{finding.line}' fails: {error}")
     showed, helps = trial.judge(run, again)
-    said = f"{finding.measured}; {showed}{'' if helps else ': not worth it'}"
-    return Finding(finding.topic, said, finding.line if helps else None)
+    measured = f"{finding.measured}; {showed}{'' if helps else ': not worth it'}"
+    return Finding(finding.topic, measured, finding.line if helps else None)
 
 
 def _show(title: str, findings: list[Finding], console: Console) -> None:

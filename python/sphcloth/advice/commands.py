@@ -103,7 +103,7 @@ class Commands:
         if not log.is_file():
             raise UserError(f"no log file {log}")
         text = log.read_text(encoding="utf-8", errors="replace")
-        said: dict[str, list[list[str]]] = {}
+        given: dict[str, list[list[str]]] = {}
         limits: dict[str, int] = {}
         for line in text.splitlines():
             if STEPS_BY_LIMIT in line:
@@ -114,22 +114,22 @@ class Commands:
             # what still has a $ is echoed again with its value
             words = [] if "$" in line else line.partition("#")[0].split()
             if words:
-                said.setdefault(words[0], []).append(words[1:])
-        return cls._of(said, limits)
+                given.setdefault(words[0], []).append(words[1:])
+        return cls._of(given, limits)
 
     @classmethod
-    def _of(cls, said: dict[str, list[list[str]]], limits: dict[str, int]) -> Commands:
+    def _of(cls, given: dict[str, list[list[str]]], limits: dict[str, int]) -> Commands:
         def last(command: str) -> tuple[str, ...]:
-            return tuple(said.get(command, [[]])[-1])
+            return tuple(given.get(command, [[]])[-1])
 
         def by_type(command: str) -> dict[str, tuple[str, ...]]:
-            return {words[0]: tuple(words[1:]) for words in said.get(command, []) if words}
+            return {words[0]: tuple(words[1:]) for words in given.get(command, []) if words}
 
-        fixes = [words for words in said.get("fix", []) if len(words) > 2]
+        fixes = [words for words in given.get("fix", []) if len(words) > 2]
         style = last("pair_style")
         support = float(style[1]) if style[:1] == ("sph/tait",) else math.nan
-        coefficients = [words for words in said.get("pair_coeff", []) if words[2:3] == ["fluid"]]
-        formulas = [w for w in said.get("variable", []) if len(w) > 2 and w[1] == "equal"]
+        coefficients = [words for words in given.get("pair_coeff", []) if words[2:3] == ["fluid"]]
+        formulas = [w for w in given.get("variable", []) if len(w) > 2 and w[1] == "equal"]
         return cls(
             {words[0]: Fix(*words[:3], tuple(words[3:])) for words in fixes},
             {words[0]: Fluid.of(words, support) for words in coefficients},
@@ -140,7 +140,7 @@ class Commands:
             by_type("bond_coeff"),
             by_type("dihedral_coeff"),
             {words[0]: "".join(words[2:]) for words in formulas},
-            {words[0]: tuple(words[2:]) for words in said.get("compute", []) if len(words) > 2},
+            {words[0]: tuple(words[2:]) for words in given.get("compute", []) if len(words) > 2},
             limits,
         )
 

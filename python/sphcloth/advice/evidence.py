@@ -32,7 +32,7 @@ class Evidence:
     """A run as far as it went.
 
     Attributes:
-        commands: what the script said.
+        commands: those of the script.
         columns: ``f_contact[1]`` and the like -> values over the run, shape (rows,).
         whole: whether the run went to the end of the script.
         steps: number of time steps.

@@ -76,8 +76,8 @@ class Probe:
         status = wait_for_lammps(command, folder, TIMEOUT_FACTOR * self.seconds + GRACE_SECONDS)
         # one that took too long is read as far as it came
         if status:
-            said = " ".join(last_words(folder)) or f"exit status {status}"
-            raise UserError(f"{self.script} fails: {said}")
+            reason = " ".join(last_words(folder)) or f"exit status {status}"
+            raise UserError(f"{self.script} fails: {reason}")
         return self._read(folder, time.monotonic() - begin < self.seconds)
 
     def _copy(self, folder: Path, before: Sequence[str], edits: Mapping[str, str]) -> Path:

@@ -115,21 +115,21 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
     name, steps = max(set_by.items(), key=lambda each: each[1])
     if steps < MOSTLY * total:
         return
-    said, shared = f"{name} set {steps} of {total} steps", _limited(run, stepper, name)
+    measured, shared = f"{name} set {steps} of {total} steps", _limited(run, stepper, name)
     atoms, scheme = run.largest("v_advise_atoms") or 0.0, run.commands.run_style[1:2]
     if shared is not None:
-        said += f", tightest for {shared:.3g} of {atoms:.0f} particles"
+        measured += f", tightest for {shared:.3g} of {atoms:.0f} particles"
     if name == "max":
         line = f"{stepper.line} ... max {2 * run.largest('v_advise_dt'):.3g}"
-        yield Finding("time step", said, line), _longer(line.split(" ... ")[1])
+        yield Finding("time step", measured, line), _longer(line.split(" ... ")[1])
     elif shared and shared < FEW * atoms and scheme != ("block",):
         block = "run_style sph/adaptive block"
-        yield Finding("time step", said, block), Trial(_saves_updates, before=(block,))
+        yield Finding("time step", measured, block), Trial(_saves_updates, before=(block,))
     elif name in ("acoustic", "wetted"):
         now = float(stepper.value(name, stepper.value("acoustic", "0.5")))
         louder = f"{name} {LOUDER}"
         if now < float(LOUDER):
-            yield Finding("time step", said, f"{stepper.line} ... {louder}"), _longer(louder)
+            yield Finding("time step", measured, f"{stepper.line} ... {louder}"), _longer(louder)
 
 
 def _limited(run: Evidence, stepper: Fix, name: str) -> float | None:
@@ -155,9 +155,9 @@ def _longer(keywords: str) -> Trial:
         before, after = (
             each.largest(name, min(run.time, again.time)) or 0.0 for each in (run, again)
         )
-        said = f"with {keywords} steps are {further:.2f} times as long"
+        measured = f"with {keywords} steps are {further:.2f} times as long"
         helps = further > 1 / WORTH and after <= MORE_COMPRESSION * before
-        return f"{said}, largest compression {after:.2%} instead of {before:.2%}", helps
+        return f"{measured}, largest compression {after:.2%} instead of {before:.2%}", helps
 
     return Trial(judge, edits={"sph/integrate": keywords})
 
@@ -180,37 +180,39 @@ def _constant(run: Evidence) -> Iterator[Finding]:
         return
     allowed = min(fluid.support / 2 / fluid.sound for fluid in commands.fluids.values())
     share = step / allowed
-    said = f"constant step {step:.3g} is {share:.2g} h_s/c0; global takes {USUAL:g}"
+    measured = f"constant step {step:.3g} is {share:.2g} h_s/c0; global takes {USUAL:g}"
     if share < USUAL / 2:
-        yield Finding("time step", said, f"timestep {USUAL * allowed:.2g}")
+        yield Finding("time step", measured, f"timestep {USUAL * allowed:.2g}")
     if share > STABLE:
-        yield Finding("time step", f"{said}, {STABLE:g} is the limit", f"timestep {allowed:.2g}")
+        yield Finding(
+            "time step", f"{measured}, {STABLE:g} is the limit", f"timestep {allowed:.2g}"
+        )
 
 
 def _sound(run: Evidence, expected: float | None) -> Iterator[Finding]:
     """The speed of sound against ten times the largest speed."""
     stepper, fluids = run.commands.stepper, list(run.commands.fluids.values())
-    measured = run.largest("c_advise_fast")
-    if not fluids or not measured or measured <= 0:
+    speed = run.largest("c_advise_fast")
+    if not fluids or not speed or speed <= 0:
         return
     fluid = min(fluids, key=lambda each: each.sound)
-    fastest = max(measured, expected or 0.0)
+    fastest = max(speed, expected or 0.0)
     densest = run.largest(f"f_{stepper.id}[4]") or 0.0
-    said = (
-        f"c0 = {fluid.sound:.3g}, largest speed {measured:.3g}, "
-        f"v/c0 = {measured / fluid.sound:.2g}, largest compression {densest:.1%}"
+    measured = (
+        f"c0 = {fluid.sound:.3g}, largest speed {speed:.3g}, "
+        f"v/c0 = {speed / fluid.sound:.2g}, largest compression {densest:.1%}"
     )
     if expected:
-        said += f"; {expected:g} expected"
+        measured += f"; {expected:g} expected"
     # compression that is not of speed, as by depth, needs its own stiffness
     wanted = max(MACH * fastest, fluid.sound * math.sqrt(densest * MACH))
     is_soft = densest > SOFT or expected is not None
     if is_soft and wanted > fluid.sound / TOO_SOFT and fastest > fluid.sound / MACH / TOO_SOFT:
-        yield Finding("sound", said, _coefficient(fluid, MACH * fastest))
+        yield Finding("sound", measured, _coefficient(fluid, MACH * fastest))
     # a scene that goes on may get faster than what the probe saw
     if wanted < fluid.sound / TOO_STIFF and (run.whole or expected):
         faster = f": steps longer by {fluid.sound / wanted:.2g} where sound sets them"
-        yield Finding("sound", said + faster, _coefficient(fluid, wanted))
+        yield Finding("sound", measured + faster, _coefficient(fluid, wanted))
 
 
 def _coefficient(fluid: Fluid, sound: float) -> str:
@@ -235,12 +237,12 @@ def _skin(run: Evidence) -> Iterator[Finding]:
         return
     skin, support = float(words[0]), max(fluid.support for fluid in fluids)
     between = run.steps / builds
-    said = f"skin {skin:.3g} ({skin / support:.2g} H): lists built every {between:.3g} steps"
+    measured = f"skin {skin:.3g} ({skin / support:.2g} H): lists built every {between:.3g} steps"
     better = skin * BETWEEN / between
     better = min(max(better, LEAST_SKIN * support), MOST_SKIN * support)
     is_off = (between < OFTEN and better > skin * 1.2) or (between > SELDOM and better < skin / 1.2)
     if is_off:
-        yield Finding("neighbor lists", said, f"neighbor {better:.2g} bin")
+        yield Finding("neighbor lists", measured, f"neighbor {better:.2g} bin")
 
 
 def _total(run: Evidence, name: str) -> float:
@@ -260,7 +262,9 @@ def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
         if strain is None or strain <= wanted:
             continue
         more, kind = more_sweeps(fix, strain, wanted), "substeps" if is_substeps(fix) else "sweeps"
-        said = f"an edge is drawn by {strain:.2%} with {sweeps(fix)} {kind}, {wanted:.2%} wanted"
+        measured = (
+            f"an edge is drawn by {strain:.2%} with {sweeps(fix)} {kind}, {wanted:.2%} wanted"
+        )
         line = f"{fix.line} ... iterations {more}"
 
         def judge(
@@ -270,7 +274,7 @@ def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
             return f"{left:.2%} with {more}", left < (was + wanted) / 2
 
         trial = Trial(judge, edits={"pbd/cloth": f"iterations {more}"})
-        yield Finding("stretch", said, line), trial
+        yield Finding("stretch", measured, line), trial
 
 
 def sweeps(fix: Fix) -> int:

@@ -68,9 +68,9 @@ def bench_coupling(
 def contact_share(size: str) -> float:
     """Return the share of contact in a run of ``pour``, from its summary."""
     with tempfile.TemporaryDirectory() as name:
-        said = Console(file=io.StringIO())
-        if run_example("pour", size, 1, Path(name), {}, None, said):
-            raise UserError(f"the example pour failed: {said.file.getvalue().strip()[-300:]}")
+        output = Console(file=io.StringIO())
+        if run_example("pour", size, 1, Path(name), {}, None, output):
+            raise UserError(f"the example pour failed: {output.file.getvalue().strip()[-300:]}")
         return json.loads((Path(name) / "summary.json").read_text())["contact_share"]
 
 

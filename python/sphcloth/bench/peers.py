@@ -223,8 +223,8 @@ def measure_water(
         for point in points:
             if point.failure:
                 continue
-            said = f"round {k + 1} of {rounds}: {point.code}, {describe(point.setting)}"
-            with console.status(said):
+            label = f"round {k + 1} of {rounds}: {point.code}, {describe(point.setting)}"
+            with console.status(label):
                 try:
                     seconds, steps, frames = dam(plan[point.code], point.setting)
                     point.book(seconds / dam.end, steps, frames, dam.spacing)

@@ -128,9 +128,9 @@ def _tradeoff(result: Result) -> str:
             given = each.get("values") if isinstance(each, dict) else None
             is_best = scheme == best.get("overall")
             rows.append((escape(str(cost)), escape(str(scheme)), _inline(given), _best(is_best)))
-    said = f"cheapest settings within an error of {_number(values.get('error'))}"
+    measured = f"cheapest settings within an error of {_number(values.get('error'))}"
     table = _table(("cost", "scheme", "setting", ""), rows) if rows else "<p>none</p>"
-    return f"<h3>{escape(values['scene'])}</h3><p>{said}</p>{table}{_pictures(result)}"
+    return f"<h3>{escape(values['scene'])}</h3><p>{measured}</p>{table}{_pictures(result)}"
 
 
 def _best(is_best: bool) -> str:

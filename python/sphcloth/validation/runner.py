@@ -98,7 +98,7 @@ class Runner:
 
 
 def _what_went_wrong(folder: Path) -> str:
-    """Return what LAMMPS, or else the launcher, said last."""
-    said = error_lines(folder / LOG)
-    said = said or (folder / SCREEN).read_text(errors="replace").splitlines()[-1:]
-    return f"LAMMPS failed: {' '.join(said)} (log: {folder / LOG})"
+    """Return the last words of LAMMPS, or else of the launcher."""
+    words = error_lines(folder / LOG)
+    words = words or (folder / SCREEN).read_text(errors="replace").splitlines()[-1:]
+    return f"LAMMPS failed: {' '.join(words)} (log: {folder / LOG})"

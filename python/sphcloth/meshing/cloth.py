@@ -35,10 +35,10 @@ class Material:
         """Raise UserError for a mass that is not positive or a type below its least number."""
         if not 0 < self.areal_mass < np.inf:
             raise UserError(f"--areal-mass {self.areal_mass:g}: the mass per area must be positive")
-        for name, least in (("vertex", 1), ("bond", 1), ("angle", 1), ("dihedral", 0)):
-            if getattr(self, f"{name}_type") < least:
+        for name, minimum in (("vertex", 1), ("bond", 1), ("angle", 1), ("dihedral", 0)):
+            if getattr(self, f"{name}_type") < minimum:
                 value = getattr(self, f"{name}_type")
-                raise UserError(f"--{name}-type {value}: types count from {least}")
+                raise UserError(f"--{name}-type {value}: types count from {minimum}")
 
 
 @dataclass(frozen=True)
@@ -174,6 +174,6 @@ def longest_bond(cloth: Cloth) -> float:
 
 def _smallest(values: NDArray[np.int64], owner: NDArray[np.int64], owners: NDArray) -> NDArray:
     """Return the smallest of the values of each owner, shape (len(owners),)."""
-    least = np.full(len(owners), np.iinfo(np.int64).max)
-    np.minimum.at(least, owner, values)
-    return least
+    minimum = np.full(len(owners), np.iinfo(np.int64).max)
+    np.minimum.at(minimum, owner, values)
+    return minimum

@@ -103,28 +103,28 @@ class Recipe:
         if self.pin_type in {material.vertex_type for material in self.materials}:
             raise UserError(f"--pin-type {self.pin_type} is the type of the others: use another")
 
-    def cook(self, files: Sequence[Path]) -> tuple[Cloth, list[str]]:
+    def build(self, files: Sequence[Path]) -> tuple[Cloth, list[str]]:
         """Read, repair, place, sew and orient; return the cloth and what was done.
 
         Raises:
             UserError: anything that cannot be made a cloth, by its name.
         """
-        said: list[str] = []
-        surface = join([self._read(file, said) for file in files])
+        repairs: list[str] = []
+        surface = join([self._read(file, repairs) for file in files])
         seams = None
         if self.sew is not None:
             found = Seams.find(surface, self.sew)
             if self.seam_type is None:
                 surface, done = weld(surface, found)
-                said += done
+                repairs += done
             else:
                 seams = found.pairs
-                said.append(f"{len(seams):,} seam bonds, up to {found.widest:g} long")
-            said += found.unpaired_note()
+                repairs.append(f"{len(seams):,} seam bonds, up to {found.widest:g} long")
+            repairs += found.unpaired_note()
         check_manifold(surface)
         surface, turned = orient(surface)
         if turned:
-            said.append(f"{turned:,} triangles turned over, so that all are wound alike")
+            repairs.append(f"{turned:,} triangles turned over, so that all are wound alike")
         cloth = build_cloth(
             surface,
             per_file(self.materials, len(files), "materials"),
@@ -134,11 +134,11 @@ class Recipe:
             pin_type=self.pin_type,
             names=group_names(files),
         )
-        return cloth, said
+        return cloth, repairs
 
-    def _read(self, file: Path, said: list[str]) -> Surface:
-        surface, repairs = read_surface(file, self.merge)
-        said += [f"{file}: {repair}" for repair in repairs]
+    def _read(self, file: Path, repairs: list[str]) -> Surface:
+        surface, done = read_surface(file, self.merge)
+        repairs += [f"{file}: {repair}" for repair in done]
         return self.placement.apply(surface)
 
     def _pinned(self, surface: Surface) -> NDArray[np.bool_]:
@@ -208,8 +208,8 @@ class Output:
                 raise UserError(f"{path} is a mesh or is written twice: use another name")
             taken.add(path.resolve())
 
-    def write(self, cloth: Cloth, summary: report.MeshSummary, said: Sequence[str]) -> None:
-        """Write all files; ``said`` are the repairs for the summary.
+    def write(self, cloth: Cloth, summary: report.MeshSummary, repairs: Sequence[str]) -> None:
+        """Write all files; ``repairs`` is for the summary.
 
         Raises:
             UserError: a file cannot be written, or cannot hold this cloth.
@@ -217,18 +217,18 @@ class Output:
         try:
             for path in self.paths:
                 path.parent.mkdir(parents=True, exist_ok=True)
-            self._write(cloth, summary, said)
+            self._write(cloth, summary, repairs)
         except OSError as error:
             raise UserError(f"{error.filename} cannot be written: {error.strerror}") from None
 
-    def _write(self, cloth: Cloth, summary: report.MeshSummary, said: Sequence[str]) -> None:
+    def _write(self, cloth: Cloth, summary: report.MeshSummary, repairs: Sequence[str]) -> None:
         if self.data is not None:
             write_data(cloth, self.data, self._box(cloth), self.atom_style, self.mass_per_atom)
             write_groups(cloth, self.groups_file, self.mass_per_atom)
         if self.molecule is not None:
             write_molecule(cloth, self.molecule, self.mass_per_atom)
         if self.json_file is not None:
-            values = summary.as_json() | {"repairs": list(said)}
+            values = summary.as_json() | {"repairs": list(repairs)}
             self.json_file.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
 
     def script(self, cloth: Cloth) -> list[str]:
@@ -254,11 +254,11 @@ def make_cloth(files: Sequence[Path], recipe: Recipe, output: Output, console: C
     if output.molecule is not None and recipe.pins and recipe.pin_type is None and not output.data:
         raise UserError("a molecule template has no groups: give pins a type with --pin-type N")
     output.check_paths(files)
-    cloth, said = recipe.cook(files)
+    cloth, repairs = recipe.build(files)
     summary = report.MeshSummary.of(cloth)
-    output.write(cloth, summary, said)
+    output.write(cloth, summary, repairs)
     notes = [] if output.mass_per_atom else report.mass_notes(cloth, output.data is not None)
-    for note in said + notes:
+    for note in repairs + notes:
         console.print(f"  {note}", style="yellow", markup=False, highlight=False, soft_wrap=True)
     summary.show(console)
     console.print(f"written: {', '.join(map(str, output.paths))}", markup=False, soft_wrap=True)

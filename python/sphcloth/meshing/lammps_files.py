@@ -16,7 +16,7 @@ from sphcloth.meshing.cloth import Cloth
 ATOM_STYLES = ("hybrid sph molecular", "molecular")
 
 # LAMMPS has 32 groups; some are for the scene
-MOST_GROUPS = 20
+MAX_GROUPS = 20
 
 
 def write_data(
@@ -88,7 +88,7 @@ def write_groups(cloth: Cloth, path: str | Path, mass_per_atom: bool = False) ->
     lines = ["# by sphcloth mesh, for 'include' behind read_data"]
     several = len(cloth.names) > 1
     lines.append(f"group cloth molecule {f'1:{len(cloth.names)}' if several else 1}")
-    if several and len(cloth.names) <= MOST_GROUPS:
+    if several and len(cloth.names) <= MAX_GROUPS:
         lines += [f"group {name} molecule {n}" for n, name in enumerate(cloth.names, 1)]
     lines += [f"group pins id {part}" for part in _id_ranges(np.flatnonzero(cloth.pinned) + 1)]
     if not has_masses(cloth) and not mass_per_atom:

@@ -80,10 +80,10 @@ def weld(surface: Surface, seams: Seams) -> tuple[Surface, list[str]]:
     welded = replace_vertices(moved, clusters(seams.pairs, len(surface.vertices)))
     welded, repeated = drop_repeated(welded)
     gone = len(surface.vertices) - len(welded.vertices)
-    said = [f"{gone:,} vertices welded into others, up to {seams.widest:g} apart"]
+    notes = [f"{gone:,} vertices welded into others, up to {seams.widest:g} apart"]
     if repeated:
-        said.append(f"{repeated:,} triangles that came to lie on others removed")
-    return welded, said
+        notes.append(f"{repeated:,} triangles that came to lie on others removed")
+    return welded, notes
 
 
 def _mutually_nearest(surface: Surface, close: NDArray[np.int64]) -> NDArray[np.int64]:

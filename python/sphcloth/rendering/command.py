@@ -24,7 +24,7 @@ from sphcloth.trajectory import Frame, Trajectory
 SAMPLE = 8
 # views of a turntable around a single frame
 TURNTABLE_VIEWS = 72
-LEAST_SIZE, LARGEST_SIZE = 16, 4096
+MIN_SIZE, MAX_SIZE = 16, 4096
 LOG = "log.lammps"
 
 
@@ -238,8 +238,8 @@ def parse_size(text: str) -> tuple[int, int]:
     if not (width.isdigit() and height.isdigit()):
         raise UserError(f"--size {text}: expected WIDTHxHEIGHT such as 1280x960")
     size = int(width), int(height)
-    if not all(LEAST_SIZE <= side <= LARGEST_SIZE for side in size):
-        raise UserError(f"--size {text}: each side from {LEAST_SIZE} to {LARGEST_SIZE} pixels")
+    if not all(MIN_SIZE <= side <= MAX_SIZE for side in size):
+        raise UserError(f"--size {text}: each side from {MIN_SIZE} to {MAX_SIZE} pixels")
     return size
 
 

@@ -22,7 +22,7 @@ SKY_PIXELS, SKY_DIRECTIONS = 150, 28
 # half of the angle under which the sun appears, as a slope: the softness of shadows
 SUN_SLOPE = 0.05
 # what a sun's ray that meets nothing is taken to have risen, of the radius of the scene
-LEAST_RISE = 0.12
+MIN_RISE = 0.12
 # what water takes from light that is on its way through
 WATER_SHADE, WATER_SKY_SHADE = 0.45, 0.35
 # cosines of the angles from the sun in which the lamp that water mirrors fades
@@ -149,7 +149,7 @@ class _ShadowMap:
         """
         straight = self._look(places)
         rise = np.where(np.isfinite(straight), straight - near, 0)
-        reach = np.maximum(rise, LEAST_RISE * self.view.radius) * (SUN_SLOPE / self.view.pixel)
+        reach = np.maximum(rise, MIN_RISE * self.view.radius) * (SUN_SLOPE / self.view.pixel)
         blocked = sum(
             (self._look(places + reach[:, None] * slope) > near).astype(np.float32)
             for slope in _spiral(rays)

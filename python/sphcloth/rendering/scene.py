@@ -30,17 +30,17 @@ PIN_RADIUS = 0.006  # of the scene
 # from the scene to the camera; of a two-dimensional scene almost straight in front of it
 VIEW, FLAT_VIEW = np.array([1.0, -1.8, 0.95]), np.array([0.25, -1.0, 0.22])
 # towards the sun from the camera: aside, upwards, back; and how high it stands at least
-SUN, LEAST_SUN_HEIGHT = np.array([-0.5, 0.8, 0.3]), 1.05
+SUN, MIN_SUN_HEIGHT = np.array([-0.5, 0.8, 0.3]), 1.05
 # quantiles of the coordinates of water between which it is to be seen
-MOST_WATER = (0.1, 0.9)
+WATER_QUANTILES = (0.1, 0.9)
 # triangles of cloth, after they have been made smooth by subdivision
 FINE_TRIANGLES = 100_000
 # how far around the scene water is drawn, and light is followed, in radii of the scene
 DRAWN_ROOM, LIT_ROOM = 3.0, 1.25
 # of a sheet, in spacings of the water: water keeps this distance, and is looked for so far
-SKIN, GRIP = 0.03, 1.0
+SHEET_GAP, SHEET_REACH = 0.03, 1.0
 # what is farther aside from the nearest vertex, in edges, is beyond the border of the sheet
-SIDEWAYS = 0.8
+MAX_OFFSET = 0.8
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Scene:
         radius = float(np.linalg.norm(high - low)) / 2 or 1.0
         camera = Camera.framing(points, FLAT_VIEW if roles.is_flat else VIEW, size)
         sun = SUN @ camera.axes
-        sun[2] = max(sun[2], LEAST_SUN_HEIGHT)
+        sun[2] = max(sun[2], MIN_SUN_HEIGHT)
         environment = Environment(floor, center, radius, sun / np.linalg.norm(sun))
         return cls(
             roles, camera, environment, _pins(frames, roles), _scale(frames, roles), as_spheres
@@ -138,7 +138,7 @@ class Renderer:
         if scene.as_spheres:
             spheres.append(self._water_spheres(particles))
         else:
-            water = _held_back(
+            water = _cut_at_sheets(
                 water_surface(particles), particles, solids, scene.roles.largest_spacing
             )
             tint = None if scene.scale is None else _linear(scene.scale.shades(water.values))
@@ -242,7 +242,7 @@ def _most_of(water: NDArray, low: NDArray, high: NDArray) -> NDArray[np.float64]
 
     Drops that are far from a sheet may leave the picture: they would shrink all the rest.
     """
-    return _corners(*np.clip(np.quantile(water, MOST_WATER, axis=0), low, high), 0.0)
+    return _corners(*np.clip(np.quantile(water, WATER_QUANTILES, axis=0), low, high), 0.0)
 
 
 def _corners(low: NDArray, high: NDArray, margin: float) -> NDArray[np.float64]:
@@ -281,7 +281,7 @@ def _within(particles: Particles, environment: Environment) -> Particles:
     return particles.select(near)
 
 
-def _held_back(
+def _cut_at_sheets(
     water: Surface, particles: Particles, solids: Sequence[Solid], spacing: float
 ) -> Surface:
     """Return water that ends at sheets: its surface, a radius from the particles, reaches through.
@@ -292,20 +292,20 @@ def _held_back(
         return water
     sheet = np.concatenate([solid.surface.points for solid in solids])
     upwards = np.concatenate([solid.surface.normals for solid in solids])
-    _, nearest = cKDTree(sheet).query(water.points, distance_upper_bound=GRIP * spacing)
+    _, nearest = cKDTree(sheet).query(water.points, distance_upper_bound=SHEET_REACH * spacing)
     near = np.flatnonzero(nearest < len(sheet))
     place, normal = sheet[nearest[near]], upwards[nearest[near]]
     aside = np.linalg.norm(np.cross(water.points[near] - place, normal), axis=1)
     over = (
         aside
-        < SIDEWAYS * np.concatenate([_cells(solid.surface) for solid in solids])[nearest[near]]
+        < MAX_OFFSET * np.concatenate([_cells(solid.surface) for solid in solids])[nearest[near]]
     )
     near, place, normal = near[over], place[over], normal[over]
     points = water.points.copy()
     _, particle = cKDTree(particles.positions).query(points[near])
     side = np.sign(np.einsum("ij,ij->i", particles.positions[particle] - place, normal))
     height = side * np.einsum("ij,ij->i", points[near] - place, normal)
-    points[near] += (side * np.maximum(SKIN * spacing - height, 0))[:, None] * normal
+    points[near] += (side * np.maximum(SHEET_GAP * spacing - height, 0))[:, None] * normal
     return smoothed(replace(water, points=points), 2)
 
 

@@ -53,7 +53,7 @@ EXPOSURE = 0.72
 # colors of a quantity cover what is behind more than water does
 TINT_POWER = 3
 # what is behind all, in distances of the camera
-FAR = 10.0
+BACKGROUND_DEPTH = 10.0
 
 
 @dataclass(frozen=True)
@@ -364,7 +364,9 @@ def _measured(
     # rows count downwards: what is counter-clockwise outside turns the other way in pixels
     sign = np.sign((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     for part in _triangles(water, camera):
-        depth = np.minimum(1 / part.nearness, np.minimum(behind[part.pixel], FAR * camera.distance))
+        depth = np.minimum(
+            1 / part.nearness, np.minimum(behind[part.pixel], BACKGROUND_DEPTH * camera.distance)
+        )
         np.add.at(thickness, part.pixel, sign[part.face] * depth)
         yield part
 

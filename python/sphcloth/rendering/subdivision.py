@@ -27,13 +27,13 @@ class Refinement:
     triangles: NDArray[np.int64]
 
     @classmethod
-    def of(cls, triangles: NDArray, vertices: int, most_triangles: int) -> Refinement:
+    def of(cls, triangles: NDArray, vertices: int, max_triangles: int) -> Refinement:
         """Divide each triangle into four, again and again while there are not too many.
 
         Vertices of no triangle are left out.
         """
         weights, fine = sparse.eye_array(vertices, format="csr"), triangles
-        while 4 * len(fine) <= most_triangles:
+        while 4 * len(fine) <= max_triangles:
             step, fine = _divide(fine, weights.shape[0])
             weights = step @ weights
         used, fine = np.unique(fine, return_inverse=True)

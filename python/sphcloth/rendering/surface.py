@@ -33,13 +33,13 @@ RADIUS = np.sqrt(2 / np.pi) * WIDTH
 REACH = 3.2
 # nodes of the grid in a spacing: as many as makes no more than the first number of nodes in all,
 # or the fewest; beyond the second number of nodes the grid is coarser than that
-MOST_NODES_PER_SPACING, FEWEST_NODES_PER_SPACING = 4.0, 2.0
-FINE_NODES, MOST_NODES = 6_000_000, 30_000_000
+MAX_NODES_PER_SPACING, MIN_NODES_PER_SPACING = 4.0, 2.0
+FINE_NODES, MAX_NODES = 6_000_000, 30_000_000
 # spread of the particles about their mean, in squared standard deviations: 3 inside of water,
 # more where a point is between two bodies of water and the mean is in neither
 SPREAD_OF_WATER, SPREAD_OF_GAP = 3.3, 4.4
 # where weights are less there is no water; a particle alone has 1 at its place
-LEAST_WEIGHT = 1e-4
+MIN_WEIGHT = 1e-4
 # in cells, and how many nodes that looks aside; then rounds of smoothing of the mesh
 DISTANCE_BLUR, BLUR_NODES, SMOOTHING_ROUNDS = 0.6, 2, 8
 # the grid is worked on in cubes of so many nodes a side, by so many threads
@@ -116,9 +116,9 @@ class _Grid:
         room = REACH * WIDTH * float(particles.spacing.max())
         extent = high - low + 2 * room
         cell = max(
-            finest / MOST_NODES_PER_SPACING,
-            min(_cell(extent, FINE_NODES), finest / FEWEST_NODES_PER_SPACING),
-            _cell(extent, MOST_NODES),
+            finest / MAX_NODES_PER_SPACING,
+            min(_cell(extent, FINE_NODES), finest / MIN_NODES_PER_SPACING),
+            _cell(extent, MAX_NODES),
         )
         margin = np.ceil(room / cell) + 2
         counts = np.ceil((high - low) / cell) + 2 * margin
@@ -140,16 +140,16 @@ def water_surface(particles: Particles) -> Surface:
     if not len(particles.positions):
         return Surface.empty()
     grid = _Grid.around(particles)
-    far = RADIUS * float(particles.spacing.max()) / grid.cell
-    distance = np.full(grid.shape, far, np.float32)
+    bound = RADIUS * float(particles.spacing.max()) / grid.cell
+    distance = np.full(grid.shape, bound, np.float32)
     values = None if particles.values is None else np.zeros(grid.shape, np.float32)
 
     def fill(block: _Block) -> None:
         inner, near = block.inner, particles.select(block.particles)
         moments = _Moments.of(near, block.grid)
         # empty nodes are not to divide by zero; what they get is never looked at
-        share = 1 / np.maximum(moments.weight, LEAST_WEIGHT)
-        distance[block.place] = _distance(moments, share, block.grid, far)[inner]
+        share = 1 / np.maximum(moments.weight, MIN_WEIGHT)
+        distance[block.place] = _distance(moments, share, block.grid, bound)[inner]
         if values is not None:
             values[block.place] = (moments.values * share)[inner]
 
@@ -251,8 +251,8 @@ class _Moments:
         return cls(total[0], total[1:4], total[4], total[-1], values)
 
 
-def _distance(moments: _Moments, share: NDArray, grid: _Grid, far: float) -> NDArray[np.float32]:
-    """Return on all nodes how far outside of the water they are, in cells, ``far`` at most."""
+def _distance(moments: _Moments, share: NDArray, grid: _Grid, bound: float) -> NDArray[np.float32]:
+    """Return on all nodes their distance from the water in cells, at most ``bound``."""
     spread = moments.second * share
     away = np.zeros_like(spread)
     for axis, first in enumerate(moments.first):
@@ -260,12 +260,12 @@ def _distance(moments: _Moments, share: NDArray, grid: _Grid, far: float) -> NDA
         spread -= mean**2
         away += (mean - grid.nodes(axis)) ** 2
     radius = moments.radius * share
-    spread /= np.maximum((WIDTH / RADIUS) * radius, LEAST_WEIGHT) ** 2
+    spread /= np.maximum((WIDTH / RADIUS) * radius, MIN_WEIGHT) ** 2
     inside = (SPREAD_OF_GAP - spread) / (SPREAD_OF_GAP - SPREAD_OF_WATER)
     distance = np.sqrt(away) - radius * np.clip(inside, 0, 1)
-    distance[moments.weight < LEAST_WEIGHT] = far
+    distance[moments.weight < MIN_WEIGHT] = bound
     # beyond a radius the distance says nothing; bounded, it does not blur over the surface
-    np.clip(distance, -far, far, out=distance)
+    np.clip(distance, -bound, bound, out=distance)
     return ndimage.gaussian_filter(distance, DISTANCE_BLUR, radius=BLUR_NODES)
 
 

@@ -17,7 +17,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "stepping/block_steps.h"
+#include "stepping/step_hooks.h"
 #include "timer.h"
 #include "update.h"
 
@@ -35,7 +35,7 @@ static const std::string STYLE = "pair_style sph/tait";
 /* ---------------------------------------------------------------------- */
 
 PairSPHTait::PairSPHTait(LAMMPS *lmp_) :
-    Pair(lmp_), materials(lmp), sheets(nullptr), blocks(nullptr), is_evaluated(false),
+    Pair(lmp_), materials(lmp), sheets(nullptr), hooks(nullptr), is_evaluated(false),
     measure_volume(false), extrapolate(false), any_fluid(true), active(nullptr), active_column(0),
     elapsed(0.0), stage(Stage::DENSITY)
 {
@@ -122,7 +122,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   active = nullptr;    // until a fix says who is
-  blocks = nullptr;
+  hooks = nullptr;
   pressures_follow = false;
   comm_forward = diffuses() ? 3 : 2;
 
@@ -274,16 +274,16 @@ void PairSPHTait::compute(int eflag, int vflag)
   comm->forward_comm(this, 2);
   if (extrapolate) boundary_pressures(p);
   fluid->record(p);
-  if (blocks && blocks->catch_up()) fluid->record(p);
+  if (hooks && hooks->correct_velocities()) fluid->record(p);
 
-  fluid->forces(p, blocks ? Target::FLUID : Target::ALL);
-  if (blocks) blocks->note_forces();
+  fluid->forces(p, hooks ? Target::FLUID : Target::ALL);
+  if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *wall : walls)
     for_each_fluid([&](int i, const Tait &) { wall->push(i, pressure[i]); });
   for (MeshBoundary *mesh : meshes)
     for_each_fluid([&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
   if (vflag_either) tally_virial(p);
-  if (blocks) blocks->hand_out();
+  if (hooks) hooks->apply_impulses();
   for (MeshBoundary *mesh : meshes) mesh->end();
   if (eflag_either) tally_energy();
   is_evaluated = true;
@@ -294,7 +294,7 @@ void PairSPHTait::compute(int eflag, int vflag)
 void PairSPHTait::select(const Particles &p)
 {
   if (!fluid->select(p)) return;
-  if (!blocks) return;
+  if (!hooks) return;
   active_fluid.clear();
   for (int t = 1; t <= atom->ntypes; t++)
     if (materials.is_fluid(t))
@@ -352,7 +352,7 @@ void PairSPHTait::tally_virial(Particles p)
       if (pair->vflag_atom) pair->vatom[i][m] += scale * a.virial[m];
     }
   };
-  if (!blocks) return fluid->virials(p, receive, this);
+  if (!hooks) return fluid->virials(p, receive, this);
   const Particles updated = p;
   p.active = nullptr;
   fluid->select(p);
@@ -447,7 +447,7 @@ Motion PairSPHTait::motion(const Particles &p) const
       step = std::min(step, USUAL * 0.5 * support(t) / equation_of_state(t).sound_speed());
   motion.step = step;
   motion.interval.assign(atom->ntypes + 1, 1.0);
-  if (blocks) blocks->find_intervals(motion.interval);
+  if (hooks) hooks->find_intervals(motion.interval);
   return motion;
 }
 

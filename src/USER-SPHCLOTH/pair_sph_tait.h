@@ -23,7 +23,7 @@ PairStyle(sph/tait,PairSPHTait);
 
 namespace LAMMPS_NS {
 
-class BlockSteps;
+class StepHooks;
 class FixClothContact;
 class FluidBoundary;
 class MeshBoundary;
@@ -109,7 +109,7 @@ class PairSPHTait : public Pair {
   }
 
   // Particles with steps of their own, anew for each run.  Null: forces act for the step of all.
-  void set_blocks(BlockSteps *steps) { blocks = steps; }
+  void set_step_hooks(StepHooks *of_scheme) { hooks = of_scheme; }
   // What they ask for once the forces on the active fluid are known: to push walls once more, as
   // FluidWall::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
   // Fluid::record_impulses() on these owned particles.
@@ -171,7 +171,7 @@ class PairSPHTait : public Pair {
   std::vector<FluidBoundary *> walls;
   std::vector<MeshBoundary *> meshes;    // those of them that are meshes
   FixClothContact *sheets;    // that part the fluid; null without
-  BlockSteps *blocks;
+  StepHooks *hooks;    // of particles with steps of their own, null otherwise
   bool is_evaluated;
   // on any rank, at the last list build: boundary particles whose volume is measured, those whose
   // pressure is the fluid's, fluid

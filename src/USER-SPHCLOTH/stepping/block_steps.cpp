@@ -35,7 +35,7 @@ BlockSteps::BlockSteps(LAMMPS *lmp_, FixSPHIntegrate *fix_, ParticleColumns &row
 void BlockSteps::init(PairSPHTait *style)
 {
   pair = style;
-  pair->set_blocks(this);
+  pair->set_step_hooks(this);
   known = false;
   apart = options.ratio == 4 ? 2 : 1;
   const int n = atom->ntypes + 1;
@@ -453,7 +453,7 @@ void BlockSteps::wake_beside_moving_boundaries()
    output times
 ------------------------------------------------------------------------- */
 
-bool BlockSteps::catch_up()
+bool BlockSteps::correct_velocities()
 {
   if (at.chosen || !at.reaches_output || !at.line.ended() || at.alike) return false;
   make_room();
@@ -531,7 +531,7 @@ void BlockSteps::pay()
    forces become impulses
 ------------------------------------------------------------------------- */
 
-void BlockSteps::note_forces()
+void BlockSteps::note_pair_forces()
 {
   make_room();
   keep_forces(from_particles);
@@ -550,7 +550,7 @@ void BlockSteps::keep_forces(std::vector<double> &in) const
   for (const int i : active) std::copy_n(atom->f[i], 3, in.begin() + 3 * i);
 }
 
-void BlockSteps::hand_out()
+void BlockSteps::apply_impulses()
 {
   if (!at.chosen) choose();
   if (at.alike)

@@ -22,6 +22,7 @@
 #include "core/timestep/step_limits.h"
 #include "core/timestep/time_bins.h"
 #include "lammps_util/particle_columns.h"
+#include "stepping/step_hooks.h"
 
 #include <utility>
 #include <vector>
@@ -31,7 +32,7 @@ namespace LAMMPS_NS {
 class FixSPHIntegrate;
 class PairSPHTait;
 
-class BlockSteps : protected Pointers {
+class BlockSteps : public StepHooks, protected Pointers {
  public:
   // What a particle carries along.  LEVEL: of its step; BEFORE: of the one before; UNTIL: how far
   // its impulses reach, in ticks; TERM: its pressure in the last of them; AHEAD: how far the one
@@ -78,15 +79,12 @@ class BlockSteps : protected Pointers {
   bool sleeps(int i) const { return rows[LEVEL][i] == ASLEEP; }
   void wake_moved();    // by others than the fluid
 
-  // At an output time, when pressures are known: velocities are those of half a step of the scene ago.
-  // Has any changed?  What sheets are pushed by that comes in the next step.
-  bool catch_up();
-
-  // The pair style tells when it knows the forces of other particles on the active fluid, and when it
-  // knows all that it has.  Steps are chosen then, and impulses take the place of forces: f is what
-  // acts until the next step of the scene begins.
-  void note_forces();
-  void hand_out();
+  // At an output time velocities are brought to those of half a step of the scene ago; what sheets
+  // are pushed by that comes in the next step.  Steps are chosen when all forces are known; then f
+  // is what acts until the next step of the scene begins.
+  bool correct_velocities() override;
+  void note_pair_forces() override;
+  void apply_impulses() override;
   // what others have added to that in the meantime
   void note_external_forces();
 
@@ -96,7 +94,7 @@ class BlockSteps : protected Pointers {
   bool arrives() const { return at.reaches_output && ends_root(); }
 
   // in steps of the scene, of those of a type who do not sleep
-  void find_intervals(std::vector<double> &of_type) const;
+  void find_intervals(std::vector<double> &of_type) const override;
 
   // of this rank: who sleeps, and how many updates it would have been so far, had everybody taken
   // exactly the step that the limits allow

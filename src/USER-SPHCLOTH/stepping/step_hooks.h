@@ -1,0 +1,35 @@
+// What the pair style calls during an evaluation for a scheme in which particles have time steps of
+// their own: the scheme turns the forces of the pair style into impulses.  Each is called once in an
+// evaluation and loops over particles itself.
+
+#ifndef SPHCLOTH_STEPPING_STEP_HOOKS_H
+#define SPHCLOTH_STEPPING_STEP_HOOKS_H
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class StepHooks {
+ public:
+  // The mean time between updates of a particle of each type, in smallest steps; at least 1, and
+  // left as it is where no particle of the type is updated.
+  virtual void find_intervals(std::vector<double> &of_type) const = 0;
+
+  // Densities and pressures are known.  At an output time this is where velocities are brought to
+  // that time (half-kick correction); true if any velocity has changed.
+  virtual bool correct_velocities() = 0;
+
+  // atom->f holds the forces between particles on the active fluid.
+  virtual void note_pair_forces() = 0;
+
+  // atom->f holds the forces of walls as well.  The next step of each active particle is chosen,
+  // and its impulses take the place of the forces.
+  virtual void apply_impulses() = 0;
+
+ protected:
+  ~StepHooks() = default;    // the styles of LAMMPS own the schemes
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

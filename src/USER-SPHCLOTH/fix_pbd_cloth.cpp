@@ -11,16 +11,16 @@
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_sph_integrate.h"
 #include "force.h"
 #include "group.h"
+#include "integrate.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
 #include "memory.h"
 #include "modify.h"
-#include "sph_adaptive.h"
+#include "stepping/stepping_scheme.h"
 #include "update.h"
 
 #include <algorithm>
@@ -222,7 +222,7 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
-  const auto *adaptive = dynamic_cast<SPHAdaptive *>(update->integrate);
+  const auto *adaptive = dynamic_cast<HasSteppingScheme *>(update->integrate);
   steps_jump = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
   step_of_k = step_of_stiffness();
   constraints.measure_rest(groupbit, rest_x);
@@ -270,7 +270,7 @@ double FixPBDCloth::step_of_stiffness() const
   if (!steps_jump) return 0.0;
   // other commands than run set up fixes without a run style that looks for what it needs
   const auto steppers = modify->get_fix_by_style("^sph/integrate$");
-  return steppers.empty() ? 0.0 : dynamic_cast<FixSPHIntegrate *>(steppers[0])->longest_step();
+  return steppers.empty() ? 0.0 : dynamic_cast<HasLongestStep *>(steppers[0])->longest_step();
 }
 
 /* ----------------------------------------------------------------------

@@ -18,6 +18,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
 #include "core/pbd/cloth_solver.h"
+#include "stepping/limited_vertices.h"
 
 #include <array>
 #include <string>
@@ -27,7 +28,7 @@ namespace LAMMPS_NS {
 
 class ArgReader;
 
-class FixPBDCloth : public Fix, public ContactMesh {
+class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
  public:
   FixPBDCloth(class LAMMPS *, int, char **);
   ~FixPBDCloth() override;
@@ -73,7 +74,7 @@ class FixPBDCloth : public Fix, public ContactMesh {
   double rest_angle(int m) const { return constraints.rest_angle(m); }
   bool has_strain(int m) const { return constraints.has_strain(m); }
   // rest length of the shortest edge at an owned vertex, infinite without any
-  double shortest_edge(int owned_atom) const;
+  double shortest_edge(int owned_atom) const override;
 
   // force of an atom's holder on the cloth in the last step: 0 for a free vertex.  Known from the
   // next step on if it is asked for before a run.

@@ -9,6 +9,7 @@
 #include "dihedral.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_sph_integrate.h"
 #include "force.h"
 #include "improper.h"
 #include "kspace.h"

@@ -9,22 +9,22 @@ IntegrateStyle(sph/adaptive,SPHAdaptive);
 #ifndef LMP_SPH_ADAPTIVE_H
 #define LMP_SPH_ADAPTIVE_H
 
-#include "fix_sph_integrate.h"
+#include "stepping/stepping_scheme.h"
 #include "verlet.h"
 
 namespace LAMMPS_NS {
 
-class SPHAdaptive : public Verlet {
+class SPHAdaptive : public Verlet, public HasSteppingScheme {
  public:
   SPHAdaptive(class LAMMPS *, int, char **);
   void init() override;
   void run(int) override;
 
-  SteppingScheme scheme() const { return stepping; }
+  SteppingScheme scheme() const override { return stepping; }
 
  private:
   SteppingScheme stepping;
-  FixSPHIntegrate *particles;
+  class FixSPHIntegrate *particles;
 
   void move();
   void communicate();

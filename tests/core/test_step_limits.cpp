@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(limits_of_many_particles_at_once_are_those_of_each)
 {
   StepCoefficients lambda, off{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {}};
   lambda.relative = 0.3;
-  constexpr int N = StepStates::MOST - 3;    // does not fill the last vector
+  constexpr int N = StepStates::MAX - 3;    // does not fill the last vector
   StepStates states;
   for (int k = 0; k < N; k++) {
     const double on = k % 5 ? 1.0 : 0.0;

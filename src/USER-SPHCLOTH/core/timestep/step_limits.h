@@ -40,6 +40,10 @@ inline constexpr int N_LIMITS = 1 + static_cast<int>(Limit::OUTPUT);
 // the limits that a particle can have for itself, the ceiling as the last
 inline constexpr int N_OF_PARTICLES = static_cast<int>(Limit::CEILING);
 
+// as it is kept in a column of numbers
+
+inline Limit limit_of(double kept) { return static_cast<Limit>(static_cast<int>(kept)); }
+
 inline const char *limit_name(Limit limit)
 {
   switch (limit) {
@@ -101,8 +105,8 @@ struct StepLimit {
   }
 };
 
-// (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches, as
-// vectors want it.
+// (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches,
+// as vectors want it.
 
 SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
 {
@@ -133,9 +137,9 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
 // The same of many particles at once
 
 struct StepStates {
-  static constexpr int MOST = 64;
-  alignas(64) double support[MOST], speed_sq[MOST], accel_sq[MOST], sound[MOST], nu[MOST],
-      rho[MOST], drho[MOST], approach[MOST], until_pressed[MOST];
+  static constexpr int MAX = 64;
+  alignas(64) double support[MAX], speed_sq[MAX], accel_sq[MAX], sound[MAX], nu[MAX], rho[MAX],
+      drho[MAX], approach[MAX], until_pressed[MAX];
 
   SPHCLOTH_INLINE void set(int k, const StepState &s)
   {
@@ -157,8 +161,8 @@ struct StepStates {
 };
 
 struct StepLimits {
-  alignas(64) double dt[StepStates::MOST], by[StepStates::MOST];
-  StepLimit operator[](int k) const { return {dt[k], static_cast<Limit>(static_cast<int>(by[k]))}; }
+  alignas(64) double dt[StepStates::MAX], by[StepStates::MAX];
+  StepLimit operator[](int k) const { return {dt[k], limit_of(by[k])}; }
 };
 
 SPHCLOTH_MULTIVERSION inline void

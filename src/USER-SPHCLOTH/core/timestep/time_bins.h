@@ -1,8 +1,8 @@
 // Power-of-two steps on an integer time line.
 //
-// A root step is halved again and again: level k takes steps of root/2^k, and they begin at multiples
-// of their own length.  Whoever begins a step is met by all who take shorter ones, and at the end of
-// a root step by everybody: the next root may then be of any length.
+// A root step is halved again and again: level k takes steps of root/2^k, and they begin at
+// multiples of their own length.  Whoever begins a step is met by all who take shorter ones, and at
+// the end of a root step by everybody: the next root may then be of any length.
 
 #ifndef SPHCLOTH_CORE_TIMESTEP_TIME_BINS_H
 #define SPHCLOTH_CORE_TIMESTEP_TIME_BINS_H
@@ -55,8 +55,8 @@ class TimeBins {
 };
 
 // The root step with which a population of wanted steps costs least, when every one of them is
-// rounded down to root/2^k.  Wanted steps are counted by their ratio to the least of them in parts of
-// an octave.
+// rounded down to root/2^k.  Wanted steps are counted by their ratio to the least of them in parts
+// of an octave.
 
 class WantedSteps {
  public:
@@ -73,8 +73,8 @@ class WantedSteps {
   }
 
   // What one evaluation of everybody's neighbours costs is 1, so a step costs what it updates and
-  // `overhead` for the rest of the scene.  The shortest step is below `least` by less than a half.  Unless
-  // unequal steps cost less by a factor of `gain` it is one for all.
+  // `overhead` for the rest of the scene.  The shortest step is below `least` by less than a
+  // half.  Unless unequal steps cost less by a factor of `gain` it is one for all.
   double best_root(double least, double overhead, double gain) const
   {
     const int end = end_of_counts();
@@ -90,9 +90,9 @@ class WantedSteps {
     return best;
   }
 
-  // The same where a root has to end `remaining` from now: that and up to twice as many equal roots,
-  // whichever cost least.  Far away any root will do, and one step for all arrives as it does
-  // elsewhere.
+  // The same where a root has to end `remaining` from now: that and up to twice as many equal
+  // roots, whichever cost least.  Far away any root will do, and one step for all arrives as it
+  // does elsewhere.
   double root_towards(double remaining, double least, double overhead, double gain) const
   {
     constexpr int FAR = 16;    // roots

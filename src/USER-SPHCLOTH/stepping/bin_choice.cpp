@@ -1,0 +1,338 @@
+// The time bin of each particle.
+
+#include "stepping/bin_choice.h"
+
+#include "core/neighbor/dual_lists.h"
+#include "core/util/bytes.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
+#include "pair_sph_tait.h"
+#include "stepping/step_report.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+using Columns = BlockColumns;
+
+// what a smallest step costs beside its updates, in updates per particle: drift, ghosts
+static constexpr double STEP_OVERHEAD = 0.1;
+// and what projection and contact of a vertex cost in it
+static constexpr int UPDATES_PER_VERTEX = 2;
+// To go from uniform to unequal steps and back costs some steps: unequal steps go on until they
+// gain less than this share of what is asked for.
+static constexpr double GAIN_TO_GO_ON = 0.8;
+
+BinChoice::BinChoice(LAMMPS *lmp_, const SteppingParts &parts_, BlockState &state_) :
+    Pointers(lmp_), parts(parts_), state(state_), pair(nullptr), max_difference(1), finest_vertex(0)
+{
+}
+
+void BinChoice::init(PairSPHTait *style)
+{
+  pair = style;
+  vertices.n = -1;
+  max_difference = parts.options.block.max_bin_difference();
+  const int n = atom->ntypes + 1;
+  max_difference_of.assign(n * n, max_difference);
+  for (int t = 1; t < n; t++)
+    for (int u = 1; u < n; u++) max_difference_of[t * n + u] = find_max_difference(t, u);
+}
+
+// How many bins may a particle be above a neighbor of another type?  What a coarse one gives for
+// its whole step comes at once, and a fine one bears that no longer than about twice its own
+// acoustic step: while pressures balance, it moves to and fro by p/(2 rho H) times the square of
+// that time.
+
+int BinChoice::find_max_difference(int type, int neighbor_type) const
+{
+  if (!pair->is_fluid(type) || !pair->is_fluid(neighbor_type)) return max_difference;
+  const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbor_type)));
+  return octaves > 0.0 ? std::clamp(2 - static_cast<int>(octaves), 0, max_difference)
+                       : max_difference;
+}
+
+void BinChoice::choose()
+{
+  wanted.resize(atom->nmax, 0.0);
+  BlockClock &clock = state.clock;
+  if (!clock.begun()) limit_vertices();
+  if (!clock.begun() || clock.line.ended())
+    begin_base_step();
+  else {
+    want_steps(pair->active_particles(), true);
+    find_bins();
+  }
+  if (!clock.uniform) limit_differences();
+  begin_steps();
+}
+
+/* ----------------------------------------------------------------------
+   limits
+------------------------------------------------------------------------- */
+
+// The tightest of them.  Particles in free flight ask neighbors under pressure, unless the steps of
+// these will be their own.
+
+StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
+{
+  const double *its_bin = state.columns[Columns::BIN];
+  double *by = state.columns[Columns::BY];
+  const double *external[3];
+  for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
+  for (const int i : of) wanted[i] = state.clock.line.step(static_cast<int>(its_bin[i]));
+
+  const StepControl &control = parts.control;
+  StepLimit tightest;
+  parts.limits.ask_neighbors(ask_neighbors);
+  parts.limits.for_particles(of, external, [&](int i, const StepLimit &limit) {
+    const StepLimit step = control.bounded(limit, wanted[i]);
+    if (control.is_too_short(step))
+      rank_error(lmp, FLERR,
+                 control.too_short(limit, fmt::format(" for particle {}", atom->tag[i])));
+    wanted[i] = step.dt;
+    by[i] = static_cast<double>(step.by);
+    tightest.tighten(step.dt, step.by);
+  });
+  return tightest;
+}
+
+void BinChoice::limit_vertices()
+{
+  parts.limits.for_vertices([&](int i, const StepLimit &own) {
+    parts.rows[i][UpdateRows::OWN_STEP] = own.dt;
+    state.columns[Columns::BY][i] = static_cast<double>(own.by);
+  });
+  vertices.n = -1;
+}
+
+// A mesh that fills the kernel knows how wet it is when the first step has been taken.
+
+const BinChoice::Vertices &BinChoice::find_vertices()
+{
+  if (vertices.n >= 0) return vertices;
+  vertices = {0, {parts.options.ceiling, Limit::CEILING}};
+  parts.limits.for_moving_vertices([&](int i, const LimitedVertices &) {
+    vertices.n++;
+    const double dt = parts.rows[i][UpdateRows::OWN_STEP];
+    if (dt > 0.0) vertices.tightest.tighten(dt, limit_of(state.columns[Columns::BY][i]));
+  });
+  return vertices;
+}
+
+/* ----------------------------------------------------------------------
+   the base step
+------------------------------------------------------------------------- */
+
+// All particles are synchronized: choose a new base step, ending on the next output time if one is
+// near.  While a uniform step continues, time bins do not change, and all impulses reach equally
+// far; new particles join it.
+
+void BinChoice::begin_base_step()
+{
+  BlockClock &clock = state.clock;
+  const std::vector<int> &active = pair->active_particles();
+  StepLimit tightest = want_steps(active, false);
+  BaseStep base = find_base_step(tightest);
+  if (!base.uniform) {
+    in_flight.clear();
+    for (const int i : active)
+      if (pair->p_over_rho2()[i] == 0.0) in_flight.push_back(i);
+    const StepLimit among_neighbors = want_steps(in_flight, true);
+    tightest.tighten(among_neighbors.dt, among_neighbors.by);
+    base = find_base_step(tightest);
+  }
+  const bool continues = clock.begun() && clock.uniform && clock.deepest == 0 && base.uniform;
+  const double end = static_cast<double>(TimeBins::ticks(0));
+  const double ratio = clock.line.root / base.length;
+  double *reach = state.columns[Columns::REACH];
+  if (continues)
+    clock.uniform_span = 0.5 - (0.5 * end - end) * ratio / end;
+  else
+    for (const int i : active) reach[i] = (reach[i] - end) * ratio;
+  clock.line = {base.length, 0};
+  state.coarsest = 0;
+  clock.reaches_output = base.length == base.remaining;
+  clock.output_time = base.output_time;
+  if (!continues) find_bins();
+  if (base.uniform) clock.limit = base.by;
+}
+
+BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
+{
+  const Vertices &cloth = find_vertices();
+  tightest.tighten(cloth.tightest.dt, cloth.tightest.by);
+  struct {
+    double dt;
+    int by;
+  } mine = {tightest.dt, static_cast<int>(tightest.by)}, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  const double shortest = std::min(all.dt, parts.options.ceiling);
+
+  BaseStep base;
+  base.by = static_cast<Limit>(all.by);
+  base.output_time = parts.control.times.next(shortest);
+  base.remaining = base.output_time - physical_time(update);
+  base.uniform = true;
+  const double asked = parts.options.block.gain;
+  const double gain = state.clock.uniform ? asked : std::max(1.0, GAIN_TO_GO_ON * asked);
+  if (!may_gain(shortest, gain)) {
+    base.length = step_towards(base.remaining, shortest);
+    return base;
+  }
+  WantedSteps here, anywhere;
+  for (const int i : pair->active_particles()) here.add(wanted[i], shortest);
+  here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // whatever they want
+  MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
+  base.length = anywhere.root_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
+  base.uniform = base.length <= shortest;
+  return base;
+}
+
+// Could unequal steps gain enough, if each particle took exactly the step that it wants?
+
+bool BinChoice::may_gain(double shortest, double gain)
+{
+  const std::vector<int> &active = pair->active_particles();
+  const double of_vertices = UPDATES_PER_VERTEX * find_vertices().n;
+  double exact = of_vertices;    // updates while a uniform step has `equal` of them
+  for (const int i : active) exact += shortest / wanted[i];
+  const double equal = of_vertices + static_cast<double>(active.size());
+  const double mine[2] = {exact, equal};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return (1.0 + STEP_OVERHEAD) * all[1] > gain * (all[0] + STEP_OVERHEAD * all[1]);
+}
+
+/* ----------------------------------------------------------------------
+   bins
+------------------------------------------------------------------------- */
+
+// The bin of each active particle, the smallest step, and whether it is uniform.  A new particle
+// that lengthens its step asks for no smallest step where others ask for the same: of limits at the
+// shortest step the first in the list counts.
+
+void BinChoice::find_bins()
+{
+  constexpr int LIMITS = 64;
+  const auto rank = [](int bin, int by) { return LIMITS * bin + LIMITS - 1 - by; };
+  constexpr double FAR = std::numeric_limits<double>::max();
+  static_assert(N_LIMITS < LIMITS);
+  BlockClock &clock = state.clock;
+  BlockColumns &columns = state.columns;
+  const StepLimit vertex = find_vertices().tightest;
+  const int of_vertices = std::max(state.coarsest, clock.line.level_of(vertex.dt));
+  int finest = rank(of_vertices, static_cast<int>(vertex.by));
+  int slowest = TimeBins::DEEPEST;
+  double reach[2] = {-FAR, -FAR};    // -least, greatest
+  const double *by = columns[Columns::BY], *event = columns[Columns::EVENT];
+  const double *its_reach = columns[Columns::REACH];
+  double *its_bin = columns[Columns::BIN], *before = columns[Columns::BIN_BEFORE];
+  for (const int i : pair->active_particles()) {
+    before[i] = event[i] == Columns::NEW ? StepKey::FIRST
+        : event[i] == Columns::WOKEN     ? StepKey::BROKEN
+                                         : its_bin[i];
+    const int own = std::max(state.coarsest, clock.line.level_of(wanted[i]));
+    its_bin[i] = own;
+    slowest = std::min(slowest, own);
+    finest = std::max(finest, rank(own, static_cast<int>(by[i])));
+    reach[0] = std::max(reach[0], -its_reach[i]);
+    reach[1] = std::max(reach[1], its_reach[i]);
+  }
+  const double mine[5] = {static_cast<double>(finest), -static_cast<double>(slowest), reach[0],
+                          reach[1], static_cast<double>(of_vertices)};
+  double all[5];
+  MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_MAX, world);
+  clock.deepest = static_cast<int>(all[0]) / LIMITS;
+  clock.limit = static_cast<Limit>(LIMITS - 1 - static_cast<int>(all[0]) % LIMITS);
+  finest_vertex = static_cast<int>(all[4]);
+  clock.uniform = clock.all_synchronized() && -all[1] >= clock.deepest && all[3] == -all[2] &&
+      parts.options.block.sleep == 0.0;
+  // none of a new particle reaches anywhere yet
+  clock.uniform_span = all[3] == 0.0 ? 1.0 : 0.5 - all[3] / clock.smallest_ticks();
+}
+
+// Time step limiter of Saitoh and Makino: no step is longer than `ratio` times a neighbor's, or
+// than that of a vertex that the particle wets; beside a mesh the vertex with the shortest step
+// counts for all.
+
+void BinChoice::limit_differences()
+{
+  state.refresh_inactive();
+  std::vector<int> &bin = state.bin;
+  double *its_bin = state.columns[Columns::BIN];
+  for (const int i : state.boundaries) bin[i] = vertex_bin(i);
+  for (const int i : pair->active_particles()) {
+    bin[i] = static_cast<int>(its_bin[i]);
+    if (pair->is_beside_mesh(i)) its_bin[i] = bin[i] = std::max(bin[i], finest_vertex);
+  }
+  state.forward_bins();
+  if (state.clock.all_synchronized()) pair->order().measure_block_ranges(bin.data());
+  for (const int i : pair->active_particles())
+    if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
+  for (const int i : pair->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
+}
+
+// for a neighbor, or for a particle a little outside the support?
+
+bool BinChoice::is_too_coarse(int i) const
+{
+  DualLists &lists = pair->order();
+  const int slot = lists.slot(i), own = atom->type[i];
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (lists.any_above(state.bin[i] + allowed_difference(own, t), slot, t, state.bin.data(),
+                        state.clock.all_synchronized()))
+      return true;
+  return false;
+}
+
+int BinChoice::bin_beside(int i) const
+{
+  const std::vector<int> &bin = state.bin;
+  int own = bin[i];
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const int allowed = allowed_difference(atom->type[i], t);
+    const NeighborSpan near = pair->neighbors(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (const int j = near.of[k]; bin[j] - allowed > own && pair->inside_support(i, j))
+        own = bin[j] - allowed;
+  }
+  return own;
+}
+
+// of a vertex of cloth, as for a neighbor whose step may be `ratio` times as long; a wall has none
+
+int BinChoice::vertex_bin(int i) const
+{
+  const double dt = parts.rows[i][UpdateRows::OWN_STEP];
+  if (pair->is_fluid(atom->type[i]) || !(dt > 0.0)) return 0;
+  return state.clock.line.level_of(dt) + max_difference;
+}
+
+void BinChoice::begin_steps()
+{
+  const double now = physical_time(update);
+  BlockColumns &columns = state.columns;
+  const double *p_over_rho2 = pair->p_over_rho2(), *its_bin = columns[Columns::BIN];
+  const double half_of_all = 0.5 * state.clock.smallest_ticks();
+  double *last = columns[Columns::P_OVER_RHO2], *reach = columns[Columns::REACH];
+  double *event = columns[Columns::EVENT];
+  for (const int i : pair->active_particles()) {
+    if (state.clock.uniform) {
+      reach[i] = half_of_all;
+      event[i] = Columns::NONE;
+    } else
+      state.begin_own_step(i);
+    last[i] = p_over_rho2[i];
+    const double own = state.clock.line.step(static_cast<int>(its_bin[i]));
+    parts.rows[i][UpdateRows::OWN_STEP] = own;
+    parts.rows[i][UpdateRows::LAST_UPDATE] = now;
+    parts.report.ideal_updates += own / wanted[i];
+  }
+}
+
+double BinChoice::bytes() const { return bytes_of(wanted, in_flight); }

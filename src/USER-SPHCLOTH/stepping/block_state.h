@@ -1,0 +1,144 @@
+// What the parts of block steps share: where time is in the base step, what each particle carries,
+// and the copies of that on ghosts.
+
+#ifndef SPHCLOTH_STEPPING_BLOCK_STATE_H
+#define SPHCLOTH_STEPPING_BLOCK_STATE_H
+
+#include "pointers.h"
+
+#include "core/timestep/step_limits.h"
+#include "core/timestep/time_bins.h"
+#include "fix.h"
+#include "lammps_util/particle_columns.h"
+#include "stepping/step_options.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairSPHTait;
+
+// Where time is; plain, as it stands in restart files
+
+struct BlockClock {
+  sphcloth::TimeBins line;
+  int deepest = 0;    // time bin of the smallest step
+  sphcloth::Limit limit = sphcloth::Limit::NONE;    // that asks for it
+  bool uniform = true;    // all particles take that step, and took the same before
+  double uniform_span = 1.0;    // for which impulses then act, over that step
+  bool chosen = false;    // steps, at this time, by this evaluation or the same one before
+  bool reaches_output = false;    // the base step ends at an output time
+  bool defers = false;    // vertices get deferred impulses in the coming step
+  double output_time = 0.0;
+
+  bool begun() const { return line.root > 0.0; }
+  bool all_synchronized() const { return line.now == 0; }    // but for sleeping particles
+  bool ends_base_step() const
+  {
+    return line.now + sphcloth::TimeBins::ticks(deepest) == sphcloth::TimeBins::ticks(0);
+  }
+  double smallest_step() const { return line.step(deepest); }
+  double smallest_ticks() const { return static_cast<double>(sphcloth::TimeBins::ticks(deepest)); }
+};
+
+// What an atom carries, in the order of restart files
+
+class BlockColumns : public ParticleColumns {
+ public:
+  enum Column {
+    BIN,             // time bin, or ASLEEP
+    BIN_BEFORE,      // of the step before, or one of the special values of StepKey
+    REACH,           // time up to which its impulses act, in ticks
+    P_OVER_RHO2,     // its pressure in the last of them
+    AHEAD,           // how far the impulse before reached beyond now, in ticks
+    TAKEN_BACK,      // pressure times ticks of that
+    FORCE,           // three: see below
+    BY = FORCE + 3,  // the limit of its step
+    EVENT,           // why its step ends now
+    SLOW_SINCE,      // when it was fast for the last time, or fell asleep
+    N_COLUMNS
+  };
+  static constexpr int ASLEEP = -1;
+  enum Event { NONE, WOKEN, NEW };
+
+  // Of fluid: the force of other styles.  Of vertices: the impulse that is deferred to the coming
+  // step.  They share three columns, since no atom has both.
+  double *external_force(int d) { return (*this)[FORCE + d]; }
+  double *deferred_impulse(int d) { return (*this)[FORCE + d]; }
+
+  int bin(int i) const { return static_cast<int>((*this)[BIN][i]); }
+  bool is_asleep(int i) const { return (*this)[BIN][i] == ASLEEP; }
+};
+
+// Time bin, and that of the step before: fluid particles with the same key begin the same step and
+// have impulses for the same time.  No other particle has the key of one of these.
+
+struct StepKey {
+  static constexpr int N = 64, SLEEPING = 60, FIRST = 61, BROKEN = 62, INACTIVE = 63;
+  static constexpr int BOUNDARY = -1;
+  static int of(int bin, int before) { return N * bin + before; }
+  static int bin(int key) { return key / N; }
+  static int before(int key) { return key % N; }
+};
+
+class BlockState : protected Pointers {
+ public:
+  Fix *const fix;    // whose group is integrated, and which communicates
+  const BlockOptions &options;
+  PairSPHTait *pair;
+  BlockColumns columns;
+  BlockClock clock;
+  int coarsest;    // time bin of the longest step that may begin now
+
+  // By atom, owned and ghost.  Of owned atoms that are not updated they stay as they are while the
+  // order of the atoms does.
+  std::vector<int> bin, key, mark;
+  std::vector<double> span, impulse;    // in smallest steps: time, and p/rho^2 times time
+  std::vector<double> kicks;    // changes of velocities [n][3]
+  std::vector<int> boundaries;    // owned
+  std::vector<int> marked;    // owned
+
+  // what active particles tell inactive ones, across ranks
+  enum Mark { NOT_MARKED = 0, FEELS_IMPULSE = 1, WAKE = 2 };
+
+  BlockState(LAMMPS *, Fix *, const BlockOptions &);
+
+  void init(PairSPHTait *);
+  bool is_asleep(int i) const { return columns.is_asleep(i); }
+  double half_step(int i) const;    // in ticks
+
+  // enters time bins with the smallest step, until it chooses its own
+  void add_particle(int i);
+  void begin_own_step(int i);
+
+  void make_room();
+  void forget_inactive() { inactive_known = false; }
+  // arrays of atoms that are not updated, if they are not known any more
+  void refresh_inactive();
+  // active particles are to be given impulses, and no others
+  void select_impelled();
+  void set_inactive(int i);
+  void mark_atom(int i, int how);
+  void clear_ghost_marks();
+
+  void forward_bins();
+  void forward_impulses();
+  void forward_kicks();    // adds them to the velocities of ghosts
+  void reverse_marks();
+  int pack_forward(int n, const int *list, double *buf) const;
+  void unpack_forward(int n, int first, const double *buf);
+  int pack_reverse(int n, int first, double *buf) const;
+  void unpack_reverse(int n, const int *list, const double *buf);
+  double bytes() const;
+
+ private:
+  enum Stage { BINS, IMPULSES, KICKS };
+
+  Stage stage;
+  bool inactive_known;
+  std::vector<int> impelled;    // owned, in the last evaluation
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,102 @@
+// The longest time step that each fluid particle and each vertex of a cloth allows: gathers from
+// atoms and styles what the formulas of core/timestep/step_limits.h need.
+
+#ifndef SPHCLOTH_STEPPING_PARTICLE_LIMITS_H
+#define SPHCLOTH_STEPPING_PARTICLE_LIMITS_H
+
+#include "atom.h"
+#include "fix.h"
+#include "pointers.h"
+
+#include "core/sph/tait.h"
+#include "core/timestep/step_limits.h"
+#include "stepping/limited_vertices.h"
+#include "stepping/step_options.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairSPHTait;
+
+class ParticleLimits : protected Pointers {
+ public:
+  ParticleLimits(LAMMPS *lmp_, const StepOptions &options_) :
+      Pointers(lmp_), options(options_), pair(nullptr)
+  {
+  }
+
+  void init(PairSPHTait *, SteppingScheme);
+
+  // Fluid particles without pressure are in free flight, which ends where neighbors under pressure
+  // press on them.  Where a step is no longer than that of these neighbors they need not be asked.
+  void ask_neighbors(bool whether) { asks_neighbors = whether; }
+
+  // of fluid particles: take(i, limit).  external: three columns of forces beside atom->f, or null.
+  template <class Take>
+  void for_particles(const std::vector<int> &particles, const double *const *external,
+                     Take take) const
+  {
+    sphcloth::StepLimits limits;
+    const int n = static_cast<int>(particles.size());
+    for (int from = 0; from < n; from += sphcloth::StepStates::MAX) {
+      const int *some = particles.data() + from;
+      const int m = std::min(n - from, sphcloth::StepStates::MAX);
+      find(some, m, external, limits);
+      for (int k = 0; k < m; k++) take(some[k], limits[k]);
+    }
+  }
+
+  // of vertices that move: take(i, limit)
+  template <class Take> void for_vertices(Take take) const
+  {
+    for_moving_vertices(
+        [&](int i, const LimitedVertices &vertices) { take(i, of_vertex(i, vertices)); });
+  }
+  // act(i, the vertices it is one of)
+  template <class Act> void for_moving_vertices(Act act) const
+  {
+    for (const Cloth &cloth : cloths)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (atom->mask[i] & cloth.fix->groupbit && cloth.vertices->inverse_mass(i) > 0.0)
+          act(i, *cloth.vertices);
+  }
+
+  bool use_forces() const { return options.lambda.force > 0.0; }
+  // smoothing length over speed of sound, the least of all fluids
+  double shortest_sound_time() const;
+  // in which sound crosses the support
+  double sound_time(int i) const;
+  double acceleration(int i, double by_force) const;
+
+ private:
+  struct FluidType {
+    double support = 0.0;    // of boundary types as well
+    double viscosity = 0.0, sound = 0.0;
+    sphcloth::Tait eos;
+  };
+  struct Cloth {
+    const Fix *fix;
+    const LimitedVertices *vertices;
+  };
+
+  const StepOptions &options;
+  PairSPHTait *pair;
+  std::vector<FluidType> types;
+  std::vector<Cloth> cloths;
+  bool asks_neighbors = true;
+  bool interpolates_density = false;
+
+  void find(const int *particles, int n, const double *const *external,
+            sphcloth::StepLimits &) const;
+  sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
+  double set_motion(int i, const double *force, sphcloth::StepState &) const;
+  sphcloth::StepState particle_state(int i, const double *force) const;
+  sphcloth::StepState vertex_state(int i) const;
+  double until_pressed(int i, double gap, double sound) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

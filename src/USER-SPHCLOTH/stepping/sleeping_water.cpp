@@ -1,0 +1,116 @@
+// Sleeping particles.
+
+#include "stepping/sleeping_water.h"
+
+#include "atom.h"
+#include "core/neighbor/dual_lists.h"
+#include "core/util/bytes.h"
+#include "lammps_util/atom_tools.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+using Columns = BlockColumns;
+
+// How long a particle is slow before it sleeps, and how long it sleeps beside active particles
+// before it is asked again: in times that sound needs across the support.
+
+static constexpr double SLOW_BEFORE_SLEEP = 20.0, SLEEP_BESIDE_ACTIVE = 100.0;
+
+template <class Act> void SleepingWater::for_neighbors(int i, Act act)
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const NeighborSpan near = state.pair->neighbors(i, t);
+    for (int k = 0; k < near.n; k++) act(near.of[k]);
+  }
+}
+
+bool SleepingWater::is_slow(int i) const
+{
+  const double *v = atom->v[i], limit = state.options.sleep;
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < limit * limit;
+}
+
+bool SleepingWater::is_at_rest(int i)
+{
+  const double now = physical_time(update);
+  double &since = state.columns[Columns::SLOW_SINCE][i];
+  if (!is_slow(i)) since = now;
+  if (now - since < SLOW_BEFORE_SLEEP * limits.sound_time(i) || state.pair->feels_moving_wall(i))
+    return false;
+  bool others = true;
+  for_neighbors(
+      i, [&](int j) { others = others && (is_slow(j) || !state.pair->inside_support(i, j)); });
+  return others;
+}
+
+void SleepingWater::fall_asleep()
+{
+  resting.clear();
+  for (const int i : state.pair->active_particles())
+    if (is_at_rest(i)) resting.push_back(i);
+  for (const int i : resting) {
+    state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
+    state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
+    std::fill_n(atom->v[i], 3, 0.0);
+  }
+}
+
+// Contact or a command has given it speed, another force acts on it than when it fell asleep, or a
+// wall beside it moves.
+
+void SleepingWater::wake_disturbed()
+{
+  if (!enabled()) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!state.pair->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
+    double change_sq = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double change = atom->f[i][d] - state.columns.external_force(d)[i];
+      change_sq += change * change;
+    }
+    if (!is_slow(i) || gains_speed(i, change_sq) || state.pair->feels_moving_wall(i)) wake(i);
+  }
+}
+
+// from a force, squared, for as long as water has to be slow before it sleeps
+
+bool SleepingWater::gains_speed(int i, double force_sq) const
+{
+  if (force_sq == 0.0) return false;
+  const double accel = limits.acceleration(i, std::sqrt(force_sq));
+  return SLOW_BEFORE_SLEEP * limits.sound_time(i) * accel > state.options.sleep;
+}
+
+void SleepingWater::mark_beside_moving_boundaries()
+{
+  for (const int i : state.boundaries)
+    if (!is_slow(i))
+      for_neighbors(i, [&](int j) {
+        if (StepKey::before(state.key[j]) == StepKey::SLEEPING && state.pair->inside_support(i, j))
+          state.mark_atom(j, BlockState::WAKE);
+      });
+}
+
+bool SleepingWater::has_slept_long(int i, double now) const
+{
+  return now - state.columns[Columns::SLOW_SINCE][i] > SLEEP_BESIDE_ACTIVE * limits.sound_time(i);
+}
+
+void SleepingWater::wake(int i)
+{
+  BlockColumns &columns = state.columns;
+  if (columns.is_asleep(i)) {
+    columns[Columns::BIN][i] = state.clock.deepest;
+    columns[Columns::EVENT][i] = Columns::NEW;
+    columns[Columns::SLOW_SINCE][i] = physical_time(update);
+  } else
+    columns[Columns::EVENT][i] = Columns::WOKEN;
+}
+
+double SleepingWater::bytes() const { return bytes_of(resting); }

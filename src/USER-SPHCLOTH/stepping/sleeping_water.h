@@ -1,0 +1,49 @@
+// Sleeping particles: water at rest keeps its place, density and pressure, and is a wall for its
+// neighbors, until something disturbs it.
+
+#ifndef SPHCLOTH_STEPPING_SLEEPING_WATER_H
+#define SPHCLOTH_STEPPING_SLEEPING_WATER_H
+
+#include "pointers.h"
+
+#include "stepping/block_state.h"
+#include "stepping/particle_limits.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class SleepingWater : protected Pointers {
+ public:
+  SleepingWater(LAMMPS *lmp_, BlockState &state_, const ParticleLimits &limits_) :
+      Pointers(lmp_), state(state_), limits(limits_)
+  {
+  }
+
+  bool enabled() const { return state.options.sleep > 0.0; }
+  bool is_slow(int i) const;
+  // active particles that have been slow for long, among others that are slow
+  void fall_asleep();
+  // particles that other styles have given speed or a force
+  void wake_disturbed();
+  // marks sleeping particles beside moving boundaries
+  void mark_beside_moving_boundaries();
+  // beside active particles, and due to be asked again whether it rests
+  bool has_slept_long(int i, double now) const;
+  // takes part from the next smallest step on; for an inactive particle, its step ends
+  void wake(int i);
+  double bytes() const;
+
+ private:
+  BlockState &state;
+  const ParticleLimits &limits;
+  std::vector<int> resting;
+
+  bool is_at_rest(int i);
+  bool gains_speed(int i, double force_sq) const;
+  template <class Act> void for_neighbors(int i, Act act);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

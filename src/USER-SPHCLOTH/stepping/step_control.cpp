@@ -1,0 +1,156 @@
+// Equations (10) to (12): the step of the run.
+
+#include "stepping/step_control.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "integrate.h"
+#include "modify.h"
+#include "output.h"
+#include "pair_sph_tait.h"
+#include "update.h"
+
+#include <algorithm>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+StepControl::StepControl(LAMMPS *lmp_, const StepOptions &options_, std::string label_,
+                         int groupbit_) :
+    Pointers(lmp_), times(lmp_), options(options_), label(std::move(label_)), groupbit(groupbit_),
+    pair(nullptr), previous(0.0), largest_before(0.0), limit(Limit::NONE)
+{
+}
+
+void StepControl::init(PairSPHTait *style, double shortest_sound_time)
+{
+  pair = style;
+  control.eta = options.eta;
+  control.sound_time = shortest_sound_time;
+}
+
+void StepControl::restore(const State &before)
+{
+  previous = before.previous;
+  largest_before = before.largest_before;
+  limit = before.limited_by;
+}
+
+/* ----------------------------------------------------------------------
+   the next step
+------------------------------------------------------------------------- */
+
+void StepControl::choose(const StepLimit &mine)
+{
+  StepLimit wanted = tightest_of_ranks(mine);
+  if (control.eta > 0.0) {
+    compression = compression_of_ranks();
+    wanted.tighten(control.step(previous, compression, largest_before), Limit::FLUCTUATION);
+  }
+  StepLimit step = bounded(wanted, previous);
+  if (is_too_short(step)) error->all(FLERR, too_short(wanted, ""));
+  if (times.any()) times.head_for(step);
+  limit = step.by;
+  if (step.dt != update->dt) set_timestep(step.dt);
+  if (times.arrives()) times.announce_thermo();
+}
+
+void StepControl::take(double dt, Limit by, bool ends_at_output_time)
+{
+  limit = by;
+  times.set_arrives(ends_at_output_time);
+  if (dt != update->dt) set_timestep(dt);
+  if (times.arrives()) times.announce_thermo();
+}
+
+void StepControl::end_step()
+{
+  previous = times.uncut() > 0.0 ? times.uncut() : update->dt;
+  largest_before = compression.largest;
+}
+
+StepLimit StepControl::bounded(const StepLimit &wanted, double before) const
+{
+  return bounded_step(wanted, before, options.growth, options.floor, options.ceiling);
+}
+
+bool StepControl::is_too_short(const StepLimit &step) const
+{
+  return step.by == Limit::FLOOR && !options.clamp_at_floor;
+}
+
+std::string StepControl::too_short(const StepLimit &wanted, const std::string &for_which) const
+{
+  return fmt::format("{}: the {} limit asks for a step of {}{}, below min {}: lower min, or use "
+                     "'below clamp' to go on with min and count",
+                     label, limit_name(wanted.by), wanted.dt, for_which, options.floor);
+}
+
+StepLimit StepControl::tightest_of_ranks(const StepLimit &mine) const
+{
+  struct {
+    double dt;
+    int by;
+  } in = {mine.dt, static_cast<int>(mine.by)}, out;
+  MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  return {out.dt, static_cast<Limit>(out.by)};
+}
+
+/* ----------------------------------------------------------------------
+   how far the fluid is compressed
+------------------------------------------------------------------------- */
+
+double StepControl::largest_compression() const
+{
+  double largest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest, atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0);
+  return largest;
+}
+
+Compression StepControl::compression_of_ranks() const
+{
+  double largest = largest_compression(), mine[2] = {0.0, 0.0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) {
+      const double rho0 = pair->equation_of_state(atom->type[i]).rho0;
+      mine[0] += std::max(0.0, atom->rho[i] / rho0 - 1.0);
+      mine[1] += 1.0;
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  return {largest, all[1] > 0.0 ? all[0] / all[1] : 0.0};
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS's time step
+------------------------------------------------------------------------- */
+
+// The time reached so far is booked first; every style that keeps a copy of dt is told.
+
+void StepControl::set_timestep(double dt)
+{
+  update->update_time();
+  update->dt = dt;
+  update->dt_default = 0;
+  update->integrate->reset_dt();
+  if (force->pair) force->pair->reset_dt();
+  for (Fix *other : modify->get_fix_list()) other->reset_dt();
+  output->reset_dt();
+  if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
+}
+
+// LAMMPS has found anew at which step each dump by time is due, but if that is earlier now, dumps
+// of style atom or xyz would be overlooked.
+
+void StepControl::reschedule_dumps()
+{
+  for (int k = 0; k < output->ndump; k++)
+    output->next_dump_any = k ? std::min(output->next_dump_any, output->next_dump[k])
+                              : output->next_dump[k];
+  output->next = std::min({output->next_dump_any, output->next_restart, output->next_thermo});
+}

@@ -1,0 +1,71 @@
+// The step that all ranks take next: chosen from the tightest limit anywhere, (12) of the paper, or
+// told by a scheme that has chosen it; cut at output times; made known to the whole of LAMMPS.
+
+#ifndef SPHCLOTH_STEPPING_STEP_CONTROL_H
+#define SPHCLOTH_STEPPING_STEP_CONTROL_H
+
+#include "pointers.h"
+
+#include "core/timestep/step_limits.h"
+#include "stepping/output_times.h"
+#include "stepping/step_options.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+class PairSPHTait;
+
+class StepControl : protected Pointers {
+ public:
+  OutputTimes times;
+
+  // label of the fix for errors, group of the fluid that it integrates
+  StepControl(LAMMPS *, const StepOptions &, std::string label, int groupbit);
+
+  void init(PairSPHTait *, double shortest_sound_time);
+
+  // collective: the next step from the tightest limit of this rank
+  void choose(const sphcloth::StepLimit &mine);
+  // the next step, as a scheme has chosen it
+  void take(double dt, sphcloth::Limit by, bool ends_at_output_time);
+  void end_step();
+
+  sphcloth::Limit limited_by() const { return limit; }
+  // of this rank
+  double largest_compression() const;
+
+  // `wanted`, held between floor and ceiling and to the growth from the step before; an error if it
+  // is below a floor that ends the run
+  sphcloth::StepLimit bounded(const sphcloth::StepLimit &wanted, double before) const;
+  bool is_too_short(const sphcloth::StepLimit &bounded) const;
+  std::string too_short(const sphcloth::StepLimit &wanted, const std::string &for_which) const;
+
+  // for restart files
+  struct State {
+    double previous;    // the last step, before an output time cut it; 0 before the first
+    double largest_before;    // compression when that step was chosen
+    sphcloth::Limit limited_by;
+  };
+  State state() const { return {previous, largest_before, limit}; }
+  void restore(const State &);
+
+ private:
+  const StepOptions &options;
+  std::string label;
+  int groupbit;
+  PairSPHTait *pair;
+  sphcloth::FluctuationControl control;
+  double previous, largest_before;
+  sphcloth::Compression compression;    // when the step that comes next was chosen
+  sphcloth::Limit limit;
+
+  sphcloth::StepLimit tightest_of_ranks(const sphcloth::StepLimit &mine) const;
+  sphcloth::Compression compression_of_ranks() const;
+  void set_timestep(double dt);
+  void reschedule_dumps();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

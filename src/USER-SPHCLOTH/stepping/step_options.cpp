@@ -1,0 +1,87 @@
+// Keywords of fix sph/integrate.
+
+#include "stepping/step_options.h"
+
+#include "error.h"
+#include "lammps_util/arg_reader.h"
+#include "stepping/output_times.h"
+
+using namespace LAMMPS_NS;
+
+void StepOptions::read(ArgReader &args, OutputTimes &times)
+{
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "velocity")
+      lambda.velocity = args.at_least(keyword, 0.0);
+    else if (keyword == "force")
+      lambda.force = args.at_least(keyword, 0.0);
+    else if (keyword == "acoustic")
+      lambda.acoustic = args.at_least(keyword, 0.0);
+    else if (keyword == "wetted")
+      lambda.wetted = args.at_least(keyword, 0.0);
+    else if (keyword == "viscous")
+      lambda.viscous = args.at_least(keyword, 0.0);
+    else if (keyword == "density")
+      lambda.density = args.at_least(keyword, 0.0);
+    else if (keyword == "relative")
+      lambda.relative = args.at_least(keyword, 0.0);
+    else if (keyword == "cloth")
+      lambda.cloth = args.at_least(keyword, 0.0);
+    else if (keyword == "fluctuation")
+      eta = args.at_least(keyword, 0.0);
+    else if (keyword == "output")
+      times.interval = args.at_least(keyword, 0.0);
+    else if (keyword == "until")
+      times.until = args.positive(keyword);
+    else if (keyword == "ratio") {
+      block.ratio = args.integer(keyword, 2, 4);
+      if (block.ratio == 3) args.fail(keyword, "3", "steps differ by 2 or 4");
+    } else if (keyword == "gain")
+      block.gain = args.at_least(keyword, 1.0);
+    else if (keyword == "waking")
+      block.waking = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "sleep")
+      block.sleep = args.at_least(keyword, 0.0);
+    else if (keyword == "min")
+      floor = args.positive(keyword);
+    else if (keyword == "max") {
+      ceiling = args.positive(keyword);
+      ceiling_given = true;
+    } else if (keyword == "growth") {
+      growth = args.number(keyword);
+      if (growth <= 1.0 || growth > 2.0)
+        args.fail(keyword, std::to_string(growth), "give a factor above 1, at most 2");
+    } else if (keyword == "below")
+      clamp_at_floor = args.choice(keyword, {"stop", "clamp"}) == 1;
+    else
+      args.unknown(
+          keyword,
+          "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
+          "fluctuation, output, until, ratio, gain, waking, sleep, min, max, growth, below");
+  }
+}
+
+void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times,
+                        bool integrates_density, const std::string &label, Error *error) const
+{
+  if (times.interval > 0.0 && scheme_in_force == SteppingScheme::CONSTANT)
+    error->all(FLERR,
+               "{}: output {} would shorten steps that are constant: use the scheme global, or a "
+               "timestep that divides {}",
+               label, times.interval, times.interval);
+  const bool individual = scheme_in_force == SteppingScheme::INDIVIDUAL;
+  if (!individual && scheme_in_force != SteppingScheme::BLOCK) return;
+  if (integrates_density)
+    error->all(
+        FLERR,
+        "{}: steps of individual particles need densities by summation, 'density continuity' "
+        "integrates them: use 'density summation', or another scheme than {}",
+        label, individual ? "individual" : "block");
+  if (!individual && eta > 0.0)
+    error->all(
+        FLERR,
+        "{}: fluctuation {} is for one step of all: leave it out, or use another scheme than "
+        "block",
+        label, eta);
+}

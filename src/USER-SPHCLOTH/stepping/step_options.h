@@ -1,0 +1,47 @@
+// Keywords of fix sph/integrate.
+
+#ifndef SPHCLOTH_STEPPING_STEP_OPTIONS_H
+#define SPHCLOTH_STEPPING_STEP_OPTIONS_H
+
+#include "core/timestep/step_limits.h"
+#include "stepping/stepping_scheme.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+class ArgReader;
+class Error;
+class OutputTimes;
+
+// of the scheme block
+
+struct BlockOptions {
+  int ratio = 4;         // largest ratio of a particle's step to a neighbor's, 2 or 4
+  double gain = 2.0;     // how many times fewer updates unequal steps have to need
+  bool waking = true;    // may the step of an inactive particle end early?
+  double sleep = 0.0;    // speed below which water sleeps, 0: never
+
+  int max_bin_difference() const { return ratio == 4 ? 2 : 1; }
+};
+
+struct StepOptions {
+  SteppingScheme scheme = SteppingScheme::CONSTANT;    // unless the run style has one
+  sphcloth::StepCoefficients lambda;
+  double eta = 0.0;    // compression at which the step is held, 0: the step does not depend on it
+  double floor = 0.0, ceiling = 0.0;    // of the step
+  double growth = 2.0;    // largest ratio of a step to the one before
+  bool ceiling_given = false;
+  bool clamp_at_floor = false;    // go on with the floor where a limit is below it
+  BlockOptions block;
+
+  // the keywords after the scheme, up to the end of the command
+  void read(ArgReader &, OutputTimes &);
+  // an error, in the name of the fix, where they do not go with the scheme in force
+  void check(SteppingScheme, const OutputTimes &, bool integrates_density, const std::string &label,
+             Error *) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,73 @@
+// Counters and outputs of fix sph/integrate.
+
+#include "stepping/step_report.h"
+
+#include "atom.h"
+#include "stepping/block_state.h"
+#include "stepping/stepper.h"
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+void StepReport::count_particle(const StepLimit &own)
+{
+  const Limit by = own.dt < options.ceiling ? own.by : Limit::CEILING;
+  // with block steps floor and growth bound a particle as well: then none of its own limits does
+  if (by <= Limit::CEILING) particles_by_limit[static_cast<int>(by)]++;
+}
+
+double StepReport::output(int n, Stepper &stepper, StepControl &control,
+                          const UpdateRows &rows) const
+{
+  const bool has_bins = stepper.clock() && stepper.clock()->begun();
+  switch (n) {
+    case LIMIT_IN_FORCE: return static_cast<double>(control.limited_by());
+    case ACTIVE_FRACTION: return active_fraction(rows);
+    case PARTICLE_UPDATES: return sum_of_ranks(updates);
+    case LARGEST_COMPRESSION: return max_of_ranks(control.largest_compression());
+    case STEPS_AT_FLOOR: return steps_by_limit[static_cast<int>(Limit::FLOOR)];
+    case IS_OUTPUT_TIME: return control.times.is_now();
+    case NEXT_THERMO_STEP: return static_cast<double>(control.times.next_thermo());
+    case SLEEPING_PARTICLES: return has_bins ? sum_of_ranks(stepper.count_sleeping()) : 0.0;
+    case IDEAL_UPDATES: return has_bins ? sum_of_ranks(ideal_updates) : 0.0;
+    default: break;
+  }
+  if (n < PARTICLES_BY_LIMIT) return steps_by_limit[n - STEPS_BY_LIMIT + 1];
+  stepper.count_limits();
+  return sum_of_ranks(particles_by_limit[n - PARTICLES_BY_LIMIT + 1]);
+}
+
+double StepReport::active_fraction(const UpdateRows &rows) const
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) {
+      mine[0] += rows[i][UpdateRows::ACTIVE];
+      mine[1] += 1.0;
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+}
+
+std::string StepReport::steps_in_words() const
+{
+  std::string words;
+  for (int k = 1; k < N_LIMITS; k++)
+    if (steps_by_limit[k] > 0.0)
+      words += fmt::format(" {} {:.0f}", limit_name(static_cast<Limit>(k)), steps_by_limit[k]);
+  return words;
+}
+
+double StepReport::sum_of_ranks(double mine) const
+{
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double StepReport::max_of_ranks(double mine) const
+{
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}

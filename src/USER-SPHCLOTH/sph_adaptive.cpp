@@ -81,7 +81,7 @@ void SPHAdaptive::move()
   timer->stamp(Timer::MODIFY);
 }
 
-// lines 6 and 7: new neighbours where anyone has moved far enough, otherwise only ghost positions
+// lines 6 and 7: new neighbor lists if a particle has moved far enough, otherwise ghost positions
 
 void SPHAdaptive::communicate()
 {
@@ -158,7 +158,7 @@ void SPHAdaptive::evaluate()
   timer->stamp(Timer::MODIFY);
 }
 
-// The pair style gives none to them.
+// The pair style gives no forces to ghosts.
 
 bool SPHAdaptive::ghosts_have_forces() const
 {

@@ -25,22 +25,22 @@ BOOST_AUTO_TEST_CASE(steps_begin_at_multiples_of_their_length)
 BOOST_AUTO_TEST_CASE(longest_step_that_is_not_above_what_is_wanted)
 {
   const TimeBins line{1.0, 0};
-  BOOST_CHECK(line.level_of(2.0) == 0 && line.level_of(1.0) == 0);
-  BOOST_CHECK(line.level_of(0.99) == 1 && line.level_of(0.5) == 1 && line.level_of(0.3) == 2);
-  BOOST_CHECK(line.level_of(0.5 * (1.0 - 1e-14)) == 1);    // rounding
+  BOOST_CHECK(line.bin_of(2.0) == 0 && line.bin_of(1.0) == 0);
+  BOOST_CHECK(line.bin_of(0.99) == 1 && line.bin_of(0.5) == 1 && line.bin_of(0.3) == 2);
+  BOOST_CHECK(line.bin_of(0.5 * (1.0 - 1e-14)) == 1);    // rounding
   for (double dt = 1.0; dt > 1e-6; dt *= 0.77) {
-    const double taken = line.step(line.level_of(dt));
+    const double taken = line.step(line.bin_of(dt));
     BOOST_CHECK(taken <= dt * (1.0 + 1e-12) && taken > 0.5 * dt);
   }
 }
 
-// updates per time when every wanted step is rounded down to root / 2^k
+// updates per time when every wanted step is rounded down to base / 2^k
 
-static double cost(const std::vector<double> &wanted, double root)
+static double cost(const std::vector<double> &wanted, double base)
 {
   double sum = 0.0;
-  const TimeBins line{root, 0};
-  for (const double dt : wanted) sum += 1.0 / line.step(line.level_of(dt));
+  const TimeBins line{base, 0};
+  for (const double dt : wanted) sum += 1.0 / line.step(line.bin_of(dt));
   return sum;
 }
 
@@ -48,19 +48,19 @@ BOOST_AUTO_TEST_CASE(base_step_of_one_or_two_populations)
 {
   WantedSteps one;
   for (int k = 0; k < 100; k++) one.add(0.3, 0.3);
-  BOOST_CHECK_SMALL(one.best_root(0.3, 0.1, 1.0) - 0.3, 1e-15);
+  BOOST_CHECK_SMALL(one.best_base_step(0.3, 0.1, 1.0) - 0.3, 1e-15);
 
   // few with 0.3, many with 1.1: steps of 0.3 and 0.6 waste, 0.275 and 1.1 do not
   std::vector<double> wanted(10, 0.3);
   wanted.resize(1000, 1.1);
   WantedSteps two;
   for (const double dt : wanted) two.add(dt, 0.3);
-  const double root = two.best_root(0.3, 0.0, 1.0);
+  const double base = two.best_base_step(0.3, 0.0, 1.0);
   double ideal = 0.0;
   for (const double dt : wanted) ideal += 1.0 / dt;
-  BOOST_CHECK(cost(wanted, root) < 1.05 * ideal);
+  BOOST_CHECK(cost(wanted, base) < 1.05 * ideal);
   BOOST_CHECK(cost(wanted, 4.0 * 0.3) > 1.5 * ideal);
-  BOOST_CHECK(root <= 1.1 && root > 1.05);
+  BOOST_CHECK(base <= 1.1 && base > 1.05);
 }
 
 BOOST_AUTO_TEST_CASE(no_particle_gets_more_than_wanted_whatever_the_base_step)
@@ -69,9 +69,9 @@ BOOST_AUTO_TEST_CASE(no_particle_gets_more_than_wanted_whatever_the_base_step)
   for (int k = 0; k < 300; k++) wanted.push_back(1e-4 * std::pow(1.03, k % 170));
   WantedSteps all;
   for (const double dt : wanted) all.add(dt, 1e-4);
-  const TimeBins line{all.best_root(1e-4, 0.1, 1.0), 0};
-  BOOST_CHECK(line.root > 5e-5);
-  for (const double dt : wanted) BOOST_CHECK(line.step(line.level_of(dt)) <= dt * (1.0 + 1e-12));
+  const TimeBins line{all.best_base_step(1e-4, 0.1, 1.0), 0};
+  BOOST_CHECK(line.base > 5e-5);
+  for (const double dt : wanted) BOOST_CHECK(line.step(line.bin_of(dt)) <= dt * (1.0 + 1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(equal_base_steps_arrive_at_an_output_time_at_little_cost)
@@ -81,21 +81,21 @@ BOOST_AUTO_TEST_CASE(equal_base_steps_arrive_at_an_output_time_at_little_cost)
   wanted.resize(1000, 1.1);
   WantedSteps two;
   for (const double dt : wanted) two.add(dt, 0.3);
-  const double best = two.best_root(0.3, 0.0, 1.0), best_cost = cost(wanted, best);
+  const double best = two.best_base_step(0.3, 0.0, 1.0), best_cost = cost(wanted, best);
   for (double remaining = 1.2; remaining < 17.0; remaining += 0.37) {
-    const double root = two.root_towards(remaining, 0.3, 0.0, 1.0), roots = remaining / root;
-    BOOST_CHECK_SMALL(roots - std::round(roots), 1e-12);
-    BOOST_CHECK(root <= 1.1);
+    const double base = two.base_step_towards(remaining, 0.3, 0.0, 1.0), n_steps = remaining / base;
+    BOOST_CHECK_SMALL(n_steps - std::round(n_steps), 1e-12);
+    BOOST_CHECK(base <= 1.1);
     const double shortened = std::ceil(remaining / best) * best / remaining;
-    BOOST_CHECK(cost(wanted, root) < 1.01 * shortened * best_cost);
+    BOOST_CHECK(cost(wanted, base) < 1.01 * shortened * best_cost);
   }
-  BOOST_CHECK_SMALL(two.root_towards(0.9, 0.3, 0.0, 1.0) - 0.9, 0.0);
-  BOOST_CHECK_SMALL(two.root_towards(100.0, 0.3, 0.0, 1.0) - two.best_root(0.3, 0.0, 1.0), 0.0);
+  BOOST_CHECK_SMALL(two.base_step_towards(0.9, 0.3, 0.0, 1.0) - 0.9, 0.0);
+  BOOST_CHECK_SMALL(two.base_step_towards(100.0, 0.3, 0.0, 1.0) - two.best_base_step(0.3, 0.0, 1.0), 0.0);
 
   WantedSteps one;
   for (int k = 0; k < 100; k++) one.add(0.3, 0.3);
-  BOOST_CHECK_SMALL(one.root_towards(0.5, 0.3, 0.0, 1.0) - 0.25, 1e-15);
-  BOOST_CHECK_SMALL(one.root_towards(0.7, 0.3, 0.0, 1.0) - 0.3, 1e-15);
+  BOOST_CHECK_SMALL(one.base_step_towards(0.5, 0.3, 0.0, 1.0) - 0.25, 1e-15);
+  BOOST_CHECK_SMALL(one.base_step_towards(0.7, 0.3, 0.0, 1.0) - 0.3, 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(uniform_step_unless_unequal_ones_gain_enough)
@@ -104,12 +104,12 @@ BOOST_AUTO_TEST_CASE(uniform_step_unless_unequal_ones_gain_enough)
   // 3.56 times fewer
   WantedSteps two;
   for (int k = 0; k < 1000; k++) two.add(k < 10 ? 0.3 : 1.1, 0.3);
-  BOOST_CHECK(two.best_root(0.3, 0.0, 3.4) > 1.0);
-  BOOST_CHECK_SMALL(two.best_root(0.3, 0.0, 3.7) - 0.3, 0.0);
-  BOOST_CHECK_SMALL(two.root_towards(0.5, 0.3, 0.0, 3.7) - 0.25, 1e-15);
+  BOOST_CHECK(two.best_base_step(0.3, 0.0, 3.4) > 1.0);
+  BOOST_CHECK_SMALL(two.best_base_step(0.3, 0.0, 3.7) - 0.3, 0.0);
+  BOOST_CHECK_SMALL(two.base_step_towards(0.5, 0.3, 0.0, 3.7) - 0.25, 1e-15);
   // what each step costs besides makes it 2.8
-  BOOST_CHECK(two.best_root(0.3, 0.1, 2.7) > 1.0);
-  BOOST_CHECK_SMALL(two.best_root(0.3, 0.1, 2.9) - 0.3, 0.0);
+  BOOST_CHECK(two.best_base_step(0.3, 0.1, 2.7) > 1.0);
+  BOOST_CHECK_SMALL(two.best_base_step(0.3, 0.1, 2.9) - 0.3, 0.0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

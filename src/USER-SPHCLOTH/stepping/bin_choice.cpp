@@ -148,7 +148,7 @@ void BinChoice::begin_base_step()
   }
   const bool continues = clock.begun() && clock.uniform && clock.deepest == 0 && base.uniform;
   const double end = static_cast<double>(TimeBins::ticks(0));
-  const double ratio = clock.line.root / base.length;
+  const double ratio = clock.line.base / base.length;
   double *reach = state.columns[Columns::REACH];
   if (continues)
     clock.uniform_span = 0.5 - (0.5 * end - end) * ratio / end;
@@ -188,7 +188,7 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
   for (const int i : pair->active_particles()) here.add(wanted[i], shortest);
   here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // whatever they want
   MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
-  base.length = anywhere.root_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
+  base.length = anywhere.base_step_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
   base.uniform = base.length <= shortest;
   return base;
 }
@@ -225,7 +225,7 @@ void BinChoice::find_bins()
   BlockClock &clock = state.clock;
   BlockColumns &columns = state.columns;
   const StepLimit vertex = find_vertices().tightest;
-  const int of_vertices = std::max(state.coarsest, clock.line.level_of(vertex.dt));
+  const int of_vertices = std::max(state.coarsest, clock.line.bin_of(vertex.dt));
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeBins::DEEPEST;
   double reach[2] = {-FAR, -FAR};    // -least, greatest
@@ -236,7 +236,7 @@ void BinChoice::find_bins()
     before[i] = event[i] == Columns::NEW ? StepKey::FIRST
         : event[i] == Columns::WOKEN     ? StepKey::BROKEN
                                          : its_bin[i];
-    const int own = std::max(state.coarsest, clock.line.level_of(wanted[i]));
+    const int own = std::max(state.coarsest, clock.line.bin_of(wanted[i]));
     its_bin[i] = own;
     slowest = std::min(slowest, own);
     finest = std::max(finest, rank(own, static_cast<int>(by[i])));
@@ -310,7 +310,7 @@ int BinChoice::vertex_bin(int i) const
 {
   const double dt = parts.rows[i][UpdateRows::OWN_STEP];
   if (pair->is_fluid(atom->type[i]) || !(dt > 0.0)) return 0;
-  return state.clock.line.level_of(dt) + max_difference;
+  return state.clock.line.bin_of(dt) + max_difference;
 }
 
 void BinChoice::begin_steps()

@@ -31,7 +31,7 @@ struct BlockClock {
   bool defers = false;    // vertices get deferred impulses in the coming step
   double output_time = 0.0;
 
-  bool begun() const { return line.root > 0.0; }
+  bool begun() const { return line.base > 0.0; }
   bool all_synchronized() const { return line.now == 0; }    // but for sleeping particles
   bool ends_base_step() const
   {

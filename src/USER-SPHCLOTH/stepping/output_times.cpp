@@ -16,10 +16,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// share of a step by which a time may miss what it is taken for
+// part of a step by which a time may miss the one that it counts as
 static constexpr double SLACK = 1e-6;
 
-// What is nearer than a small part of a step has passed.
+// A time that is nearer than a small part of a step has passed.
 
 double OutputTimes::next(double dt) const
 {
@@ -53,16 +53,16 @@ bigint OutputTimes::next_thermo() const
   return arriving ? next : std::max(next, update->laststep + 1);
 }
 
-// A variable that says when thermodynamic output is due was asked when it was not yet known that
-// the next step ends at an output time.
+// A variable that says when thermodynamic output is due was evaluated when it was not yet known
+// that the next step ends at an output time.
 
 void OutputTimes::announce_thermo()
 {
   const bigint next = update->ntimestep + 1;
   if (!output->var_thermo || output->next_thermo <= next) return;
   modify->clearstep_compute();
-  const double asked = input->variable->compute_equal(output->ivar_thermo);
-  if (static_cast<bigint>(asked) == next) want_thermo(next);
+  const double due = input->variable->compute_equal(output->ivar_thermo);
+  if (static_cast<bigint>(due) == next) want_thermo(next);
 }
 
 void OutputTimes::want_thermo(bigint step)

@@ -18,22 +18,22 @@ class OutputTimes : protected Pointers {
   explicit OutputTimes(LAMMPS *lmp_) : Pointers(lmp_) {}
 
   bool any() const { return interval > 0.0 || until > 0.0; }
-  // when a step of dt is the next; infinite if there is none
+  // the next output time or end of a run, as a step of dt sees it; infinite if there is none
   double next(double dt) const;
-  // Shortens the step that comes next, if it has to be.
+  // shortens the next step to end there, if it has to
   void head_for(sphcloth::StepLimit &step);
-  // that step, had it not been shortened; 0 without such times
+  // length of that step before it was shortened; 0 without such times
   double uncut() const { return whole; }
-  // does it end at such a time?
+  // does that step end at such a time?
   bool arrives() const { return arriving; }
-  void set_arrives(bool it_does) { arriving = it_does; }
+  void set_arrives(bool at_its_end) { arriving = at_its_end; }
 
   // is it an output time?
   bool is_now() const;
   // the step for thermodynamic output: the one that comes next, or one that never comes
   bigint next_thermo() const;
   void announce_thermo();
-  // Ends a run that has arrived; to be told when it is over.
+  // ends a run that has arrived; end_run(): the run is over
   void look_for_end();
   void end_run();
 

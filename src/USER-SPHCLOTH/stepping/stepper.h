@@ -1,7 +1,7 @@
-// A stepping scheme: which particles move and which are updated, and how long the next step is.
-// Fix sph/integrate has one of three, UniformSteps (constant and global), IndividualSteps and
-// BlockSteps, and the parts that they share: the limit of each particle (ParticleLimits), the step of
-// the run (StepControl) and the counters (StepReport).
+// A stepping scheme: which particles move and which are updated, and how long the next step
+// is.  Fix sph/integrate has one of three, UniformSteps (constant and global), IndividualSteps and
+// BlockSteps, and the parts that they share: the limit of each particle (ParticleLimits), the step
+// of the run (StepControl) and the counters (StepReport).
 
 #ifndef SPHCLOTH_STEPPING_STEPPER_H
 #define SPHCLOTH_STEPPING_STEPPER_H

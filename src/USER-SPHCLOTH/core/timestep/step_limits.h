@@ -73,12 +73,12 @@ struct StepCoefficients {
   double acoustic = 0.5;     // of h_s/c; symplectic stepping is stable up to 1.6
   double viscous = 0.2;      // of h_s^2/nu; stable up to 0.3 in 3-D
   double density = 0.1;      // largest relative change of density in one step
-  double relative = 0.0;     // as velocity, of the speed at which a neighbour comes near
-  double cloth = 0.0;        // way of a vertex over the shortest edge at it
+  double relative = 0.0;     // as velocity, of the speed at which a neighbor approaches
+  double cloth = 0.0;        // displacement of a vertex over the shortest edge at it
   std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
 };
 
-// what one particle brings along
+// state of one particle
 
 struct StepState {
   double support;     // H
@@ -88,8 +88,8 @@ struct StepState {
   double nu;          // kinematic viscosity, laminar and artificial together
   double rho;
   double drho;        // d rho / dt
-  double approach = 0.0;    // largest speed at which a neighbour comes near
-  double until_pressed = 0.0;    // time after which a particle without pressure has one, 0: it has
+  double approach = 0.0;    // largest speed at which a neighbor approaches
+  double until_pressed = 0.0;    // time to the end of free flight; 0: there is pressure
 };
 
 struct StepLimit {
@@ -106,7 +106,7 @@ struct StepLimit {
 };
 
 // (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches,
-// as vectors want it.
+// so that a loop over particles vectorizes.
 
 SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
 {
@@ -196,24 +196,24 @@ struct Compression {
 };
 
 // The step of the controller: small factors, and half a step at once for a shock, whenever the
-// largest compression passes eta times 2, 4, 8 and so on.  It starts at START h_s/c0, and below
-// LEAST h_s/c0 a shorter step compresses no less.  Water at rest, of a depth that compresses it by
-// eta at the ground, has a mean compression of eta/2.
+// largest compression passes eta times 2, 4, 8 and so on.  It starts at FIRST h_s/c0, and below
+// SHORTEST h_s/c0 a shorter step compresses no less.  Water at rest, of a depth that compresses it
+// by eta at the ground, has a mean compression of eta/2.
 
 struct FluctuationControl {
-  static constexpr double PACE = 0.002, MEAN = 0.5, START = 0.25, LEAST = 0.05;
+  static constexpr double CHANGE = 0.002, MEAN_SHARE = 0.5, FIRST = 0.25, SHORTEST = 0.05;
   double eta = 0.0;    // 0: off
   double sound_time = 0.0;    // h_s/c0
 
   double step(double previous, const Compression &now, double largest_before) const
   {
-    if (previous == 0.0) return START * sound_time;
-    return std::max(LEAST * sound_time, factor(now, largest_before) * previous);
+    if (previous == 0.0) return FIRST * sound_time;
+    return std::max(SHORTEST * sound_time, factor(now, largest_before) * previous);
   }
   double factor(const Compression &now, double largest_before) const
   {
     if (doublings(now.largest) > doublings(largest_before)) return 0.5;
-    return now.largest < eta && now.mean < MEAN * eta ? 1.0 + PACE : 1.0 - PACE;
+    return now.largest < eta && now.mean < MEAN_SHARE * eta ? 1.0 + CHANGE : 1.0 - CHANGE;
   }
   double doublings(double largest) const
   {

@@ -1,8 +1,9 @@
 // Power-of-two steps on an integer time line.
 //
-// A root step is halved again and again: level k takes steps of root/2^k, and they begin at
-// multiples of their own length.  Whoever begins a step is met by all who take shorter ones, and at
-// the end of a root step by everybody: the next root may then be of any length.
+// A base step is halved again and again: particles in time bin k take steps of base/2^k, which
+// begin at multiples of their own length.  Where a step begins all shorter ones begin as well, and
+// at the end of the base step all particles are synchronized: the next base step may be of any
+// length.
 
 #ifndef SPHCLOTH_CORE_TIMESTEP_TIME_BINS_H
 #define SPHCLOTH_CORE_TIMESTEP_TIME_BINS_H
@@ -20,43 +21,43 @@ class TimeBins {
  public:
   static constexpr int DEEPEST = 30;
 
-  double root = 0.0;    // 0: not begun
-  long long now = 0;    // since the root step began, in ticks of root / 2^DEEPEST
+  double base = 0.0;    // 0: not begun
+  long long now = 0;    // since the base step began, in ticks of base / 2^DEEPEST
 
-  static long long ticks(int level) { return 1LL << (DEEPEST - level); }
-  double step(int level) const { return root * PARTS_OF_ROOT[level]; }
-  bool begins(int level) const { return now % ticks(level) == 0; }
+  static long long ticks(int bin) { return 1LL << (DEEPEST - bin); }
+  double step(int bin) const { return base * PARTS_OF_BASE[bin]; }
+  bool begins(int bin) const { return now % ticks(bin) == 0; }
   bool ended() const { return now == ticks(0); }
 
   // the longest step that may begin now
   int coarsest() const
   {
-    int level = 0;
-    while (!begins(level)) level++;
-    return level;
+    int bin = 0;
+    while (!begins(bin)) bin++;
+    return bin;
   }
 
   // the longest step that is not above dt
-  int level_of(double dt) const
+  int bin_of(double dt) const
   {
     constexpr double ROUNDING = 1e-12;
     const double most = (1.0 + ROUNDING) * dt;
-    int level = 0;
-    for (double step = root; level < DEEPEST && step > most; step *= 0.5) level++;
-    return level;
+    int bin = 0;
+    for (double step = base; bin < DEEPEST && step > most; step *= 0.5) bin++;
+    return bin;
   }
 
  private:
-  static constexpr std::array<double, DEEPEST + 1> PARTS_OF_ROOT = [] {
+  static constexpr std::array<double, DEEPEST + 1> PARTS_OF_BASE = [] {
     std::array<double, DEEPEST + 1> parts{1.0};
-    for (int level = 1; level <= DEEPEST; level++) parts[level] = 0.5 * parts[level - 1];
+    for (int bin = 1; bin <= DEEPEST; bin++) parts[bin] = 0.5 * parts[bin - 1];
     return parts;
   }();
 };
 
-// The root step with which a population of wanted steps costs least, when every one of them is
-// rounded down to root/2^k.  Wanted steps are counted by their ratio to the least of them in parts
-// of an octave.
+// The base step with which a population of wanted steps costs least, when every one of them is
+// rounded down to base/2^k.  Wanted steps are counted by their ratio to the shortest of them in
+// parts of an octave.
 
 class WantedSteps {
  public:
@@ -72,10 +73,10 @@ class WantedSteps {
     count[std::clamp(static_cast<int>(PARTS * octaves + ROUNDING), 0, N - 1)]++;
   }
 
-  // What one evaluation of everybody's neighbours costs is 1, so a step costs what it updates and
-  // `overhead` for the rest of the scene.  The shortest step is below `least` by less than a
-  // half.  Unless unequal steps cost less by a factor of `gain` it is one for all.
-  double best_root(double least, double overhead, double gain) const
+  // One evaluation of all particles costs 1, so a smallest step costs the share that it updates,
+  // and `overhead` for what is done for all.  It is below `least` by less than a half.  Unless
+  // unequal steps cost less by a factor of `gain` the step is uniform.
+  double best_base_step(double least, double overhead, double gain) const
   {
     const int end = end_of_counts();
     double best = least, best_cost = of_ladder(0, end, 0, overhead).per_shortest / (gain * least);
@@ -90,35 +91,35 @@ class WantedSteps {
     return best;
   }
 
-  // The same where a root has to end `remaining` from now: that and up to twice as many equal
-  // roots, whichever cost least.  Far away any root will do, and one step for all arrives as it
-  // does elsewhere.
-  double root_towards(double remaining, double least, double overhead, double gain) const
+  // The same where a base step has to end `remaining` from now: the fewest equal base steps, or up
+  // to twice as many, whichever cost least.  Far away any base step will do, and a uniform step
+  // arrives as it does elsewhere.
+  double base_step_towards(double remaining, double least, double overhead, double gain) const
   {
-    constexpr int FAR = 16;    // roots
+    constexpr int FAR = 16;    // base steps
     constexpr double ROUNDING = 1e-9;
-    const double best = best_root(least, overhead, gain), roots = remaining / best;
+    const double best = best_base_step(least, overhead, gain), n_steps = remaining / best;
     if (best <= least) return step_towards(remaining, best);
-    if (roots > FAR) return best;
-    const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * roots)));
+    if (n_steps > FAR) return best;
+    const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * n_steps)));
     const int end = end_of_counts();
-    double root = 0.0, least_cost = std::numeric_limits<double>::infinity();
+    double base = 0.0, least_cost = std::numeric_limits<double>::infinity();
     for (int n = fewest; n < 2 * fewest; n++) {
       const double cost = cost_of(remaining / n, least, end, overhead);
       if (cost >= least_cost) continue;
       least_cost = cost;
-      root = remaining / n;
+      base = remaining / n;
     }
-    return root;
+    return base;
   }
 
  private:
   struct Work {
     double per_shortest = 0.0;    // step
-    int longest = 0;    // octave of a step that somebody takes
+    int longest = 0;    // octave of the longest step that is taken
   };
 
-  // nobody wants longer steps
+  // behind the longest wanted step
   int end_of_counts() const
   {
     int end = N;
@@ -126,10 +127,10 @@ class WantedSteps {
     return end;
   }
 
-  double cost_of(double root, double least, int end, double overhead) const
+  double cost_of(double base, double least, int end, double overhead) const
   {
-    const TimeBins line{root};
-    const int deepest = line.level_of(least);
+    const TimeBins line{base};
+    const int deepest = line.bin_of(least);
     const double above = std::log2(least / line.step(deepest));
     const int shift = std::max(0, static_cast<int>(std::ceil(PARTS * above)));
     return of_ladder(shift, end, deepest, overhead).per_shortest / line.step(deepest);

@@ -14,7 +14,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
-#include "stepping/block_state.h"
+#include "stepping/make_stepper.h"
 #include "update.h"
 
 #include <algorithm>

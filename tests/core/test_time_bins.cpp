@@ -90,7 +90,8 @@ BOOST_AUTO_TEST_CASE(equal_base_steps_arrive_at_an_output_time_at_little_cost)
     BOOST_CHECK(cost(wanted, base) < 1.01 * shortened * best_cost);
   }
   BOOST_CHECK_SMALL(two.base_step_towards(0.9, 0.3, 0.0, 1.0) - 0.9, 0.0);
-  BOOST_CHECK_SMALL(two.base_step_towards(100.0, 0.3, 0.0, 1.0) - two.best_base_step(0.3, 0.0, 1.0), 0.0);
+  BOOST_CHECK_SMALL(two.base_step_towards(100.0, 0.3, 0.0, 1.0) - two.best_base_step(0.3, 0.0, 1.0),
+                    0.0);
 
   WantedSteps one;
   for (int k = 0; k < 100; k++) one.add(0.3, 0.3);

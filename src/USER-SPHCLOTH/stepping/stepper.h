@@ -14,8 +14,6 @@
 #include "stepping/step_control.h"
 #include "stepping/step_options.h"
 
-#include <memory>
-
 namespace LAMMPS_NS {
 
 struct BlockClock;
@@ -82,12 +80,6 @@ class Stepper : protected Pointers {
  private:
   ParticleColumns none;
 };
-
-// clock: where block steps begin or go on
-std::unique_ptr<Stepper> make_stepper(LAMMPS *, SteppingScheme, const SteppingParts &,
-                                      const BlockClock &clock);
-// the scheme that keeps so many columns
-SteppingScheme scheme_with_columns(int n);
 
 }    // namespace LAMMPS_NS
 

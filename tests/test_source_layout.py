@@ -136,7 +136,6 @@ EXCEPTIONS: dict[tuple[str, str], int] = {
     ("private word", "src/USER-SPHCLOTH/fluid/mesh_boundary.h"): 2,
     ("private word", "src/USER-SPHCLOTH/pair_sph_tait.cpp"): 4,
     ("private word", "src/USER-SPHCLOTH/pair_sph_tait.h"): 2,
-    ("private word", "src/USER-SPHCLOTH/sph_adaptive.cpp"): 1,
     ("upward include", "src/USER-SPHCLOTH/cloth/cloth_constraints.cpp"): 2,
     ("upward include", "src/USER-SPHCLOTH/contact/obstacle.cpp"): 1,
     ("upward include", "src/USER-SPHCLOTH/fluid/mesh_boundary.cpp"): 1,

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
 
 from sphcloth.programs import installed_version
 
@@ -33,6 +37,14 @@ def finite(values: object) -> object:
     if isinstance(values, float) and not math.isfinite(values):
         return None
     return values
+
+
+def show_rows(rows: Iterable[tuple[str, str]], console: Console) -> None:
+    """Print labels and values, one below the other."""
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    for label, value in rows:
+        table.add_row(label, value)
+    console.print(table)
 
 
 def argument(value: Value) -> str:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from sphcloth import metrics, plots
 from sphcloth.advice.evidence import Evidence
@@ -17,7 +16,7 @@ from sphcloth.log import ThermoTable
 from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
 from sphcloth.rendering.movie import write_pictures
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
-from sphcloth.results import text, versions, write_json
+from sphcloth.results import show_rows, text, versions, write_json
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
 
@@ -81,10 +80,7 @@ class Summary:
 
     def show(self, console: Console) -> None:
         """Print the values on one screen, what must be zero marked by whether it is."""
-        table = Table(show_header=False, box=None, padding=(0, 2))
-        for label, value in self._rows():
-            table.add_row(label, value)
-        console.print(table)
+        show_rows(self._rows(), console)
 
     def _rows(self) -> list[tuple[str, str]]:
         rows = [

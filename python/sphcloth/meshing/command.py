@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -25,6 +24,7 @@ from sphcloth.meshing.pins import select_vertices
 from sphcloth.meshing.sequence import write_sequence
 from sphcloth.meshing.sewing import Seams, weld
 from sphcloth.meshing.surface import Surface, check_manifold, join, orient
+from sphcloth.results import write_json
 from sphcloth.trajectory import Trajectory
 
 REST_KINDS = ("model", "flat")
@@ -229,7 +229,7 @@ class Output:
             write_molecule(cloth, self.molecule, self.mass_per_atom)
         if self.json_file is not None:
             values = summary.as_json() | {"repairs": list(repairs)}
-            self.json_file.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+            write_json(self.json_file, values)
 
     def script(self, cloth: Cloth) -> list[str]:
         """Return the lines of an input script that use the file."""

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from sphcloth.mesh import MASS_SECTION
 from sphcloth.meshing.cloth import Cloth, longest_bond
 from sphcloth.meshing.lammps_files import has_masses
+from sphcloth.results import show_rows
 
 # 4 sqrt(3) area / sum of squared sides: below this a triangle is called thin
 THIN = 0.1
@@ -90,10 +90,7 @@ class MeshSummary:
 
     def show(self, console: Console) -> None:
         """Print the values as a table."""
-        table = Table(show_header=False, box=None, padding=(0, 2))
-        for label, value in self._rows():
-            table.add_row(label, value)
-        console.print(table)
+        show_rows(self._rows(), console)
 
     def _rows(self) -> list[tuple[str, str]]:
         rows = [

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -17,6 +16,7 @@ from sphcloth.errors import UserError
 from sphcloth.rendering.movie import check_format, write_pictures
 from sphcloth.rendering.scene import Scene
 from sphcloth.rendering.scene_roles import QUANTITIES, Choice, SceneRoles
+from sphcloth.results import write_json
 from sphcloth.roles import Roles, parse_types
 from sphcloth.trajectory import Frame, Trajectory
 
@@ -225,7 +225,7 @@ def render(
 
 def write_report(report: Report, path: Path) -> None:
     """Write a report as JSON."""
-    path.write_text(json.dumps(asdict(report), indent=2) + "\n", encoding="utf-8")
+    write_json(path, asdict(report))
 
 
 def parse_size(text: str) -> tuple[int, int]:

@@ -1,0 +1,344 @@
+"""Which style is tested in which scene: the data of ``test_styles.py``.
+
+A new style needs an entry, and a scene in which it acts if none of these will do. It then has tests
+of restart, ranks, newton, units and wrong words.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from scenes import filled, gravity, header, jitter, lattice, neighbor, tait
+from scenes.fragments import FLUID, box, cloth_box
+from scenes.shared import DROP_SCENE, Scene
+
+# ---------------------------------------------------------------------- scenes
+
+DROP = replace(
+    DROP_SCENE,
+    fixes=DROP_SCENE.fixes
+    + """fix watch all sph/watch every 5 density 0.9 speed 99[m/s]
+compute fluid fluid sph/atom density pressure energy sound volume neighbors dt active
+compute cloth cloth pbd/atom sheet strain curvature area nx ny nz
+compute edges all pbd/local sheet edge length strain
+compute longest all reduce max c_edges[1] inputs local
+compute most all reduce max c_edges[2] inputs local
+""",
+    steps=60,
+)
+# water without pressure: contact alone stops it
+RAIN = replace(
+    DROP_SCENE,
+    forces=DROP_SCENE.forces.replace("c0 30[m/s] alpha 0.1 nu 1e-3[m^2/s]", "c0 1e-3[m/s]").replace(
+        "2 2 boundary", "2 2 boundary pressure own"
+    ),
+    settings=DROP_SCENE.settings.replace("timestep 0.002[s]", "timestep 5e-4[s]"),
+    fixes=DROP_SCENE.fixes.replace("sph/integrate global gain 1", "sph/integrate constant").replace(
+        "0.015[m]", "0.02[m]"
+    ),
+    steps=50,
+)
+# every kind of constraint at once, with edges projected along their start
+COMPLIANT = replace(
+    DROP,
+    forces=DROP.forces.replace(
+        "bond_coeff 1 1.0", "bond_coeff 1 compliance 1e-5[m/N] compress 0.5 limit 0.02"
+    ).replace("dihedral_coeff 1 0.1", "dihedral_coeff 1 compliance 1[1/J] rest flat"),
+    fixes=DROP.fixes.replace("iterations 5", "iterations 5 solver gs direction start"),
+    steps=20,
+)
+# the sheet itself is the boundary of the water
+SHEET_AS_WALL = replace(
+    DROP_SCENE,
+    forces=DROP_SCENE.forces.replace("2 2 boundary", "2 2 none"),
+    settings=DROP_SCENE.settings.replace("neigh_modify", "comm_modify cutoff 0.3[m]\nneigh_modify"),
+    fixes=DROP_SCENE.fixes.replace("cloth/contact 0.015[m]", "cloth/contact 0.015[m] wall yes"),
+    steps=50,
+)
+# impulses of ghosts are added in the order in which they come, another one behind a restart
+BLOCK = replace(DROP, fixes=DROP.fixes + "run_style sph/adaptive block\n", steps=20, exact_on=1)
+
+# a jittered block of water between six planes, of which one comes down and one slides
+TANK = Scene(
+    make=header("f f f", FLUID)
+    + box("-0.1 0.5 -0.1 0.5 -0.1 0.6")
+    + "mass 1 0.125\n"
+    + lattice()
+    + filled("water", "0 0.4 0 0.4 0 0.4")
+    + jitter(0.01, 77)
+    + "velocity all set 1 -2 -1 units box\nwrite_data tank.data\n",
+    atoms=header("f f f", FLUID) + "read_data tank.data\n",
+    forces=tait("1 1 fluid 1000.0[kg/m^3] c0 20[m/s] nu 1e-2[m^2/s] alpha 0.1", support="0.1[m]"),
+    settings=neighbor("0.03[m]") + "timestep 1e-3[s]\n",
+    fixes="variable lid equal 0.45[m]-0.4[m/s]*time\n"
+    + gravity(g="9.81[N/kg]")
+    + """fix wall all wall/sph xlo 0 xhi 0.4[m] ylo 0 yhi 0.4[m] zlo 0 zhi v_lid &
+  velocity zlo 1[m/s] 0.5[m/s] 0
+fix step all sph/integrate global
+""",
+    steps=50,
+)
+
+# water comes in, falls, and is taken away
+POUR = Scene(
+    atoms=header("f f f", FLUID)
+    + box("-0.5[m] 0.5[m] -0.5[m] 0.5[m] -0.5[m] 1[m]")
+    + "mass 1 0.1209[kg]\ngroup water type 1\n",
+    forces=tait("1 1 fluid 1000[kg/m^3] c0 20[m/s]", support="0.1[m]"),
+    settings=neighbor("0.03[m]")
+    + "timestep 1e-3[s]\nregion low block INF INF INF INF INF 0.65[m] units box\n",
+    fixes="""fix step water sph/integrate constant
+fix pour water sph/emit 300 1 0.05[m] disc 0 0 0.8[m] 0.12[m] velocity 0 0 -2[m/s]
+fix out water sph/drain region low
+"""
+    + gravity("water", g="9.81[N/kg]"),
+    steps=50,
+)
+
+# vortices in a tilted periodic box, in two dimensions
+FLOW = Scene(
+    make=header("p p p", FLUID, dimension=2)
+    + box("0 1 0 1 -0.025 0.025 0.3 0 0", shape="prism")
+    + "mass 1 2.5\n"
+    + lattice(dimension=2)
+    + "create_atoms 1 box\n"
+    + jitter(0.01, 4711, dimension=2)
+    + """set group all sph/rho 1000.0
+variable u atom -cos(2*PI*(x-0.3*y))*sin(2*PI*y)
+variable w atom sin(2*PI*(x-0.3*y))*cos(2*PI*y)
+velocity all set v_u v_w 0 units box
+write_data flow.data
+""",
+    atoms=header("p p p", FLUID, dimension=2) + "read_data flow.data\n",
+    forces=tait(
+        "1 1 fluid 1000.0[kg/m^2] c0 10[m/s] nu 1e-3[m^2/s]",
+        support="0.15[m]",
+        options="tension yes density continuity delta 0.1",
+    ),
+    settings=neighbor("0.02[m]") + "timestep 1e-3[s]\n",
+    fixes="""fix shift all sph/shift strength 2 correct yes
+fix step all sph/integrate global max 2e-3[s]
+fix flat all enforce2d
+""",
+    finish="""sph_write kernel 1 1 11 kernel.table
+sph_write state 1 5 state.table 1000[kg/m^2] 1100[kg/m^2]
+""",
+    steps=30,
+)
+
+# a round sheet that is made on all ranks and falls, held at its rim
+ROUND = Scene(
+    atoms=header()
+    + cloth_box("-1[m] 1[m] -1[m] 1[m] -1[m] 1[m]", 1)
+    + "region rim cylinder z 0.1[m] 0.2[m] 0.45[m] INF INF side out units box\n"
+    + "create_cloth 1 2.0[kg/m^2] disc 0.5[m] spacing 0.1[m] center 0.1[m] 0.2[m] 0.3[m] &\n"
+    + "  group cloth pin rim pins\n",
+    forces="bond_style pbd\nbond_coeff 1 0.9\ndihedral_style pbd\ndihedral_coeff 1 0.1\n",
+    settings="special_bonds lj/coul 1 1 1\nangle_style zero\nangle_coeff *\n"
+    + "pair_style zero 0.3[m]\npair_coeff * *\n"
+    + neighbor("0.03[m]")
+    + "timestep 1e-3[s]\n",
+    fixes=gravity(g="9.81[N/kg]") + "fix sheet cloth pbd/cloth pin pins damping 1[1/s]\n",
+    steps=10,
+)
+
+SCENES = {
+    "drop": DROP,
+    "rain": RAIN,
+    "compliant drop": COMPLIANT,
+    "sheet as wall": SHEET_AS_WALL,
+    "block steps": BLOCK,
+    "tank": TANK,
+    "pour": POUR,
+    "flow": FLOW,
+    "round sheet": ROUND,
+}
+
+# ---------------------------------------------------------------------- styles
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A style in a scene.
+
+    Attributes:
+        kind, name: as the plugin registers it.
+        scene: in which it acts.
+        output: thermo keyword -> unit; none of them is zero at the end.
+        counts: the same, without units, for what starts at 0 behind a restart.
+        columns: dump column -> unit; none of them is zero everywhere.
+        tables: file that the scene writes -> units of its columns.
+        commands: beginnings of commands; every keyword that the style then says it knows is tried.
+        flags: keywords that take no value.
+        free: keywords whose value may be any word.
+        fails: check -> why it fails today.
+    """
+
+    kind: str
+    name: str
+    scene: str
+    output: Mapping[str, str] = field(default_factory=dict)
+    counts: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    commands: tuple[str, ...] = ()
+    flags: str = ""
+    free: str = ""
+    fails: Mapping[str, str] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.name} in {self.scene}"
+
+
+COMPLIANCE = "a compliance is not converted where force is not mass times acceleration"
+SHEET = {"f_sheet[1]": "N", "f_sheet[2]": "N", "f_sheet[3]": "N", "f_sheet[4]": ""}
+CLOTH = "fix s cloth pbd/cloth\n"
+
+ENTRIES = (
+    Entry(
+        "pair",
+        "sph/tait",
+        "drop",
+        output={"evdwl": "J"},
+        commands=(
+            "pair_style sph/tait 0.1",
+            "pair_coeff 1 1 fluid 1000 c0 20",
+            "pair_coeff 2 2 boundary",
+        ),
+    ),
+    Entry("pair", "sph/tait", "flow", output={"evdwl": "J"}),
+    Entry("bond", "pbd", "drop", output={"f_sheet[4]": ""}, commands=("bond_coeff 1 1.0",)),
+    Entry(
+        "bond",
+        "pbd",
+        "compliant drop",
+        output={"f_sheet[7]": "J", "f_sheet[4]": ""},
+        fails={"metal": COMPLIANCE, "real": COMPLIANCE},
+    ),
+    Entry(
+        "dihedral",
+        "pbd",
+        "round sheet",
+        output={"f_sheet[3]": "N", "f_sheet[4]": ""},
+        commands=("dihedral_coeff 1 1.0",),
+    ),
+    Entry(
+        "dihedral",
+        "pbd",
+        "compliant drop",
+        output={"f_sheet[7]": "J"},
+        fails={"metal": COMPLIANCE, "real": COMPLIANCE},
+    ),
+    Entry("fix", "pbd/cloth", "drop", output=SHEET, commands=("fix x cloth pbd/cloth",)),
+    Entry("fix", "pbd/cloth", "block steps", output=SHEET),
+    Entry(
+        "fix",
+        "cloth/contact",
+        "rain",
+        output={"f_contact[4]": "m"},
+        counts={"f_contact[1]": ""},
+        commands=(CLOTH + "fix x water cloth/contact 0.01",),
+    ),
+    Entry("fix", "cloth/contact", "sheet as wall", counts={"f_contact[1]": ""}),
+    Entry(
+        "fix",
+        "sph/integrate",
+        "drop",
+        output={"time": "s", "f_step": "s", "f_step[2]": "", "f_step[3]": ""},
+        commands=("fix x water sph/integrate global",),
+    ),
+    Entry("fix", "sph/integrate", "block steps", output={"time": "s", "f_step[3]": ""}),
+    Entry(
+        "fix",
+        "sph/emit",
+        "pour",
+        output={"f_pour": "", "f_pour[1]": "", "f_pour[4]": "kg*m/s"},
+        commands=("fix x water sph/emit 9 1 0.1",),
+    ),
+    Entry(
+        "fix",
+        "sph/drain",
+        "pour",
+        output={"f_out": "", "f_out[1]": "kg", "f_out[4]": "kg*m/s"},
+        commands=("fix x water sph/drain",),
+    ),
+    Entry(
+        "fix",
+        "sph/shift",
+        "flow",
+        output={"f_shift": "", "f_shift[1]": "m", "f_shift[2]": ""},
+        commands=("fix x water sph/shift",),
+    ),
+    Entry(
+        "fix",
+        "sph/watch",
+        "drop",
+        output={"f_watch": "", "f_watch[1]": "", "f_watch[2]": "m/s"},
+        commands=("fix x all sph/watch",),
+        free="restart",
+    ),
+    Entry(
+        "fix",
+        "wall/sph",
+        "tank",
+        output={f"f_wall[{k}]": "N" for k in range(1, 19)},
+        commands=("fix x all wall/sph xlo -1",),
+        flags="xlo xhi ylo yhi zlo zhi",
+    ),
+    Entry(
+        "compute",
+        "pbd/atom",
+        "drop",
+        columns={f"c_cloth[{k}]": u for k, u in enumerate(["", "1/m", "m^2", "", "", ""], 1)},
+        commands=(CLOTH + "compute x all pbd/atom s",),
+        flags="strain curvature area nx ny nz fx fy fz",
+    ),
+    Entry(
+        "compute",
+        "pbd/local",
+        "drop",
+        output={"c_longest": "m", "c_most": ""},
+        commands=(
+            CLOTH + "compute x all pbd/local s edge",
+            CLOTH + "compute x all pbd/local s hinge",
+        ),
+        flags="id1 id2 id3 id4 type rest length strain angle curvature",
+    ),
+    Entry(
+        "compute",
+        "sph/atom",
+        "drop",
+        columns={
+            f"c_fluid[{k}]": unit
+            for k, unit in enumerate(["kg/m^3", "Pa", "J", "m/s", "m^3", "", "s", ""], 1)
+        },
+        commands=("compute x all sph/atom",),
+        flags="density pressure energy sound volume neighbors dt active side",
+    ),
+    Entry(
+        "command",
+        "create_cloth",
+        "round sheet",
+        columns={"mass": "kg", "z": "m"},
+        commands=("create_cloth 2 1.0",),
+        free="group",
+    ),
+    Entry(
+        "command",
+        "sph_write",
+        "flow",
+        tables={
+            "kernel.table": ("m", "1/m^2", "1/m^3"),
+            "state.table": ("kg/m^2", "Pa*m", "m/s", "J/kg"),
+        },
+        commands=("sph_write",),
+        flags="kernel state",
+    ),
+    Entry(
+        "run",
+        "sph/adaptive",
+        "block steps",
+        output={"f_step": "s", "f_step[2]": ""},
+        commands=("fix x water sph/integrate global\nrun_style sph/adaptive",),
+        flags="constant global individual block",
+    ),
+)

@@ -19,14 +19,15 @@ from scenes.units import convert, render, units
 
 from sphcloth.plugin import STYLES
 
-# of positions in m and velocities in m/s, and of the largest value of what a style gives
-ROUND_OFF = 1e-10
+# of positions in m, velocities in m/s, and of the largest value of what a style gives; the same of
+# positions, velocities and columns in other units
+ROUND_OFF, CONVERSION = 1e-10, 1e-11
 # sums over atoms, whose order is another one behind a restart
 SUMS = 1e-12
 # so that cuts go through sheets, which are level
 GRIDS = {1: "1 1 1", 2: "2 1 1", 4: "2 2 1"}
 STATE = {"x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
-SYSTEMS = ("lj", "cgs", "real", "metal")
+SYSTEMS = ("lj", "cgs", "micro", "nano", "real", "metal")
 
 
 def gathered(scene: str, what: str) -> dict:
@@ -149,14 +150,17 @@ def units_of(entry: Entry) -> dict[str, str]:
 
 def assert_close(one: End, other: End, entry: Entry, system: str = "si") -> None:
     """The second is in some units, the first in SI."""
+    limit = ROUND_OFF if system == "si" else CONVERSION
     np.testing.assert_array_equal(one.columns["id"], other.columns["id"])
     for name, here in state(one).items():
         there = state(other)[name] / units(system).of(STATE[name])
-        np.testing.assert_allclose(there, here, rtol=0, atol=ROUND_OFF, err_msg=name)
+        np.testing.assert_allclose(there, here, rtol=0, atol=limit, err_msg=name)
     for name, here in own(one, entry).items():
         there = own(other, entry)[name] / units(system).of(units_of(entry)[name])
-        limit = ROUND_OFF * np.abs(here).max()
-        np.testing.assert_allclose(there, here, rtol=0, atol=limit, err_msg=name)
+        share = limit if name in entry.columns else ROUND_OFF
+        np.testing.assert_allclose(
+            there, here, rtol=0, atol=share * np.abs(here).max(), err_msg=name
+        )
     for name in entry.counts:
         assert one.output[name] == other.output[name], name
 

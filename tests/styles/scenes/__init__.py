@@ -3,13 +3,14 @@
 A new scene is a sum of fragments, each with its parameters and defaults::
 
     header("p p f") + box("0 1 0 1 0 1") + lattice() + filled("water", "0 1 0 1 0 0.5")
-    + tait("1 1 fluid 1000 c0 20") + neighbor(0.03)
+    + sph_tait("1 1 fluid 1000 c0 20") + neighbor(0.03)
 
 Numbers may carry their unit, ``0.05[m]``, for scenes that run in all unit systems; see
 :mod:`scenes.units`.
 """
 
 from scenes.fragments import (
+    FLUID,
     box,
     cloth_box,
     cloth_styles,
@@ -21,7 +22,7 @@ from scenes.fragments import (
     lattice,
     neighbor,
     sheet,
-    tait,
+    sph_tait,
 )
 from scenes.shared import (
     AGAIN_DROP,
@@ -31,6 +32,7 @@ from scenes.shared import (
     HEADER,
     MAKE_DROP,
     MAKE_FALL,
+    MAKE_FLOW,
     POUR,
     SMALL_SHEET,
     TWO_FLUIDS,
@@ -41,10 +43,12 @@ __all__ = [
     "AGAIN_DROP",
     "DROP",
     "END",
+    "FLUID",
     "FREE_SHEET",
     "HEADER",
     "MAKE_DROP",
     "MAKE_FALL",
+    "MAKE_FLOW",
     "POUR",
     "SMALL_SHEET",
     "TWO_FLUIDS",
@@ -60,5 +64,5 @@ __all__ = [
     "lattice",
     "neighbor",
     "sheet",
-    "tait",
+    "sph_tait",
 ]

@@ -52,7 +52,7 @@ def sheet(kind, areal, size, spacing, more="group cloth"):
     return f"create_cloth {kind} {areal} size {size} spacing {spacing} {more}\n"
 
 
-def tait(*coefficients, support=0.1, options=""):
+def sph_tait(*coefficients, support=0.1, options=""):
     """The pair style; coefficients as ``1 1 fluid 1000 c0 20``."""
     style = f"pair_style sph/tait {support} {options}".rstrip()
     return "\n".join([style, *(f"pair_coeff {c}" for c in coefficients)]) + "\n"

@@ -15,7 +15,7 @@ from scenes.fragments import (
     lattice,
     neighbor,
     sheet,
-    tait,
+    sph_tait,
 )
 from scenes.units import render
 
@@ -84,7 +84,7 @@ region pins intersect 2 held up
 group pins region pins
 group pins intersect pins cloth
 """,
-    forces=tait(
+    forces=sph_tait(
         "1 1 fluid 1000.0[kg/m^3] c0 30[m/s] alpha 0.1 nu 1e-3[m^2/s]",
         "2 2 boundary",
         support="0.1[m]",
@@ -120,7 +120,7 @@ FREE_SHEET = (
     + filled("low", "-0.15 0.15 -0.15 0.15 0.05 0.2", 1)
     + filled("high", "-0.15 0.15 -0.15 0.15 0.2 0.3", 2)
     + "group fluid type 1 2\nvelocity fluid set 0.3 -0.2 -6.0 units box\n"
-    + tait("1 1 fluid 1000.0 c0 8 alpha 0.1", "2 2 fluid 2000.0 c0 6 nu 0.01", "3 3 boundary")
+    + sph_tait("1 1 fluid 1000.0 c0 8 alpha 0.1", "2 2 fluid 2000.0 c0 6 nu 0.01", "3 3 boundary")
     + cloth_styles("0.9", "0.1")
     + neighbor(0.03)
     + """timestep 0.001
@@ -161,7 +161,7 @@ def fall(scheme, ceiling=2e-3, limits=""):
         "variable steps index 200\nvariable dump index end.txt\n"
         + header("f f f", FLUID)
         + "read_data fall.data\n"
-        + tait("1 1 fluid 1000 c0 20 alpha 0.1")
+        + sph_tait("1 1 fluid 1000 c0 20 alpha 0.1")
         + neighbor(0.03)
         + f"timestep {ceiling}\n"
         + gravity()
@@ -170,12 +170,28 @@ def fall(scheme, ceiling=2e-3, limits=""):
     )
 
 
+# Vortices in a tilted periodic box, in two dimensions.
+MAKE_FLOW = (
+    header(atoms=FLUID, dimension=2)
+    + box("0 1 0 1 -0.025 0.025 0.3 0 0", shape="prism")
+    + "mass 1 2.5\n"
+    + lattice(dimension=2)
+    + "create_atoms 1 box\n"
+    + jitter(0.01, 4711, dimension=2)
+    + """set group all sph/rho 1000.0
+variable u atom -cos(2*PI*(x-0.3*y))*sin(2*PI*y)
+variable w atom sin(2*PI*(x-0.3*y))*cos(2*PI*y)
+velocity all set v_u v_w 0 units box
+write_data flow.data
+"""
+)
+
 # Water is poured at 2 m/s, a layer each 0.025 s.
 POUR = (
     header("f f f", FLUID)
     + box("-0.5 0.5 -0.5 0.5 -0.5 1")
     + "mass 1 0.1209\n"
-    + tait("1 1 fluid 1000 c0 20")
+    + sph_tait("1 1 fluid 1000 c0 20")
     + neighbor(0.03)
     + """timestep {dt}
 group water type 1
@@ -191,7 +207,7 @@ SMALL_SHEET = (
     + "mass * 0.1\nregion none block 0.9 0.91 0.9 0.91 0.9 0.91\n"
     + sheet(2, 1.0, "0.6 0.6", 0.1, "group cloth pin none nobody")
     + "create_atoms 1 single 0 0 0.5\ngroup water type 1\n"
-    + tait("1 1 fluid 1000 c0 20", "2 2 boundary")
+    + sph_tait("1 1 fluid 1000 c0 20", "2 2 boundary")
     + "special_bonds lj/coul 1 1 1\nbond_style pbd\nbond_coeff 1 1.0\n"
     + "dihedral_style pbd\ndihedral_coeff 1 0.1\nneighbor 0.05 bin\n"
 )

@@ -1,29 +1,11 @@
-"""The same answer on any number of ranks, with newton on or off, and after a restart."""
+"""The same answer however space is cut and lists are made; see test_styles.py for the rest."""
 
 import numpy as np
 import pytest
 from harness import instance, last_frame, run, write
-from scenes import DROP, END, MAKE_DROP
+from scenes import AGAIN_DROP, DROP, END, MAKE_DROP
 
 from sphcloth.stress.case import SCENES
-
-# what a restart file does not hold; no thermo output here, which must not matter
-RESTARTED = """
-variable restart index mid.restart
-read_restart ${restart}
-special_bonds lj/coul 1 1 1
-angle_style zero
-angle_coeff *
-comm_modify vel yes
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-variable steps index 60
-variable dump index end.txt
-fix gravity all gravity 9.81 vector 0 0 -1
-fix step fluid sph/integrate global
-fix sheet cloth pbd/cloth iterations 5 pin pins damping 2.0
-fix contact fluid cloth/contact 0.015
-"""
 
 
 @pytest.fixture(scope="module")
@@ -47,14 +29,8 @@ def test_the_scene_has_contact_pressure_and_tension(scene):
     assert np.abs(end[~fluid, 3]).max() > 1e-3  # and gives way
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
-def test_ranks(scene, ranks):
-    run(scene / "in.drop", ranks=ranks, dump=f"ranks{ranks}.txt")
-    assert largest_difference(scene, "serial.txt", f"ranks{ranks}.txt") < 1e-10
-
-
-def test_contact_between_ranks(scene):
-    """Water without pressure: contact alone stops it, on vertices of other ranks too."""
+def test_contact_alone_stops_water(scene):
+    """Water without pressure; the same on ranks is the scene rain of registry.py."""
     script = DROP.replace("c0 30 alpha 0.1 nu 1e-3", "c0 1e-3") + END
     script = script.replace("sph/integrate global", "sph/integrate constant")
     script = script.replace("timestep 0.002", "timestep 5e-4").replace("0.015", "0.02")
@@ -62,10 +38,6 @@ def test_contact_between_ranks(scene):
     out = run(write(scene, script, "in.rain"), dump="rain1.txt")
     contacts, crossed = out.split("Loop time")[0].split("\n")[-2].split()[-2:]
     assert float(contacts) > 100 and float(crossed) == 0
-    for ranks, grid in ((2, "2 1 1"), (4, "2 2 1")):
-        cut = script.replace("read_data", f"processors {grid}\nread_data")
-        run(write(scene, cut, "in.cut"), ranks=ranks, dump="rain.txt")
-        assert largest_difference(scene, "rain1.txt", "rain.txt") < 1e-10
 
 
 def test_another_cut_through_the_cloth(scene):
@@ -112,21 +84,6 @@ def test_balancing_while_it_runs(scene):
     assert largest_difference(scene, "serial.txt", "balance.txt") < 1e-10
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_newton(scene, ranks):
-    run(scene / "in.drop", ranks=ranks, newton="off", dump=f"off{ranks}.txt")
-    assert largest_difference(scene, "serial.txt", f"off{ranks}.txt") < 1e-10
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_continues_to_the_last_bit(scene, ranks):
-    first = "run 60\nwrite_restart mid.restart\n"
-    whole = write(scene, DROP + first + END.replace("${steps}", "60"), "in.whole")
-    run(whole, ranks=ranks, dump="whole.txt")
-    run(write(scene, RESTARTED + END, "in.again"), ranks=ranks, dump="again.txt")
-    np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "whole.txt"))
-
-
 @pytest.mark.parametrize("ranks", [1, 2, 4])
 def test_a_wide_skin_changes_nothing(scene, ranks):
     """Lists of the pair style are narrower and renewed on their own, also beside other ranks."""
@@ -141,7 +98,7 @@ def test_restart_with_a_wide_skin_continues_to_the_last_bit(scene, ranks):
     first = "run 60\nwrite_restart mid.restart\n"
     script = (DROP + first + END.replace("${steps}", "60")).replace("0.03 bin", "0.3 bin")
     run(write(scene, script, "in.whole"), ranks=ranks, dump="whole.txt")
-    script = (RESTARTED + END).replace("0.03 bin", "0.3 bin")
+    script = (AGAIN_DROP + END).replace("0.03 bin", "0.3 bin")
     run(write(scene, script, "in.again"), ranks=ranks, dump="again.txt")
     np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "whole.txt"))
 
@@ -186,7 +143,7 @@ def test_compliant_cloth_on_ranks_after_restart_and_from_data(scene, solver):
     assert largest_difference(scene, "rich1.txt", "serial.txt") > 1e-4
 
     run(write(scene, rich(DROP, solver) + first + END.replace("${steps}", "30"), "in.rich"))
-    again = write(scene, rich(RESTARTED, solver).replace("index 60", "index 30") + END, "in.more")
+    again = write(scene, rich(AGAIN_DROP, solver).replace("index 60", "index 30") + END, "in.more")
     run(again, dump="again.txt")
     run(whole, dump="rich1.txt")
     np.testing.assert_array_equal(last_frame(scene / "again.txt"), last_frame(scene / "rich1.txt"))

@@ -2,42 +2,37 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance, last_frame, run, write
-from scenes import DROP, END, FREE_SHEET, HEADER, MAKE_DROP
+from harness import by_id, instance
+from scenes import (
+    FREE_SHEET,
+    cloth_box,
+    cloth_styles,
+    filled,
+    header,
+    jitter,
+    lattice,
+    neighbor,
+    sph_tait,
+)
 from scipy.integrate import quad
 from test_stepping import own_steps
 
 # A slab of water over the plane z = 0, where there is a sheet of a given mesh, or a plane wall.
 SLAB = (
-    HEADER.format(boundary="f f f")
-    + """
-region box block -1 1 -1 1 -0.5 1
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 16
-mass 1 {mass}
-mass 2 1
-lattice sc 0.05 origin 0.5 0.5 0.5
-region slab block -0.3 0.3 -0.3 0.3 0 0.3 units box
-create_atoms 1 region slab
-displace_atoms all random 0.01 0.01 0.01 5 units box
-group fluid type 1
-velocity fluid ramp vx -1 1 z 0 0.3 units box
-{sheet}
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.15 density {density}
-pair_coeff 1 1 fluid 1000.0 c0 20 nu 1e-3
-pair_coeff 2 2 none
-bond_style pbd
-bond_coeff 1 1.0
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0.1
-set group all sph/rho 1000
-neighbor 0.03 bin
-comm_modify cutoff 1.2
-neigh_modify every 1 delay 0 check yes
-timestep 1e-4
+    header("f f f")
+    + cloth_box("-1 1 -1 1 -0.5 1")
+    + "mass 1 {mass}\nmass 2 1\n"
+    + lattice()
+    + filled("slab", "-0.3 0.3 -0.3 0.3 0 0.3")
+    + jitter(0.01, 5)
+    + "group fluid type 1\nvelocity fluid ramp vx -1 1 z 0 0.3 units box\n{sheet}\n"
+    + sph_tait(
+        "1 1 fluid 1000.0 c0 20 nu 1e-3", "2 2 none", support=0.15, options="density {density}"
+    )
+    + cloth_styles()
+    + "set group all sph/rho 1000\n"
+    + neighbor(0.03, cutoff=1.2)
+    + """timestep 1e-4
 fix step fluid sph/integrate {scheme}
 {wall}
 run {steps}
@@ -263,45 +258,6 @@ def test_a_mesh_that_comes_near_shortens_the_step():
     expected = relative * support / np.maximum(of_water, of_sheet)
     np.testing.assert_allclose(own_steps(lmp)[water], expected, rtol=1e-9)
     assert lmp.extract_fix("step", 0, 0) == pytest.approx(expected.min(), rel=1e-9)
-
-
-WALL_DROP = (
-    DROP.replace("pair_coeff 2 2 boundary", "pair_coeff 2 2 none")
-    .replace("cloth/contact 0.015", "cloth/contact 0.015 wall yes")
-    .replace("neigh_modify", "comm_modify cutoff 0.3\nneigh_modify")
-)
-
-
-@pytest.fixture
-def drop(tmp_path):
-    run(write(tmp_path, MAKE_DROP, "in.make"))
-    run(write(tmp_path, WALL_DROP + END, "in.serial"), dump="serial.txt")
-    return tmp_path
-
-
-def largest_difference(folder, name):
-    return np.abs(last_frame(folder / "serial.txt") - last_frame(folder / name)).max()
-
-
-@pytest.mark.parametrize(("ranks", "newton"), [(2, "on"), (4, "on"), (2, "off")])
-def test_ranks(drop, ranks, newton):
-    run(write(drop, WALL_DROP + END), ranks=ranks, newton=newton, dump="many.txt")
-    assert largest_difference(drop, "many.txt") < 1e-9
-
-
-def test_restart_continues_bit_for_bit(drop):
-    steps = "run 50\nwrite_restart half.bin\nrun 50\n" + END.replace("run ${steps}", "")
-    run(write(drop, WALL_DROP + steps, "in.whole"), dump="whole.txt")
-    body = WALL_DROP.replace("read_data drop.data", "read_restart half.bin")
-    after = body[: body.index("bond_style")] + body[body.index("neigh_modify") :]
-    styles = "bond_style pbd\nbond_coeff 1 1.0\nangle_style zero\nangle_coeff *\n"
-    styles += (
-        "dihedral_style pbd\ndihedral_coeff 1 0.1\nneighbor 0.03 bin\ncomm_modify cutoff 0.3\n"
-    )
-    after = after.replace("neigh_modify", styles + "neigh_modify", 1)
-    run(write(drop, after + END, "in.again"), dump="again.txt", steps=50)
-    whole, again = (last_frame(drop / f"{name}.txt") for name in ("whole", "again"))
-    assert np.array_equal(whole, again)
 
 
 def test_momentum_of_a_free_sheet():

@@ -2,30 +2,9 @@
 
 import pytest
 from harness import instance
-from scenes import HEADER
+from scenes import SMALL_SHEET as SHEET
+from scenes import header
 
-SHEET = (
-    HEADER.format(boundary="p p p")
-    + """
-region box block -1 1 -1 1 -1 1
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 16
-mass * 0.1
-region none block 0.9 0.91 0.9 0.91 0.9 0.91
-create_cloth 2 1.0 size 0.6 0.6 spacing 0.1 group cloth pin none nobody
-create_atoms 1 single 0 0 0.5
-group water type 1
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20
-pair_coeff 2 2 boundary
-bond_style pbd
-bond_coeff 1 1.0
-dihedral_style pbd
-dihedral_coeff 1 0.1
-neighbor 0.05 bin
-"""
-)
 SHEET_FIX = SHEET + "fix sheet cloth pbd/cloth\n"
 STEP = SHEET + "fix step water sph/integrate "
 SHIFT = SHEET + "fix shift water sph/shift "
@@ -482,9 +461,7 @@ CASES = [
         SHEET + "group part id 1:10\nfix sheet part pbd/cloth\nrun 0",
         r"fix sheet pbd/cloth: a bond of atom \d+ leaves the group at atom \d+: put both",
     ),
-    case(
-        "create: no box", HEADER.format(boundary="p p p") + "create_cloth 2 1", r"there is no box"
-    ),
+    case("create: no box", header() + "create_cloth 2 1", r"there is no box"),
 ]
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
-from test_errors import SHEET
+from scenes import SMALL_SHEET
 
 WORKER = Path(__file__).with_name("fuzz_worker.py")
 # seconds until a command counts as hung
@@ -188,7 +188,7 @@ def set_up(style):
     needed = "" if style == "cloth" else "fix sheet cloth pbd/cloth\n"
     steps = "" if style == "step" else "fix step water sph/integrate global\n"
     # a wall needs a face that is not periodic, triangles a cut-off that is wider than they are
-    scene = SHEET.replace("p p p", "f f f") if style == "walls" else SHEET
+    scene = SMALL_SHEET.replace("p p p", "f f f") if style == "walls" else SMALL_SHEET
     scene += "comm_modify vel yes cutoff 0.5\n" if style == "contact" else ""
     return f"{scene}variable x equal 0.5\ntimestep 1e-4\nvelocity water set 0 0 -1\n{needed}{steps}"
 

@@ -3,53 +3,12 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import DROP, END, MAKE_DROP
-
-# A block of water falls on a floor; what flies may take longer steps than what has hit it.
-FALL = """
-variable steps index 200
-variable dump index end.txt
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary f f f
-read_data fall.data
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep {ceiling}
-fix g all gravity 9.81 vector 0 0 -1
-fix w all wall/sph zlo 0
-fix step all sph/integrate global {limits}
-run_style sph/adaptive {scheme}
-"""
-MAKE = """
-units si
-atom_style sph
-comm_modify vel yes
-boundary f f f
-region box block -0.6 0.6 -0.6 0.6 -0.3 1
-create_box 1 box
-lattice sc 0.05 origin 0.5 0.5 0.5
-region water block -0.2 0.2 -0.2 0.2 0.05 0.45 units box
-create_atoms 1 region water
-displace_atoms all random 0.01 0.01 0.01 17 units box
-mass 1 0.125
-set group all sph/rho 1000
-velocity all set 0 0 -2 units box
-write_data fall.data
-"""
-
-
-def fall(scheme, ceiling=2e-3, limits=""):
-    return FALL.format(scheme=scheme, ceiling=ceiling, limits=limits)
+from scenes import DROP, END, MAKE_DROP, MAKE_FALL, fall
 
 
 @pytest.fixture
 def folder(tmp_path):
-    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_FALL, "in.make"))
     return tmp_path
 
 

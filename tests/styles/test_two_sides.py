@@ -3,42 +3,28 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import HEADER
+from scenes import cloth_box, cloth_styles, final_dump, header, jitter, lattice, neighbor, sph_tait
 
 # two layers of water, one particle spacing apart, at other densities; a sheet between them, or not
 POOLS = (
-    HEADER.format(boundary="p p p")
-    + """
-region box block 0 0.5 0 0.5 -0.3 0.3
-create_box 3 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 16
-mass 1 0.125
-mass 2 0.13
-mass 3 1
-lattice sc 0.05 origin 0.5 0.5 0.5
-region above block 0 0.5 0 0.5 0 0.2 units box
+    header()
+    + cloth_box("0 0.5 0 0.5 -0.3 0.3", 3)
+    + "mass 1 0.125\nmass 2 0.13\nmass 3 1\n"
+    + lattice()
+    + """region above block 0 0.5 0 0.5 0 0.2 units box
 region below block 0 0.5 0 0.5 -0.2 0 units box
 {fill}
-displace_atoms all random 0.004 0.004 0.004 5 units box
-group fluid type 1 2
+"""
+    + jitter(0.004, 5)
+    + """group fluid type 1 2
 velocity fluid ramp vx -1 1 y 0 0.5 units box
 region rim block 0.001 0.499 0.001 0.499 INF INF side out units box
 {sheet}
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1*2 1*2 fluid 1000.0 c0 20 alpha 0.1 nu 1e-3
-pair_coeff 3 3 none
-bond_style pbd
-bond_coeff 1 1.0
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0.1
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 2e-4
-fix step fluid sph/integrate constant
 """
+    + sph_tait("1*2 1*2 fluid 1000.0 c0 20 alpha 0.1 nu 1e-3", "3 3 none")
+    + cloth_styles()
+    + neighbor(0.03)
+    + "timestep 2e-4\nfix step fluid sph/integrate constant\n"
 )
 SHEET = "create_cloth 3 1.0 center 0.25 0.25 0 size 0.5 0.5 spacing 0.05 group cloth pin rim pins"
 FILL = {"above": "create_atoms 1 region above", "below": "create_atoms 2 region below"}
@@ -88,8 +74,8 @@ def test_the_sides_are_those_of_the_triangles():
 def test_it_stays_so_while_the_sheet_moves_on_any_ranks(tmp_path):
     script = POOLS.format(fill="\n".join(FILL.values()), sheet=SHEET)
     script += PARTED.format(sides="")
-    script += "compute side all sph/atom side\nrun 100\nwrite_dump all custom {dump} id type x y z "
-    script += "vx vy vz c_side modify sort id format float %.17g\n"
+    script += "compute side all sph/atom side\nrun 100\n"
+    script += final_dump("type x y z vx vy vz c_side", "{dump}")
     for ranks in (1, 2):
         text = script.replace("{dump}", f"end{ranks}.txt")
         run(write(tmp_path, text, f"in.{ranks}"), ranks=ranks)
@@ -160,7 +146,7 @@ Angles
 def test_a_mesh_without_sides_is_named(tmp_path):
     (tmp_path / "twisted.data").write_text(TWISTED.lstrip())
     setup = (
-        HEADER.format(boundary="p p p")
+        header()
         + f"read_data {tmp_path / 'twisted.data'} extra/atom/types 1\nmass 2 1\n"
         + "create_atoms 2 single 0.3 0.3 0.6\ngroup cloth type 1\ngroup fluid type 2\n"
         + "special_bonds lj/coul 1 1 1\npair_style sph/tait 0.1\npair_coeff 1 1 none\n"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import HEADER
+from scenes import cloth_styles, final_dump, gravity, header
 
 BOX = """
 region box block -2 2 -2 2 -2 2
@@ -11,29 +11,26 @@ create_box 1 box bond/types 2 angle/types 1 dihedral/types 1 extra/bond/per/atom
   extra/angle/per/atom 8 extra/dihedral/per/atom 16
 """
 
-STYLES = """
-special_bonds lj/coul 1 1 1
-pair_style zero 0.3
-pair_coeff * *
-bond_style pbd
-bond_coeff * {k}
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff * {bend}
-neigh_modify every 1 delay 0 check yes
-"""
+
+def styles(k=1.0, bend=0.0, cutoff=0.3):
+    """Stiffness of all edges and hinges, and no force but that."""
+    return (
+        f"pair_style zero {cutoff}\npair_coeff * *\n"
+        + cloth_styles(k, bend, types="*")
+        + "neigh_modify every 1 delay 0 check yes\n"
+    )
 
 
-def cloth(extra="", k=1.0, bend=0.0, options="", fix="", regions="", header=HEADER):
+def cloth(extra="", k=1.0, bend=0.0, options="", fix="", regions="", newton=""):
     lmp = instance()
     lmp.commands_string(
-        header.format(boundary="p p p")
+        header(newton=newton)
         + BOX
         + regions
         + f"create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 group cloth {options}\n"
-        + STYLES.format(k=k, bend=bend)
-        + f"fix gravity all gravity 9.81 vector 0 0 -1\nfix sheet cloth pbd/cloth {fix}\n"
+        + styles(k, bend)
+        + gravity()
+        + f"fix sheet cloth pbd/cloth {fix}\n"
         + "timestep 1e-3\n"
         + extra
     )
@@ -43,8 +40,7 @@ def cloth(extra="", k=1.0, bend=0.0, options="", fix="", regions="", header=HEAD
 @pytest.mark.parametrize("pattern", ["square", "diagonal", "equilateral"])
 @pytest.mark.parametrize("newton", ["on", "off"])
 def test_create_cloth_counts_and_mass(pattern, newton):
-    header = f"newton {newton}" + HEADER
-    lmp = cloth(options=f"pattern {pattern}", header=header)
+    lmp = cloth(options=f"pattern {pattern}", newton=newton)
     vertices = lmp.get_natoms()
     edges, triangles, hinges = (
         lmp.extract_global(name) for name in ("nbonds", "nangles", "ndihedrals")
@@ -57,10 +53,9 @@ def test_create_cloth_counts_and_mass(pattern, newton):
 
 
 def test_create_cloth_masses_by_area_where_atoms_have_masses():
-    header = HEADER
     lmp = instance()
     lmp.commands_string(
-        header.format(boundary="p p p")
+        header()
         + BOX
         + "fix mass all property/atom rmass ghost yes\n"
         + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 pattern square\n"
@@ -97,7 +92,7 @@ RIM = "region rim cylinder x 0.2 0.3 0.45 INF INF side out\n"
 def test_a_disc_is_round_and_has_its_mass(newton):
     """Five rings: 6 k vertices at the radius k/5."""
     lmp = instance()
-    lmp.commands_string(f"newton {newton}" + HEADER.format(boundary="p p p") + BOX + RIM + DISC)
+    lmp.commands_string(header(newton=newton) + BOX + RIM + DISC)
     counts = [lmp.get_natoms()]
     counts += [lmp.extract_global(name) for name in ("nbonds", "nangles", "ndihedrals")]
     assert counts == [91, 240, 150, 210]
@@ -119,21 +114,17 @@ def test_a_disc_is_round_and_has_its_mass(newton):
 
 
 MAKE_DISC = (
-    "processors 1 ${n} 1"
-    + HEADER.format(boundary="p p p")
+    "processors 1 ${n} 1\n"
+    + header()
     + BOX
     + RIM
     + DISC
-    + STYLES.format(k=1.0, bend=0.1)
-    + """
-write_dump all custom made${n}.txt id mass x y z modify sort id format float %.17g
-write_data made${n}.data nofix
-fix gravity all gravity 9.81 vector 1 0 0
-fix sheet cloth pbd/cloth pin pins
-timestep 1e-3
-run 50
-write_dump all custom fallen${n}.txt id x y z modify sort id format float %.17g
-"""
+    + styles(bend=0.1)
+    + final_dump("mass x y z", "made${n}.txt")
+    + "write_data made${n}.data nofix\n"
+    + gravity(vector="1 0 0")
+    + "fix sheet cloth pbd/cloth pin pins\ntimestep 1e-3\nrun 50\n"
+    + final_dump("x y z", "fallen${n}.txt")
 )
 
 
@@ -209,11 +200,11 @@ create_bonds single/bond 1 1 2
 def one_edge(k, iterations, extra, mass=0.1, fix=""):
     lmp = instance()
     lmp.commands_string(
-        HEADER.format(boundary="p p p")
+        header()
         + BOX
         + PAIR.format(mass=mass)
-        + STYLES.format(k=k, bend=0).replace("zero 0.3", "zero 1.5")
-        + "fix gravity all gravity 9.81 vector 0 0 -1\n"
+        + styles(k, cutoff=1.5)
+        + gravity()
         + f"fix sheet all pbd/cloth iterations {iterations} pin pins {fix}\n"
         + extra
     )
@@ -346,7 +337,7 @@ def test_another_solver_goes_on_from_a_restart_file(tmp_path):
     cloth(f"run 100\nwrite_restart {path}", fix="solver gs")
     lmp = instance()
     lmp.commands_string(
-        f"read_restart {path}\n{STYLES.format(k=1, bend=0)}fix g all gravity 9.81 vector 0 0 -1\n"
+        f"read_restart {path}\n{styles()}{gravity()}"
         "fix sheet cloth pbd/cloth solver substeps\nrun 100"
     )
     assert by_id(lmp, "x")[:, 2] == pytest.approx(np.full(121, -0.5 * 9.81 * 0.2**2), rel=0.02)
@@ -369,14 +360,14 @@ def test_rest_shape_from_a_property():
     """The cloth starts stretched by 10 % and returns to the rest positions it was given."""
     lmp = instance()
     lmp.commands_string(
-        HEADER.format(boundary="p p p")
+        header()
         + BOX
         + "fix rest all property/atom d2_rest 3\n"
         + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 group cloth\n"
         + "variable x atom x\nvariable y atom y\n"
         + "set group all d2_rest[1] v_x d2_rest[2] v_y d2_rest[3] 0\n"
         + "displace_atoms all ramp x -0.05 0.05 x -0.5 0.5 units box\n"
-        + STYLES.format(k=1.0, bend=0)
+        + styles()
         + "fix sheet cloth pbd/cloth rest d2_rest damping 100\ntimestep 1e-3\nrun 300"
     )
     assert lmp.extract_fix("sheet", 0, 1, 3) < 1e-6
@@ -570,13 +561,13 @@ def string_under_tension(dt, direction):
     links = range(1, 21)
     lmp = instance()
     lmp.commands_string(
-        HEADER.format(boundary="p p p")
+        header()
         + BOX
         + "create_atoms 1 single -0.5 0 0\n"
         + "".join(f"create_atoms 1 single {-0.5 + 0.05 * n} 0 0\n" for n in links)
         + "mass 1 1e-3\ngroup pins id 1 21\n"
         + "".join(f"create_bonds single/bond 1 {n} {n + 1}\n" for n in links)
-        + STYLES.format(k="compliance 1e-4", bend=0).replace("zero 0.3", "zero 0.6")
+        + styles("compliance 1e-4", cutoff=0.6)
         + f"fix sheet all pbd/cloth solver gs iterations 50 direction {direction} pin pins\n"
         + "displace_atoms all ramp x -0.05 0.05 x -0.5 0.5 units box\n"
         + f"displace_atoms all random 1e-4 1e-4 1e-4 7 units box\ntimestep {dt}\nrun 2000"

@@ -3,37 +3,28 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import HEADER
+from scenes import cloth_box, cloth_styles, final_dump, gravity, header
 
 # a sheet that hangs from its top; the bar is its bottom row, of a type and a mass of its own
+HELD = (
+    "pair_style zero 0.3\npair_coeff * *\n"
+    + cloth_styles()
+    + "comm_modify cutoff 0.6\nneigh_modify every 1 delay 0 check yes\ntimestep 1e-3\n"
+)
 SHEET = (
-    HEADER.format(boundary="p p p")
-    + """
-region box block -2 2 -2 2 -2 2
-create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 16
-region top block INF INF INF INF 0.45 INF
+    header()
+    + cloth_box("-2 2 -2 2 -2 2")
+    + """region top block INF INF INF INF 0.45 INF
 create_cloth 1 2.0 size 1.0 0.4 spacing 0.1 axes 1 0 0 0 0 1 center 0 0 0.3 group cloth &
   pin top pins
 region bottom block INF INF INF INF INF 0.15
 group bar region bottom
 set group bar type 2
 mass 2 {mass}
-special_bonds lj/coul 1 1 1
-pair_style zero 0.3
-pair_coeff * *
-bond_style pbd
-bond_coeff 1 1.0
-angle_style zero
-angle_coeff *
-dihedral_style pbd
-dihedral_coeff 1 0.1
-comm_modify cutoff 0.6
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
 """
+    + HELD
 )
-GRAVITY = "fix gravity all gravity 9.81 vector 0 0 -1\n"
+GRAVITY = gravity()
 G = 9.81
 
 
@@ -106,39 +97,32 @@ def test_attached_vertices_move_as_if_they_were_cloth():
     assert difference[1] < 0.4 * difference[0] < 1e-3
 
 
+SWING = """fix body bar nve
+fix s cloth pbd/cloth solver gs pin pins attach bar
+compute f all pbd/atom s fx fy fz strain curvature area nx ny nz
+"""
 PARALLEL = (
     SHEET.format(mass=0.05)
     + GRAVITY
-    + """fix body bar nve
-fix s cloth pbd/cloth solver gs pin pins attach bar
-compute f all pbd/atom s fx fy fz strain curvature area nx ny nz
-compute e all pbd/local s edge id1 id2 strain
+    + SWING
+    + """compute e all pbd/local s edge id1 id2 strain
 compute least all reduce min c_e[3] inputs local
 compute most all reduce max c_e[3] inputs local
 velocity bar set NULL 2 NULL
 thermo_style custom step c_least c_most
 {run}
-write_dump all custom {dump} id x y z vx vy vz c_f[*] modify sort id format float %.17g
 """
+    + final_dump("x y z vx vy vz c_f[*]", "{dump}")
 )
 
-AGAIN = """
-read_restart mid.restart
-special_bonds lj/coul 1 1 1
-pair_style zero 0.3
-pair_coeff * *
-angle_style zero
-angle_coeff *
-comm_modify cutoff 0.6
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
-fix gravity all gravity 9.81 vector 0 0 -1
-fix body bar nve
-fix s cloth pbd/cloth solver gs pin pins attach bar
-compute f all pbd/atom s fx fy fz strain curvature area nx ny nz
-run 70
-write_dump all custom again.txt id x y z vx vy vz c_f[*] modify sort id format float %.17g
-"""
+AGAIN = (
+    "read_restart mid.restart\n"
+    + HELD
+    + GRAVITY
+    + SWING
+    + "run 70\n"
+    + final_dump("x y z vx vy vz c_f[*]", "again.txt")
+)
 
 
 @pytest.fixture(scope="module")
@@ -233,10 +217,10 @@ def test_a_rolled_sheet_has_the_curvature_of_its_cylinder(radius):
     """Mean curvature 1/2R, hinges along the axis 1/R, normals outwards, area kept."""
     lmp = instance()
     box = SHEET[: SHEET.index("create_cloth")]
-    styles = SHEET[SHEET.index("special_bonds") :]
     lmp.commands_string(
-        (box + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.05 group cloth\nmass 2 1\n").format()
-        + styles
+        box
+        + "create_cloth 1 2.0 size 1.0 1.0 spacing 0.05 group cloth\nmass 2 1\n"
+        + HELD
         + CURVED.format(radius=radius)
         + "set group all z v_z x v_x\n"
         + "compute p all pbd/atom s curvature area nx ny nz strain\n"

@@ -6,6 +6,19 @@ import re
 import numpy as np
 import pytest
 from harness import by_id, instance, run, write
+from scenes import (
+    FLUID,
+    box,
+    cloth_box,
+    cloth_styles,
+    filled,
+    gravity,
+    header,
+    lattice,
+    neighbor,
+    sheet,
+    sph_tait,
+)
 
 VELOCITY, FORCE, ACOUSTIC, VISCOUS, DENSITY, RELATIVE, WETTED, CLOTH = range(1, 9)
 CEILING, FLOOR, GROWTH, FLUCTUATION, OUTPUT = range(9, 14)
@@ -14,23 +27,18 @@ CEILING, FLOOR, GROWTH, FLUCTUATION, OUTPUT = range(9, 14)
 def free_particles(speed=0.0, options="", extra="", run="run 0", nu=0.0, timestep=0.01):
     """Particles out of each other's reach."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        region box block -1 1 -1 1 -1 1
-        create_box 1 box
-        mass 1 0.125
-        create_atoms 1 single 0 0 0
-        create_atoms 1 single 0.5 0 0
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 20 nu {nu}
-        neighbor 0.05 bin
-        timestep {timestep}
+    lmp.commands_string(
+        header(atoms=FLUID)
+        + box("-1 1 -1 1 -1 1")
+        + "mass 1 0.125\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 0.5 0 0\n"
+        + sph_tait(f"1 1 fluid 1000 c0 20 nu {nu}")
+        + neighbor(0.05)
+        + f"""timestep {timestep}
         velocity all set {speed} 0 0
         {extra}
         fix step all sph/integrate global {options}
-        {run}""")
+        {run}"""
+    )
     return lmp
 
 
@@ -61,20 +69,15 @@ def test_viscous_limit():
 def compressed(options):
     """A lattice 6 % too dense: pressure everywhere, no force by symmetry."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        lattice sc 0.05
-        region box block -0.2 0.2 -0.2 0.2 -0.2 0.2 units box
-        create_box 1 box
-        create_atoms 1 box
-        mass 1 0.1325
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 20
-        neighbor 0.02 bin
-        timestep 0.01
-        fix step all sph/integrate global {options}""")
+    lmp.commands_string(
+        header(atoms=FLUID)
+        + "lattice sc 0.05\n"
+        + box("-0.2 0.2 -0.2 0.2 -0.2 0.2")
+        + "create_atoms 1 box\nmass 1 0.1325\n"
+        + sph_tait("1 1 fluid 1000 c0 20")
+        + neighbor(0.02)
+        + f"timestep 0.01\nfix step all sph/integrate global {options}\n"
+    )
     return lmp
 
 
@@ -106,27 +109,14 @@ def test_density_limit():
     assert (dt, limit) == (pytest.approx(0.1 / rate, rel=1e-9), DENSITY)
 
 
-PAIRS = """
-    pair_coeff 1 1 fluid 1000 c0 20
-    pair_coeff 2 2 boundary
-"""
-
-CROWD = """
-    units si
-    atom_style sph
-    atom_modify map yes
-    comm_modify vel yes
-    boundary p p f
-    region box block -0.2 0.2 -0.2 0.2 -0.2 0.2
-    create_box 2 box
-    mass * 0.125
-    create_atoms 1 random 60 42 NULL
-    create_atoms 2 random 30 43 NULL
-    pair_style sph/tait 0.1
-    pair_coeff 1 1 fluid 1000 c0 20
-    pair_coeff 2 2 boundary
-    neighbor 0.05 bin
-    timestep 1000
+COEFFICIENTS = "1 1 fluid 1000 c0 20", "2 2 boundary"
+CROWD = (
+    header("p p f", FLUID)
+    + box("-0.2 0.2 -0.2 0.2 -0.2 0.2", 2)
+    + "mass * 0.125\ncreate_atoms 1 random 60 42 NULL\ncreate_atoms 2 random 30 43 NULL\n"
+    + sph_tait(*COEFFICIENTS)
+    + neighbor(0.05)
+    + """timestep 1000
     group fluid type 1
     variable u atom 40+random(-1,1,11)
     variable v atom random(-1,1,12)
@@ -136,6 +126,7 @@ CROWD = """
     fix step fluid sph/integrate global velocity 0 force 0 acoustic 0 density 0 relative 0.2
     run 0
 """
+)
 
 
 def approach_speeds(lmp, support=0.1):
@@ -171,7 +162,7 @@ def test_relative_limit_is_that_of_the_fastest_approach():
 def test_relative_limit_in_mixed_precision():
     """Of a common speed of 40 m/s single precision leaves the relative speeds to 1e-5 m/s."""
     lmp = instance()
-    lmp.commands_string(CROWD.format(extra="pair_style sph/tait 0.1 precision mixed\n" + PAIRS))
+    lmp.commands_string(CROWD.format(extra=sph_tait(*COEFFICIENTS, options="precision mixed")))
     own = own_steps(lmp)[by_id(lmp, "type") == 1]
     np.testing.assert_allclose(0.2 * 0.1 / own, approach_speeds(lmp), atol=3e-5)
 
@@ -194,28 +185,21 @@ def test_relative_limit_sees_plane_walls():
 def steps_of_a_crash(speed, limits, steps=60):
     """Two blobs meet in a frame that moves with a speed."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        region box block -0.5 0.5 -0.3 0.3 -0.3 0.3
-        create_box 1 box
-        lattice sc 0.05 origin 0.5 0.5 0.5
-        region left block -0.25 -0.03 -0.1 0.1 -0.1 0.1 units box
-        region right block 0.03 0.25 -0.1 0.1 -0.1 0.1 units box
-        create_atoms 1 region left
-        create_atoms 1 region right
-        group left region left
-        group right region right
-        mass 1 0.125
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1
-        neighbor 0.03 bin
-        timestep 0.001
+    lmp.commands_string(
+        header(atoms=FLUID)
+        + box("-0.5 0.5 -0.3 0.3 -0.3 0.3")
+        + lattice()
+        + filled("left", "-0.25 -0.03 -0.1 0.1 -0.1 0.1")
+        + filled("right", "0.03 0.25 -0.1 0.1 -0.1 0.1")
+        + "group left region left\ngroup right region right\nmass 1 0.125\n"
+        + sph_tait("1 1 fluid 1000 c0 20 alpha 0.1")
+        + neighbor(0.03)
+        + f"""timestep 0.001
         velocity left set {speed + 8} 0 0 units box
         velocity right set {speed - 8} 0 0 units box
         fix step all sph/integrate global {limits}
-        run 0""")
+        run 0"""
+    )
     dts = []
     for _ in range(steps):
         lmp.command("run 1 post no")
@@ -281,32 +265,23 @@ def test_semi_implicit_euler():
     assert x == pytest.approx(0.01 + 2e-6 * 55, rel=1e-12)
 
 
-DAM = """
-units si
-atom_style sph
-comm_modify vel yes
-boundary f p f
-region box block 0 1 0 0.2 0 0.6
-create_box 2 box
-lattice sc 0.05 origin 0.5 0.5 0.5
-region water block 0.05 0.4 INF INF 0.05 0.4 units box
-region wall block 0.05 0.95 0.0 0.2 0.05 INF side out units box
-create_atoms 1 region water
-create_atoms 2 region wall
-mass * 0.125
-group fluid type 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 25 alpha 0.1
-pair_coeff 2 2 boundary
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 0.002
-fix gravity fluid gravity 9.81 vector 0 0 -1
-fix step fluid sph/integrate {scheme}
+DAM = (
+    header("f p f", FLUID)
+    + box("0 1 0 0.2 0 0.6", 2)
+    + lattice()
+    + filled("water", "0.05 0.4 INF INF 0.05 0.4")
+    + filled("wall", "0.05 0.95 0.0 0.2 0.05 INF side out", 2)
+    + "mass * 0.125\ngroup fluid type 1\n"
+    + sph_tait("1 1 fluid 1000 c0 25 alpha 0.1", "2 2 boundary")
+    + neighbor(0.03)
+    + "timestep 0.002\n"
+    + gravity("fluid")
+    + """fix step fluid sph/integrate {scheme}
 fix drain fluid sph/drain
 {style}
 run 100
 """
+)
 
 
 @pytest.mark.parametrize("scheme", ["constant", "global"])
@@ -343,32 +318,21 @@ def test_many_runs_are_one_run():
 
 def wet_cloth(areal=1.0, options="", height=0.08, extra=""):
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style hybrid sph molecular
-        atom_modify map yes
-        comm_modify vel yes
-        region box block -1 1 -1 1 -1 1
-        create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-          extra/angle/per/atom 8 extra/dihedral/per/atom 8
-        mass 1 0.01
-        create_cloth 2 {areal} size 0.8 0.8 spacing 0.05 group cloth
-        create_atoms 1 single 0 0 {height}
-        group fluid type 1
-        special_bonds lj/coul 1 1 1
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 20
-        pair_coeff 2 2 boundary
-        bond_style pbd
-        bond_coeff 1 1
-        dihedral_style pbd
-        dihedral_coeff 1 0
-        neighbor 0.02 bin
-        timestep 0.01
+    lmp.commands_string(
+        header()
+        + cloth_box("-1 1 -1 1 -1 1")
+        + "mass 1 0.01\n"
+        + sheet(2, areal, "0.8 0.8", 0.05)
+        + f"create_atoms 1 single 0 0 {height}\ngroup fluid type 1\n"
+        + sph_tait(*COEFFICIENTS)
+        + cloth_styles("1", "0")
+        + neighbor(0.02)
+        + f"""timestep 0.01
         {extra}
         fix step fluid sph/integrate global {options}
         fix sheet cloth pbd/cloth
-        run 0""")
+        run 0"""
+    )
     return lmp
 
 
@@ -418,32 +382,27 @@ def test_particles_are_counted_by_their_own_limit():
     assert steps_by_limit(lmp) == {VELOCITY: 3}
 
 
-COLUMN = """
-    units si
-    atom_style sph
-    comm_modify vel yes
-    boundary p p f
-    region box block 0 0.3 0 0.3 0 0.8
-    create_box 1 box
-    lattice sc 0.05 origin 0.5 0.5 0.5
-    region water block INF INF INF INF 0.0 0.5 units box
-    create_atoms 1 region water
-    mass * 0.125
-    pair_style sph/tait 0.1
-    pair_coeff 1 1 fluid 1000 c0 25 alpha 0.1
-    neighbor 0.03 bin
-    neigh_modify every 1 delay 0 check yes
-    timestep 0.01
-    fix gravity all gravity 9.81 vector 0 0 -1
-    fix tank all wall/sph zlo 0
-    fix step all sph/integrate global {options}
-    {run}
-"""
+def on_floor(options, run):
+    """What a restart file of the column does not hold."""
+    return (
+        neighbor(0.03)
+        + gravity()
+        + f"fix tank all wall/sph zlo 0\nfix step all sph/integrate global {options}\n{run}\n"
+    )
 
 
 def run_column(options, run):
     lmp = instance()
-    lmp.commands_string(COLUMN.format(options=options, run=run))
+    lmp.commands_string(
+        header("p p f", FLUID)
+        + box("0 0.3 0 0.3 0 0.8")
+        + lattice()
+        + filled("water", "INF INF INF INF 0.0 0.5")
+        + "mass * 0.125\n"
+        + sph_tait("1 1 fluid 1000 c0 25 alpha 0.1")
+        + "timestep 0.01\n"
+        + on_floor(options, run)
+    )
     return lmp
 
 
@@ -497,15 +456,9 @@ def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(tmp_path):
     assert whole.extract_global("dt") > 2 * 0.05 * 0.05 / 25
     whole.command("run 60")
     again = instance()
-    again.commands_string(f"""
-        read_restart {tmp_path / "stop"}
-        comm_modify vel yes
-        neighbor 0.03 bin
-        neigh_modify every 1 delay 0 check yes
-        fix gravity all gravity 9.81 vector 0 0 -1
-        fix tank all wall/sph zlo 0
-        fix step all sph/integrate global {options}
-        run 60""")
+    again.commands_string(
+        f"read_restart {tmp_path / 'stop'}\ncomm_modify vel yes\n" + on_floor(options, "run 60")
+    )
     for quantity in ("time", "dt"):
         assert again.get_thermo(quantity) == whole.get_thermo(quantity)
     assert steps_by_limit(again) == steps_by_limit(whole)

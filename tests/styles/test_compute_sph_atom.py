@@ -5,23 +5,24 @@ import math
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import TWO_FLUIDS
+from scenes import TWO_FLUIDS, header, neighbor, sph_tait
 
 KEYWORDS = "density pressure energy sound volume neighbors dt active"
 
-STYLES = """
-special_bonds lj/coul 1 1 1
-pair_style sph/tait 0.1
-pair_coeff 1 1 fluid 1000 c0 20 alpha 0.5
-pair_coeff 2 2 fluid 1200 c0 30 gamma 4 nu 0.01 support 0.12
-pair_coeff 3 3 boundary
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 0.001
+STYLES = (
+    sph_tait(
+        "1 1 fluid 1000 c0 20 alpha 0.5",
+        "2 2 fluid 1200 c0 30 gamma 4 nu 0.01 support 0.12",
+        "3 3 boundary",
+    )
+    + "special_bonds lj/coul 1 1 1\n"
+    + neighbor(0.03)
+    + """timestep 0.001
 group fluid type 1 2
 group floor type 3
 fix step fluid sph/integrate global
 """
+)
 
 
 def scene(commands):
@@ -149,8 +150,7 @@ def test_ranks(tmp_path):
     run(write(tmp_path, TWO_FLUIDS + "write_data start.data", "in.make"))
     script = write(
         tmp_path,
-        "units si\natom_style hybrid sph molecular\ncomm_modify vel yes\nboundary p p f\n"
-        f"read_data start.data\n{STYLES}compute c all sph/atom {KEYWORDS}\n"
+        header("p p f") + f"read_data start.data\n{STYLES}compute c all sph/atom {KEYWORDS}\n"
         "dump d all custom 20 ${out} id c_c[*]\n"
         "dump_modify d sort id format float %.17g\nrun 20\n",
     )

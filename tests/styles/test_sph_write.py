@@ -5,25 +5,26 @@ import math
 import numpy as np
 import pytest
 from harness import instance, run, write
+from scenes import FLUID, box, header, sph_tait
 
-SCENE = """
-units {units}
-dimension {dimension}
-atom_style sph
-comm_modify vel yes
-region box block -1 1 -1 1 -0.2 0.2
-create_box 4 box
-mass * 1.0
-pair_style sph/tait 0.1 {setting}
-pair_coeff 1 1 fluid 1000 c0 20
-pair_coeff 2 2 fluid 1200 c0 30 gamma 4 support 0.14
-pair_coeff 3 3 boundary
-"""
+
+def text(setting="", units="si", dimension=3):
+    return (
+        header(atoms=FLUID, units=units, dimension=dimension)
+        + box("-1 1 -1 1 -0.2 0.2", 4)
+        + "mass * 1.0\n"
+        + sph_tait(
+            "1 1 fluid 1000 c0 20",
+            "2 2 fluid 1200 c0 30 gamma 4 support 0.14",
+            "3 3 boundary",
+            options=setting,
+        )
+    )
 
 
 def scene(setting="", units="si", dimension=3):
     lmp = instance()
-    lmp.commands_string(SCENE.format(setting=setting, units=units, dimension=dimension))
+    lmp.commands_string(text(setting, units, dimension))
     return lmp
 
 
@@ -70,7 +71,7 @@ def test_state_in_units_that_convert(tmp_path):
 
 
 def test_tables_are_appended_and_headed_on_any_number_of_ranks(tmp_path):
-    script = SCENE.format(setting="", units="si", dimension=3)
+    script = text()
     script += "sph_write kernel 1 3 11 t.txt\nsph_write state 1 5 t.txt 1000 1100\n"
     run(write(tmp_path, script), ranks=2)
     blocks = (tmp_path / "t.txt").read_text().split("\n\n\n")

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from harness import by_id, instance
+from scenes import FLUID, box, filled, header, lattice, sph_tait
 
 DX, C0 = 0.05, 10.0
 SIDE = 20 * DX
@@ -12,29 +13,26 @@ def half_and_half(support, steps):
     """A periodic square, its left half in particles of four times the mass of the right half's."""
     fine = DX / 2
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        dimension 2
-        atom_style sph
-        comm_modify vel yes
-        region box block 0 {SIDE} 0 {SIDE} {-fine / 2} {fine / 2}
-        create_box 2 box
-        region left block 0 {SIDE / 2} INF INF INF INF units box
-        region right block {SIDE / 2} {SIDE} INF INF INF INF units box
-        lattice sq {DX} origin 0.5 0.5 0
-        create_atoms 1 region left
-        lattice sq {fine} origin 0.5 0.5 0
-        create_atoms 2 region right
-        mass 1 {1000 * DX**2}
-        mass 2 {1000 * fine**2}
-        pair_style sph/tait {support * DX} tension yes
-        pair_coeff 1 1 fluid 1000 c0 {C0} alpha 0.1
-        pair_coeff 2 2 fluid 1000 c0 {C0} alpha 0.1 support {support * fine}
-        neighbor 0.02 bin
+    lmp.commands_string(
+        header(atoms=FLUID, dimension=2)
+        + box(f"0 {SIDE} 0 {SIDE} {-fine / 2} {fine / 2}", 2)
+        + lattice(DX, 2)
+        + filled("left", f"0 {SIDE / 2} INF INF INF INF")
+        + lattice(fine, 2)
+        + filled("right", f"{SIDE / 2} {SIDE} INF INF INF INF", 2)
+        + f"mass 1 {1000 * DX**2}\nmass 2 {1000 * fine**2}\n"
+        + sph_tait(
+            f"1 1 fluid 1000 c0 {C0} alpha 0.1",
+            f"2 2 fluid 1000 c0 {C0} alpha 0.1 support {support * fine}",
+            support=support * DX,
+            options="tension yes",
+        )
+        + f"""neighbor 0.02 bin
         timestep {0.2 * support * fine / C0}
         fix step all sph/integrate constant
         fix flat all enforce2d
-        run {steps}""")
+        run {steps}"""
+    )
     return lmp
 
 

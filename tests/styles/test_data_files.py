@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 from harness import by_id, instance
-from scenes import TWO_FLUIDS
+from scenes import TWO_FLUIDS, cloth_box, gravity, header, neighbor, sheet
 
 PAIR = """
 pair_coeff 1 1 fluid 1000 c0 20 alpha 0.3 nu 0.0123456789012345678
@@ -17,12 +17,7 @@ pair_coeff 1 2 alpha 0.7
 pair_coeff 1 3 nu 0.3 support 0.09 c0 55
 pair_coeff 3 3 boundary volume 1.3e-4
 """
-BEHIND = """
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-special_bonds lj/coul 1 1 1
-timestep 0.001
-"""
+BEHIND = neighbor(0.03) + "special_bonds lj/coul 1 1 1\ntimestep 0.001\n"
 # of pair_style: each must be in the restart file, and each changes the forces
 SETTINGS = {
     "defaults": "",
@@ -33,7 +28,7 @@ SETTINGS = {
     "delta": "density continuity delta 0.4",
     "reinit": "density continuity reinit 3",
 }
-BEFORE_READING = "units si\natom_style hybrid sph molecular\ncomm_modify vel yes\nboundary p p f\n"
+BEFORE_READING = header("p p f")
 
 
 def scene(setting="", coefficients=PAIR, extra=""):
@@ -128,17 +123,14 @@ def test_each_setting_matters():
 
 # ---------------------------------------------------------------------- rest shape of a cloth
 
-STYLES = """
-units si
-atom_style molecular
-atom_modify map yes
-comm_modify cutoff 0.3
-boundary f f f
-bond_style pbd
+STYLES = (
+    header("f f f", "molecular", cutoff=0.3)
+    + """bond_style pbd
 angle_style zero
 dihedral_style pbd
 pair_style zero 0.1
 """
+)
 HANGS = """
 pair_coeff * *
 bond_coeff 1 compliance 1e-2
@@ -148,15 +140,10 @@ special_bonds lj/coul 1 1 1
 region rim block -0.17 0.17 -0.17 0.17 INF INF side out
 group cloth type 1
 timestep 1e-3
-fix gravity all gravity 9.81 vector 0 0 -1
-"""
-MADE = """
-region box block -0.4 0.4 -0.4 0.4 -0.4 0.4
-create_box 1 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
-  extra/angle/per/atom 8 extra/dihedral/per/atom 8
-mass 1 1.0
-create_cloth 1 4.0 size 0.4 0.4 spacing 0.1
-"""
+""" + gravity()
+MADE = (
+    cloth_box("-0.4 0.4 -0.4 0.4 -0.4 0.4", 1) + "mass 1 1.0\n" + sheet(1, 4.0, "0.4 0.4", 0.1, "")
+)
 KEPT = "fix rest all property/atom d2_rest 3\n"
 FILLED = """
 variable x atom x

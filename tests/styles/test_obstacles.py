@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from harness import by_id, fail, instance, last_frame, run, write
-from scenes import HEADER
+from scenes import cloth_styles, final_dump, header, neighbor, sph_tait
 from scipy.spatial import cKDTree
 
 RADIUS = 0.3
@@ -25,14 +25,13 @@ def scene(tmp_path, mesh, fixes, cloth="", drops="", run_commands="run 0", mass=
     text += [f"{n} 1 {a + 1} {b + 1} {c + 1}" for n, (a, b, c) in enumerate(mesh.faces, 1)]
     (tmp_path / "obstacle.data").write_text("\n".join(text) + "\n")
     return (
-        HEADER.format(boundary="p p p")
+        header()
         + f"read_data {tmp_path / 'obstacle.data'} extra/bond/per/atom 8 extra/angle/per/atom 12 "
         + "extra/dihedral/per/atom 12\ngroup obstacle type 1\n"
         + f"{cloth}\n{drops}\ngroup water type 2\n"
-        + "special_bonds lj/coul 1 1 1\npair_style sph/tait 0.1\npair_coeff 1 1 none\n"
-        + "pair_coeff 3 3 none\npair_coeff 2 2 fluid 1000 c0 1e-3\nbond_style pbd\nbond_coeff 1 1\n"
-        + "angle_style zero\nangle_coeff *\ndihedral_style pbd\ndihedral_coeff * 0\n"
-        + "neighbor 0.1 bin\ncomm_modify cutoff 0.7\nneigh_modify every 1 delay 0 check yes\n"
+        + sph_tait("1 1 none", "3 3 none", "2 2 fluid 1000 c0 1e-3")
+        + cloth_styles("1", "0")
+        + neighbor(0.1, cutoff=0.7)
         + "timestep 1e-3\nfix step water sph/integrate constant\n"
         + f"{fixes}\n{run_commands}\n"
     )
@@ -154,10 +153,9 @@ def test_ranks(tmp_path, ranks):
         + "fix s cloth pbd/cloth damping 5\n"
         + "fix c water cloth/contact 0.01 obstacle obstacle friction 0.3"
     )
-    end = "write_dump all custom {}.txt id x y z vx vy vz modify sort id format float %.17g"
     drops = RAIN.format(speed=-3)
     for n in (1, ranks):
-        commands = f"run 100\n{end.format(n)}"
+        commands = "run 100\n" + final_dump(file=f"{n}.txt")
         text = scene(tmp_path, ball(), fixes, CLOTH, drops, commands)
         run(write(tmp_path, text, f"in.{n}"), ranks=n)
     one, many = (last_frame(tmp_path / f"{n}.txt") for n in (1, ranks))
@@ -175,11 +173,11 @@ def test_restart_continues_to_the_last_bit(tmp_path, carrier):
         "fix c water cloth/contact 0.01 obstacle obstacle friction 0.3\n"
         "thermo_style custom step f_c[8] f_c[9] f_c[10]\nthermo_modify format float %.17g"
     )
-    end = "run 40\nwrite_dump all custom {} id x y z vx vy vz modify sort id format float %.17g"
-    first = f"run 80\nwrite_restart half.bin\n{end.format('whole.txt')}"
+    end, again = ("run 40\n" + final_dump(file=f"{name}.txt") for name in ("whole", "again"))
+    first = f"run 80\nwrite_restart half.bin\n{end}"
     whole = scene(tmp_path, ball(), fixes, CLOTH, RAIN.format(speed=-3), first, mass=0.05)
     start = "comm_modify vel yes\nread_restart half.bin\n"
-    behind = start + whole[whole.index("special_bonds") :].replace(first, end.format("again.txt"))
+    behind = start + whole[whole.index("pair_style") :].replace(first, again)
     out = [run(write(tmp_path, text)) for text in (whole, behind)]
     tables = [text.split("Step")[-1].splitlines()[1:3] for text in out]
     assert tables[0] == tables[1]

@@ -8,7 +8,8 @@ import sys
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import HEADER
+from scenes import FLUID, box, filled, final_dump, gravity, header, jitter, neighbor, sph_tait
+from scenes import lattice as sites
 
 H = 0.1
 RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
@@ -65,22 +66,14 @@ KERNELS = {
 
 def two_particles(r, setting="", units="si", coeff=f"fluid {RHO0} c0 {C0}", second="", mass=1.0):
     lmp = instance()
-    lmp.commands_string(f"""
-        units {units}
-        atom_style sph
-        comm_modify vel yes
-        boundary p p p
-        region box block -1 1 -1 1 -1 1
-        create_box 2 box
-        mass 1 {mass}
-        mass 2 {mass * 1.5}
-        create_atoms 1 single 0 0 0
-        create_atoms 2 single {r} 0 0
-        pair_style sph/tait {H} {setting}
-        pair_coeff * * {coeff}
-        {second}
-        neighbor 0.02 bin
-        run 0""")
+    lmp.commands_string(
+        header(atoms=FLUID, units=units)
+        + box("-1 1 -1 1 -1 1", 2)
+        + f"mass 1 {mass}\nmass 2 {mass * 1.5}\n"
+        + f"create_atoms 1 single 0 0 0\ncreate_atoms 2 single {r} 0 0\n"
+        + sph_tait(f"* * {coeff}", support=H, options=setting)
+        + f"{second}\nneighbor 0.02 bin\nrun 0\n"
+    )
     return lmp
 
 
@@ -174,30 +167,24 @@ def lattice(
     types=1,
 ):
     """A periodic lattice at rest density, jittered if asked for."""
-    jitter_z = 0.01 if dimension == 3 else 0
     depth = "-0.2 0.2" if dimension == 3 else "-0.025 0.025"
-    box = f"-0.2 0.2 -0.2 0.2 {depth}" + (" 0.1 0.05 0.02" if kind == "prism" else "")
+    sides = f"-0.2 0.2 -0.2 0.2 {depth}" + (" 0.1 0.05 0.02" if kind == "prism" else "")
     lmp = instance()
-    lmp.commands_string(f"""
-        newton {newton}
-        units si
-        dimension {dimension}
-        atom_style sph
-        comm_modify vel yes
-        boundary {boundary}
-        lattice {"sc" if dimension == 3 else "sq"} 0.05
-        region box {kind} {box} units box
-        create_box {types} box
-        create_atoms 1 box
-        mass * {RHO0 * 0.05**dimension}
-        velocity all create 300 4321 loop geom
-        velocity all scale 1e22
-        {f"displace_atoms all random 0.01 0.01 {jitter_z} 99 units box" if displace else ""}
-        pair_style sph/tait {H} tension yes {setting}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha 0.3 nu 0.01
-        neighbor 0.02 bin
-        neigh_modify every 1 delay 0 check yes
-        {extra}""")
+    lmp.commands_string(
+        header(boundary, FLUID, dimension=dimension, newton=newton)
+        + f"lattice {'sc' if dimension == 3 else 'sq'} 0.05\n"
+        + box(sides, types, kind)
+        + f"create_atoms 1 box\nmass * {RHO0 * 0.05**dimension}\n"
+        + "velocity all create 300 4321 loop geom\nvelocity all scale 1e22\n"
+        + (jitter(0.01, 99, dimension=dimension) if displace else "")
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 {C0} alpha 0.3 nu 0.01",
+            support=H,
+            options=f"tension yes {setting}",
+        )
+        + neighbor(0.02)
+        + extra
+    )
     return lmp
 
 
@@ -321,32 +308,24 @@ def test_virial_is_the_derivative_of_the_energy():
 def test_column_of_water_rests_on_its_floor():
     """The floor carries the weight, and the pressure grows with depth."""
     lmp = instance()
-    lmp.commands_string("""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        boundary p p f
-        region box block 0 0.2 0 0.2 -0.2 0.6
-        create_box 2 box
-        mass 1 0.125
-        mass 2 1
-        lattice sc 0.05 origin 0.5 0.5 0.5
-        region floor block INF INF INF INF -0.026 0.0 units box
-        create_atoms 2 region floor
-        region water block INF INF INF INF 0.0 0.4 units box
-        create_atoms 1 region water
-        group fluid type 1
-        group floor type 2
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 20 alpha 0.5
-        pair_coeff 2 2 boundary
-        neighbor 0.03 bin
-        timestep 0.002
-        fix gravity fluid gravity 9.81 vector 0 0 -1
+    lmp.commands_string(
+        header("p p f", FLUID)
+        + box("0 0.2 0 0.2 -0.2 0.6", 2)
+        + "mass 1 0.125\nmass 2 1\n"
+        + sites()
+        + filled("floor", "INF INF INF INF -0.026 0.0", 2)
+        + filled("water", "INF INF INF INF 0.0 0.4", 1)
+        + "group fluid type 1\ngroup floor type 2\n"
+        + sph_tait("1 1 fluid 1000 c0 20 alpha 0.5", "2 2 boundary")
+        + neighbor(0.03)
+        + "timestep 0.002\n"
+        + gravity("fluid")
+        + """
         fix step fluid sph/integrate global
         compute push floor reduce sum fz
         fix mean all ave/time 1 1000 1000 c_push
-        run 3000""")
+        run 3000"""
+    )
     weight = 4 * 4 * 8 * 0.125 * 9.81
     assert -lmp.extract_fix("mean", 0, 0) == pytest.approx(weight, rel=0.02)
     z = by_id(lmp, "x")[:, 2][by_id(lmp, "type") == 1]
@@ -428,25 +407,23 @@ def test_continuity_follows_the_velocities_and_diffuses():
     np.testing.assert_allclose(by_id(lmp, "rho"), before + dt * rate, rtol=1e-12)
 
 
-VORTICES = """
-units si
-dimension 2
-atom_style sph
-comm_modify vel yes
-region box block 0 1 0 1 -0.02 0.02 units box
-create_box 1 box
-mass 1 $(1/32^2)
-lattice sq $(1/32) origin 0.5 0.5 0
-create_atoms 1 box
-displace_atoms all random $(0.2/32) $(0.2/32) 0 1234 units box
-pair_style sph/tait $(4/32) tension yes density continuity delta 0
-pair_coeff 1 1 fluid 1 c0 10
-set group all sph/rho 1
+VORTICES = (
+    header(atoms=FLUID, dimension=2)
+    + box("0 1 0 1 -0.02 0.02")
+    + "mass 1 $(1/32^2)\n"
+    + sites("$(1/32)", 2)
+    + "create_atoms 1 box\n"
+    + jitter("$(0.2/32)", 1234, dimension=2)
+    + sph_tait(
+        "1 1 fluid 1 c0 10",
+        support="$(4/32)",
+        options="tension yes density continuity delta 0",
+    )
+    + neighbor("$(0.5/32)")
+    + """set group all sph/rho 1
 variable u atom -cos(2*PI*x)*sin(2*PI*y)
 variable v atom sin(2*PI*x)*cos(2*PI*y)
 velocity all set v_u v_v NULL
-neighbor $(0.5/32) bin
-neigh_modify every 1 delay 0 check yes
 timestep 0.005
 fix step all sph/integrate constant
 fix flat all enforce2d
@@ -454,6 +431,7 @@ thermo_style custom step ke etotal
 thermo_modify norm no
 run 0
 """
+)
 
 
 def test_vortices_gain_no_energy_by_continuity():
@@ -526,38 +504,36 @@ def test_without_a_gradient_the_plain_difference_diffuses_and_within_one_type_on
     assert change[1] == change[3] == 0
 
 
-COLUMN = """
-units si
-dimension 2
-atom_style sph
-comm_modify vel yes
-boundary p f p
-region box block 0 0.5 -0.4 1.4 -0.03125 0.03125 units box
-create_box 2 box
-mass 1 $(1000/16^2)
-mass 2 1
-lattice sq 0.0625 origin 0.5 0.5 0
-region water block INF INF 0 1 INF INF units box
+COLUMN = (
+    header("p f p", FLUID, dimension=2)
+    + box("0 0.5 -0.4 1.4 -0.03125 0.03125", 2)
+    + "mass 1 $(1000/16^2)\nmass 2 1\n"
+    + sites(0.0625, 2)
+    + """region water block INF INF 0 1 INF INF units box
 region base block INF INF -0.3125 0 INF INF units box
 create_atoms 1 region water
 {base}
 group water type 1
 displace_atoms water random 0.006 0.006 0 12
-pair_style sph/tait 0.25 density continuity delta 0.1
-pair_coeff 1 1 fluid 1000 c0 31.3 alpha 0.5
-pair_coeff 2 2 boundary volume $(1/16^2)
 set group all sph/rho 1000
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 0.0016
-fix gravity water gravity 9.81 vector 0 -1 0
-fix step water sph/integrate constant
+"""
+    + sph_tait(
+        "1 1 fluid 1000 c0 31.3 alpha 0.5",
+        "2 2 boundary volume $(1/16^2)",
+        support=0.25,
+        options="density continuity delta 0.1",
+    )
+    + neighbor(0.03)
+    + "timestep 0.0016\n"
+    + gravity("water", "0 -1 0")
+    + """fix step water sph/integrate constant
 fix flat all enforce2d
 {wall}
 fix calm water viscous 200
 run 2000
 unfix calm
 """
+)
 
 
 @pytest.mark.parametrize(
@@ -587,7 +563,7 @@ def test_diffusion_does_not_depend_on_ranks_and_newton(tmp_path):
     script = (
         "newton ${newton}\n"
         + COLUMN.format(base="create_atoms 2 region base", wall="").replace("run 2000", "run 100")
-        + "write_dump all custom ${dump} id x y vx vy c_rho modify sort id format float %.17g\n"
+        + final_dump("x y vx vy c_rho")
     ).replace("fix calm water", "compute rho all property/atom rho\nfix calm water")
     write(tmp_path, script)
     ends = []
@@ -647,23 +623,20 @@ def test_mixed_precision_does_not_depend_on_where_the_box_is():
 def test_boundary_takes_the_mean_pressure_of_the_fluid_around_it():
     """Two fluid particles of unequal density at unequal distances of one wall particle."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        region box block -1 1 -1 1 -1 1
-        create_box 3 box
-        mass * 1.0
-        mass 2 1.4
-        create_atoms 1 single 0.04 0 0
-        create_atoms 2 single -0.07 0 0
-        create_atoms 3 single 0 0 0
-        pair_style sph/tait {H}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0}
-        pair_coeff 2 2 fluid {RHO0} c0 {C0}
-        pair_coeff 3 3 boundary volume 1e-4
-        neighbor 0.02 bin
-        run 0""")
+    lmp.commands_string(
+        header(atoms=FLUID)
+        + box("-1 1 -1 1 -1 1", 3)
+        + "mass * 1.0\nmass 2 1.4\ncreate_atoms 1 single 0.04 0 0\n"
+        + "create_atoms 2 single -0.07 0 0\ncreate_atoms 3 single 0 0 0\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 {C0}",
+            f"2 2 fluid {RHO0} c0 {C0}",
+            "3 3 boundary volume 1e-4",
+            support=H,
+        )
+        + neighbor(0.02)
+        + "run 0\n"
+    )
     rho = by_id(lmp, "rho")[:2]
     p = tait(rho) / rho**2
     w = wendland(np.array([0.04, 0.07]))
@@ -678,29 +651,17 @@ def test_boundary_takes_the_mean_pressure_of_the_fluid_around_it():
 def test_volumes_follow_a_boundary_only_while_there_is_fluid(fluid):
     """A plane of boundary particles is drawn apart; a fluid particle is far away, or none."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        region box block -1 1 -1 1 -1 1
-        create_box 2 box
-        mass * 1
-        lattice sc 0.05
-        region plane block -0.2 0.2 -0.2 0.2 -0.01 0.01 units box
-        create_atoms 2 region plane
-        {"create_atoms 1 single 0.9 0.9 0.9 units box" if fluid else ""}
-        variable u atom x
-        group plane type 2
-        velocity plane set v_u NULL NULL
-        pair_style sph/tait {H}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0}
-        pair_coeff 2 2 boundary
-        neighbor 0.05 bin
-        neigh_modify delay 0 every 1 check yes
-        compute volume plane sph/atom volume
-        fix go plane nve
-        timestep 1e-2
-        run 0""")
+    lmp.commands_string(
+        header(atoms=FLUID)
+        + box("-1 1 -1 1 -1 1", 2)
+        + "mass * 1\nlattice sc 0.05\n"
+        + filled("plane", "-0.2 0.2 -0.2 0.2 -0.01 0.01", 2)
+        + ("create_atoms 1 single 0.9 0.9 0.9 units box\n" if fluid else "")
+        + "variable u atom x\ngroup plane type 2\nvelocity plane set v_u NULL NULL\n"
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0}", "2 2 boundary", support=H)
+        + neighbor(0.05)
+        + "compute volume plane sph/atom volume\nfix go plane nve\ntimestep 1e-2\nrun 0\n"
+    )
     lmp.commands_string("compute mean plane reduce sum c_volume\nthermo_style custom step c_mean")
     lmp.command("run 0")
     before = lmp.extract_compute("mean", 0, 0)
@@ -715,12 +676,13 @@ def test_particles_of_no_role_take_no_part(tmp_path):
     for other in ("", "create_atoms 2 single 0.42 0.53 0.51 units box\n"):
         lmp = instance()
         lmp.commands_string(
-            HEADER.format(boundary="p p p")
-            + "region box block 0 1 0 1 0 1\ncreate_box 2 box\nmass * 1e-3\nlattice sc 0.1\n"
-            + "create_atoms 1 box\ndisplace_atoms all random 0.02 0.02 0.02 5 units box\n"
+            header()
+            + box("0 1 0 1 0 1", 2)
+            + "mass * 1e-3\nlattice sc 0.1\ncreate_atoms 1 box\n"
+            + jitter(0.02, 5)
             + other
-            + "pair_style sph/tait 0.2\npair_coeff 1 1 fluid 1 c0 10 alpha 0.1\n"
-            + "pair_coeff 2 2 none\nrun 0\n"
+            + sph_tait("1 1 fluid 1 c0 10 alpha 0.1", "2 2 none", support=0.2)
+            + "run 0\n"
         )
         if other:
             path = tmp_path / "none.data"

@@ -5,6 +5,8 @@ import itertools
 import numpy as np
 import pytest
 from harness import by_id, instance
+from scenes import FLUID, box, filled, header, neighbor, sph_tait
+from scenes import lattice as sites
 
 RHO0, C0 = 1.0, 20.0
 PARTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # xx, yy, zz, xy, xz, yz
@@ -14,27 +16,20 @@ def lattice(support, dimension=3, shear=0.0, units="si", commands="run 0"):
     """A lattice of spacing 1, compressed by a few per cent, sheared by xy/ly with its box."""
     n, tilted = 2 * support + 2, shear != 0
     sides = f"0 {n} 0 {n} -0.5 {n - 0.5 if dimension == 3 else 0.5}"
-    kind = f"prism {sides} 0 0 0" if tilted else f"block {sides}"
     lmp = instance()
-    lmp.commands_string(f"""
-        units {units}
-        dimension {dimension}
-        atom_style sph
-        comm_modify vel yes
-        lattice {"sc" if dimension == 3 else "sq"} 1.0
-        region box {kind} units box
-        create_box 1 box
-        create_atoms 1 box
-        mass 1 1.05
-        {f"change_box all xy final {shear * n} remap units box" if tilted else ""}
-        pair_style sph/tait {support}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0}
-        neighbor 0.2 bin
-        neigh_modify every 1 delay 0 check yes
-        compute virial all pressure NULL virial
+    lmp.commands_string(
+        header(atoms=FLUID, units=units, dimension=dimension)
+        + f"lattice {'sc' if dimension == 3 else 'sq'} 1.0\n"
+        + (box(f"{sides} 0 0 0", shape="prism") if tilted else box(sides))
+        + "create_atoms 1 box\nmass 1 1.05\n"
+        + (f"change_box all xy final {shear * n} remap units box\n" if tilted else "")
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0}", support=support)
+        + neighbor(0.2)
+        + f"""compute virial all pressure NULL virial
         compute state all sph/atom pressure density
         thermo_style custom step c_virial c_virial[*] pe vol
-        {commands}""")
+        {commands}"""
+    )
     return lmp
 
 
@@ -108,27 +103,17 @@ GRAVITY, FLOOR = 9.81, -0.025
 def column(commands):
     """A tall column of water on a floor of particles, periodic in x and y, with drag to settle."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        boundary p p f
-        region box block 0 0.2 0 0.2 -0.2 1.2
-        create_box 2 box
-        mass 1 0.12
-        mass 2 1
-        lattice sc 0.05 origin 0.5 0.5 0.5
-        region floor block INF INF INF INF -0.026 0.0 units box
-        create_atoms 2 region floor
-        region water block INF INF INF INF 0.0 1.0 units box
-        create_atoms 1 region water
-        group water type 1
-        group floor type 2
-        pair_style sph/tait 0.1
-        pair_coeff 1 1 fluid 1000 c0 31 alpha 0.5
-        pair_coeff 2 2 boundary
-        neighbor 0.03 bin
-        timestep 0.001
+    lmp.commands_string(
+        header("p p f", FLUID)
+        + box("0 0.2 0 0.2 -0.2 1.2", 2)
+        + "mass 1 0.12\nmass 2 1\n"
+        + sites()
+        + filled("floor", "INF INF INF INF -0.026 0.0", 2)
+        + filled("water", "INF INF INF INF 0.0 1.0", 1)
+        + "group water type 1\ngroup floor type 2\n"
+        + sph_tait("1 1 fluid 1000 c0 31 alpha 0.5", "2 2 boundary")
+        + neighbor(0.03)
+        + f"""timestep 0.001
         fix step water sph/integrate constant
         compute virial all pressure NULL virial
         compute each all stress/atom NULL virial
@@ -136,7 +121,8 @@ def column(commands):
         compute wall floor reduce sum c_each[3]
         compute state water sph/atom pressure volume
         thermo_style custom step ke c_virial c_wet c_wall
-        {commands}""")
+        {commands}"""
+    )
     return lmp
 
 

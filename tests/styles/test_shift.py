@@ -5,42 +5,43 @@ import math
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
+from scenes import (
+    FLUID,
+    MAKE_FLOW,
+    box,
+    filled,
+    final_dump,
+    header,
+    jitter,
+    lattice,
+    neighbor,
+    sph_tait,
+)
 
 DX, H = 0.05, 0.15
 
 # fluid in a periodic square, or between whatever `edges` says; one step moves nothing but shifts
-SCENE = """
-units si
-dimension 2
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary {boundary}
-region box {box}
-create_box 2 box
-mass * {mass}
-lattice sq 0.05 origin 0.5 0.5 0
-region water {water} units box
-create_atoms 1 region water
-{more}
-displace_atoms all random {disorder} {disorder} 0 4711 units box
-group fluid type 1
-velocity all set 0.3 0.4 0 units box
-set group all sph/rho 1000.0
-pair_style sph/tait 0.15 tension yes {pair}
-pair_coeff 1 1 fluid 1000.0 c0 10
-pair_coeff 2 2 boundary
-neighbor 0.025 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+SCENE = (
+    header("{boundary}", FLUID, dimension=2)
+    + box("{box}", 2)
+    + "mass * {mass}\n"
+    + lattice(dimension=2)
+    + filled("water", "{water}")
+    + "{more}\n"
+    + jitter("{disorder}", 4711, dimension=2)
+    + "group fluid type 1\nvelocity all set 0.3 0.4 0 units box\nset group all sph/rho 1000.0\n"
+    + sph_tait("1 1 fluid 1000.0 c0 10", "2 2 boundary", support=0.15, options="tension yes {pair}")
+    + neighbor(0.025)
+    + """timestep 1e-3
 {walls}
 fix shift {group} sph/shift {shift}
 thermo_modify norm no
 """
+)
 DEFAULTS = {
     "boundary": "p p p",
-    "box": "block 0 1 0 1 -0.025 0.025",
-    "water": "block INF INF INF INF INF INF",
+    "box": "0 1 0 1 -0.025 0.025",
+    "water": "INF INF INF INF INF INF",
     "mass": 2.5,
     "more": "",
     "disorder": 0.0,
@@ -128,7 +129,7 @@ def test_velocities_are_left_alone_unless_corrected():
     np.testing.assert_array_equal(by_id(lmp, "v"), before)
 
     # in u = (a y, b x) the correction is exact to the accuracy of the gradient
-    lmp, x = scene(disorder=0.01, shift="correct yes", box="block 0 1 0 1 -0.025 0.025")
+    lmp, x = scene(disorder=0.01, shift="correct yes", box="0 1 0 1 -0.025 0.025")
     lmp.commands_string("variable u atom 0.2*y\nvelocity all set v_u 0 0 units box\nrun 0")
     before = by_id(lmp, "v")
     lmp.command("run 1")
@@ -180,8 +181,8 @@ def test_only_the_group_is_shifted():
 def test_nothing_moves_within_a_support_of_a_free_surface(ratio, disorder):
     lmp, x, moved = shift_once(
         boundary="p f p",
-        water="block INF INF 0.2 0.8 INF INF",
-        box="block 0 1 -0.5 1.5 -0.025 0.025",
+        water="INF INF 0.2 0.8 INF INF",
+        box="0 1 -0.5 1.5 -0.025 0.025",
         disorder=disorder,
         walls=f"pair_style sph/tait {ratio * DX} tension yes\npair_coeff 1 1 fluid 1000 c0 10\n"
         "pair_coeff 2 2 boundary",
@@ -196,7 +197,7 @@ def test_nothing_moves_within_a_support_of_a_free_surface(ratio, disorder):
 def test_a_lone_particle_and_a_pair_stay():
     for others in ("", "create_atoms 1 single 0.51 0.5 0"):
         _, _, moved = shift_once(
-            water="block 2 3 2 3 INF INF", more=f"create_atoms 1 single 0.5 0.5 0\n{others}"
+            water="2 3 2 3 INF INF", more=f"create_atoms 1 single 0.5 0.5 0\n{others}"
         )
         assert np.all(moved == 0)
 
@@ -207,7 +208,7 @@ def test_wall_particles_count():
     q = np.minimum(np.hypot(steps[:, None], steps[None]) * DX / H, 1)
     volume = 1 / (7 / (math.pi * H**2) * np.sum((1 - q) ** 4 * (1 + 4 * q)))
     lmp, _, moved = shift_once(
-        water="block INF INF 0.3 0.6 INF INF",
+        water="INF INF 0.3 0.6 INF INF",
         mass=1000 * volume,
         walls=f"pair_coeff 2 2 boundary volume {volume}",
         more="region rest block INF INF 0.3 0.6 INF INF units box side out\n"
@@ -217,14 +218,14 @@ def test_wall_particles_count():
     assert lmp.extract_fix("shift", 0, 1, 1) == 120
     assert np.abs(moved).max() < 1e-12 * DX
     # without them the same rows are at a free surface
-    lmp, _, _ = shift_once(water="block INF INF 0.3 0.6 INF INF")
+    lmp, _, _ = shift_once(water="INF INF 0.3 0.6 INF INF")
     assert lmp.extract_fix("shift", 0, 1, 2) == 120
 
 
 def test_plane_walls_count():
     """A particle beside a plane at half a spacing has its share of fluid behind the plane."""
-    tank = {"boundary": "p f p", "box": "block 0 1 -0.5 1.5 -0.025 0.025"}
-    tank |= {"water": "block INF INF 0.2 0.8 INF INF", "shift": "clumping 0 strength 1"}
+    tank = {"boundary": "p f p", "box": "0 1 -0.5 1.5 -0.025 0.025"}
+    tank |= {"water": "INF INF 0.2 0.8 INF INF", "shift": "clumping 0 strength 1"}
     lmp, _, _ = shift_once(**tank, walls="")
     assert lmp.extract_fix("shift", 0, 1, 2) > 0
     lmp, _, moved = shift_once(**tank, walls="fix wall fluid wall/sph ylo 0.2 yhi 0.8")
@@ -236,8 +237,8 @@ def test_plane_walls_count():
 
 
 def test_a_particle_too_near_a_plane_wall_is_shifted_off():
-    tank = {"boundary": "p f p", "box": "block 0 1 -0.5 1.5 -0.025 0.025"}
-    tank |= {"water": "block INF INF 0.2 0.8 INF INF", "shift": "clumping 0"}
+    tank = {"boundary": "p f p", "box": "0 1 -0.5 1.5 -0.025 0.025"}
+    tank |= {"water": "INF INF 0.2 0.8 INF INF", "shift": "clumping 0"}
     near, far = (
         shift_once(**tank, walls=f"fix wall fluid wall/sph ylo {low} yhi 0.8")[1:]
         for low in (0.215, 0.185)
@@ -249,49 +250,24 @@ def test_a_particle_too_near_a_plane_wall_is_shifted_off():
 
 # ---------------------------------------------------------------------- ranks, restart, steps
 
-FLOW = """
-variable steps index 60
-variable dump index end.txt
-{start}
-comm_modify vel yes
-neighbor 0.02 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+FLOW = (
+    "variable steps index 60\nvariable dump index end.txt\n{start}\ncomm_modify vel yes\n"
+    + neighbor(0.02)
+    + """timestep 1e-3
 {style}
 fix shift all sph/shift strength 2 correct {correct}
 fix step all sph/integrate global max 2e-3
 fix flat all enforce2d
 """
-MAKE = """
-units si
-dimension 2
-atom_style sph
-atom_modify map yes
-comm_modify vel yes
-boundary p p p
-region box prism 0 1 0 1 -0.025 0.025 0.3 0 0
-create_box 1 box
-mass 1 2.5
-lattice sq 0.05 origin 0.5 0.5 0
-create_atoms 1 box
-displace_atoms all random 0.01 0.01 0 4711 units box
-set group all sph/rho 1000.0
-variable u atom -cos(2*PI*(x-0.3*y))*sin(2*PI*y)
-variable w atom sin(2*PI*(x-0.3*y))*cos(2*PI*y)
-velocity all set v_u v_w 0 units box
-write_data flow.data
-"""
-READ = """
-units si
-dimension 2
-atom_style sph
-atom_modify map yes
-boundary p p p
-read_data flow.data
-pair_style sph/tait 0.15 tension yes density {density}
-pair_coeff 1 1 fluid 1000.0 c0 10 nu 1e-3
-"""
-WRITE = "write_dump all custom ${dump} id x y z vx vy vz modify sort id format float %.17g\n"
+)
+READ = (
+    header(atoms=FLUID, dimension=2)
+    + "read_data flow.data\n"
+    + sph_tait(
+        "1 1 fluid 1000.0 c0 10 nu 1e-3", support=0.15, options="tension yes density {density}"
+    )
+)
+WRITE = final_dump()
 
 
 def flow(restart=False, density="summation", correct="yes", style=""):
@@ -302,7 +278,7 @@ def flow(restart=False, density="summation", correct="yes", style=""):
 @pytest.mark.parametrize("density", ["summation", "continuity"])
 def test_ranks_and_run_style(tmp_path, density):
     """A tilted periodic box, on 1, 2 and 4 ranks, under both run styles."""
-    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_FLOW, "in.make"))
     end = "run ${steps}\n" + WRITE
     verlet = write(tmp_path, flow(density=density) + end, "in.verlet")
     adaptive = flow(density=density).replace("fix flat", "run_style sph/adaptive global\nfix flat")
@@ -320,7 +296,7 @@ def test_ranks_and_run_style(tmp_path, density):
 def test_a_surface_on_another_rank(tmp_path):
     """The surface is within reach of particles behind the cut between two ranks."""
     region = "region water block INF INF INF 0.58 INF INF units box\ncreate_atoms 1 region water"
-    run(write(tmp_path, MAKE.replace("create_atoms 1 box", region), "in.make"))
+    run(write(tmp_path, MAKE_FLOW.replace("create_atoms 1 box", region), "in.make"))
     script = flow() + "run 60\nprint 'left $(f_shift[3]:%.0f)'\n" + WRITE
     cut = script.replace("read_data", "processors 1 2 1\nread_data")
     printed = run(write(tmp_path, script, "in.one"), dump="one.txt")
@@ -333,7 +309,7 @@ def test_a_surface_on_another_rank(tmp_path):
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("density", ["summation", "continuity"])
 def test_restart_continues_to_the_last_bit(tmp_path, ranks, density):
-    run(write(tmp_path, MAKE, "in.make"), ranks=ranks)
+    run(write(tmp_path, MAKE_FLOW, "in.make"), ranks=ranks)
     # no thermo output may hide what the fix counts
     end = "run 40\nprint 'moved $(f_shift[1]:%.17g)'\n" + WRITE
     first = "run 30\nwrite_restart mid.restart\n"
@@ -354,7 +330,7 @@ def test_restart_continues_to_the_last_bit(tmp_path, ranks, density):
 
 
 def test_split_runs_are_one_run(tmp_path):
-    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_FLOW, "in.make"))
     run(write(tmp_path, flow() + "run 60\n" + WRITE, "in.whole"), dump="whole.txt")
     run(write(tmp_path, flow() + "run 25\nrun 35\n" + WRITE, "in.split"), dump="split.txt")
     whole, split = (last_frame(tmp_path / f"{name}.txt") for name in ("whole", "split"))
@@ -362,7 +338,7 @@ def test_split_runs_are_one_run(tmp_path):
 
 
 def test_momentum_of_the_flow_is_kept(tmp_path):
-    run(write(tmp_path, MAKE, "in.make"))
+    run(write(tmp_path, MAKE_FLOW, "in.make"))
     run(write(tmp_path, flow(correct="no") + WRITE, "in.start"), dump="start.txt")
     run(write(tmp_path, flow(correct="no") + "run 60\n" + WRITE, "in.end"), dump="end.txt")
     before, after = (

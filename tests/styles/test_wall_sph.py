@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import by_id, instance, last_frame, run, write
+from harness import by_id, instance, run, write
+from scenes import FLUID, filled, gravity, header, jitter, lattice, neighbor, sph_tait
+from scenes import box as a_box
 
 H = 0.1
 RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
@@ -70,24 +72,18 @@ def particle(place, wall, dim=3, setting="", velocity="0 0 0", mass=None, more="
     mass = mass or 1.5 * RHO0 * (H / 2) ** dim
     depth = "-1 1" if dim == 3 else "-0.05 0.05"
     lmp = instance()
-    lmp.commands_string(f"""
-        units {box.get("units", "si")}
-        dimension {dim}
-        atom_style sph
-        atom_modify map yes
-        comm_modify vel yes
-        boundary {boundary}
-        region box block -1 1 -1 1 {depth}
-        create_box 1 box
+    lmp.commands_string(
+        header(boundary, FLUID, units=box.get("units", "si"), dimension=dim)
+        + a_box(f"-1 1 -1 1 {depth}")
+        + f"""
         mass 1 {mass}
         create_atoms 1 single {place} units box
         set type 1 vx {velocity.split()[0]} vy {velocity.split()[1]} vz {velocity.split()[2]}
-        pair_style sph/tait {H} {setting}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0} nu {NU}
-        neighbor 0.02 bin
-        thermo_modify norm no
-        fix wall all wall/sph {wall}
-        {more}""")
+        """
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0} nu {NU}", support=H, options=setting)
+        + neighbor(0.02)
+        + f"thermo_modify norm no\nfix wall all wall/sph {wall}\n{more}\n"
+    )
     return lmp
 
 
@@ -246,25 +242,17 @@ def channel(walls, extra="", ratio=3.0, alpha=0.0, setting="tension yes", size=(
     lattice_sum = norm[2] / ratio**2 * np.where(q < 1, shape(np.minimum(q, 1)), 0).sum()
     lx, ly = size[0] * dx, size[1] * dx
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        dimension 2
-        atom_style sph
-        comm_modify vel yes
-        boundary p f p
-        region box block 0 {lx} {-H} {ly + H} {-dx} {dx}
-        create_box 1 box
-        mass 1 {RHO0 * dx * dx / lattice_sum}
-        lattice sq {dx} origin 0.5 0.5 0
-        region water block INF INF 0 {ly} INF INF units box
-        create_atoms 1 region water
-        pair_style sph/tait {H} {setting}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha {alpha}
-        neighbor {0.4 * dx} bin
-        thermo_modify norm no
-        variable ly equal {ly}
-        fix wall all wall/sph {walls.format(ly=ly)}
-        {extra}""")
+    lmp.commands_string(
+        header("p f p", FLUID, dimension=2)
+        + a_box(f"0 {lx} {-H} {ly + H} {-dx} {dx}")
+        + f"mass 1 {RHO0 * dx * dx / lattice_sum}\n"
+        + lattice(dx, 2)
+        + filled("water", f"INF INF 0 {ly} INF INF")
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0} alpha {alpha}", support=H, options=setting)
+        + neighbor(0.4 * dx)
+        + f"thermo_modify norm no\nvariable ly equal {ly}\n"
+        + f"fix wall all wall/sph {walls.format(ly=ly)}\n{extra}\n"
+    )
     return lmp, lx, ly
 
 
@@ -317,53 +305,28 @@ def test_work_of_a_piston():
 
 # ---------------------------------------------------------------------- invariants
 
-SHAKEN = f"""
-variable dump index end.txt
-units si
-atom_style sph
-comm_modify vel yes
-boundary f f f
-read_data shaken.data
-pair_style sph/tait {H}
-pair_coeff 1 1 fluid {RHO0} c0 {C0} nu {NU} alpha 0.1
-neighbor 0.03 bin
-neigh_modify every 1 delay 0 check yes
-timestep 1e-3
+SHAKEN = (
+    header("f f f", FLUID)
+    + a_box("-0.1 0.5 -0.1 0.5 -0.1 0.6")
+    + "mass 1 0.125\n"
+    + lattice()
+    + filled("water", "0 0.4 0 0.4 0 0.4")
+    + jitter(0.01, 77)
+    + "velocity all set 1 -2 -1 units box\n"
+    + sph_tait(f"1 1 fluid {RHO0} c0 {C0} nu {NU} alpha 0.1", support=H)
+    + neighbor(0.03)
+    + """timestep 1e-3
 variable lid equal 0.45-0.4*time
-fix gravity all gravity 9.81 vector 0 0 -1
 fix wall all wall/sph xlo 0 xhi 0.4 ylo 0 yhi 0.4 zlo 0 zhi v_lid velocity zlo 1 0.5 0
 fix step all sph/integrate global
-thermo_style custom step time f_wall f_wall[1] f_wall[3] f_wall[18]
 thermo_modify norm no
-compute sum all reduce sum fx fy fz
 """
-
-MAKE_SHAKEN = f"""
-units si
-atom_style sph
-comm_modify vel yes
-boundary f f f
-region box block -0.1 0.5 -0.1 0.5 -0.1 0.6
-create_box 1 box
-mass 1 0.125
-lattice sc 0.05 origin 0.5 0.5 0.5
-region water block 0 0.4 0 0.4 0 0.4 units box
-create_atoms 1 region water
-displace_atoms all random 0.01 0.01 0.01 77 units box
-velocity all set 1 -2 -1 units box
-pair_style sph/tait {H}
-pair_coeff 1 1 fluid {RHO0} c0 {C0}
-write_data shaken.data nocoeff
-"""
-
-END = "run 100\nwrite_dump all custom ${dump} id x y z vx vy vz modify sort id format float %.17g\n"
+)
 
 
-def test_the_walls_get_what_the_fluid_gives(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    run(write(tmp_path, MAKE_SHAKEN, "in.make"))
+def test_the_walls_get_what_the_fluid_gives():
     lmp = instance()
-    lmp.commands_string(SHAKEN + "unfix gravity\nrun 40")
+    lmp.commands_string(SHAKEN + "run 40")
     on_fluid = by_id(lmp, "f").sum(axis=0)
     on_walls = np.array([lmp.extract_fix("wall", 0, 1, k) for k in range(18)]).reshape(6, 3)
     np.testing.assert_allclose(on_walls.sum(axis=0), -on_fluid, rtol=1e-10)
@@ -373,46 +336,28 @@ def test_the_walls_get_what_the_fluid_gives(tmp_path, monkeypatch):
     assert np.all(outwards > 0)
 
 
-def test_ranks(tmp_path):
-    run(write(tmp_path, MAKE_SHAKEN, "in.make"))
-    script = write(tmp_path, SHAKEN + END, "in.shaken")
-    tables = {}
-    for ranks in (1, 2, 4):
-        out = run(script, ranks=ranks, dump=f"end{ranks}.txt")
-        tables[ranks] = np.array(out.split("Loop time")[0].splitlines()[-2].split(), dtype=float)
-        difference = last_frame(tmp_path / f"end{ranks}.txt") - last_frame(tmp_path / "end1.txt")
-        assert np.abs(difference).max() < 1e-10
-        np.testing.assert_allclose(tables[ranks], tables[1], rtol=1e-7)
-
-
 def bounce(dt):
     """Largest change of the energy while a block of 2-D water falls on the wall and bounces."""
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        dimension 2
-        atom_style sph
-        comm_modify vel yes
-        boundary p f p
-        region box block -1 1 -0.2 1 -0.05 0.05
-        create_box 1 box
-        lattice sq 0.05 origin 0.5 0.27 0
-        region drop block -0.1 0.1 0.1 0.3 INF INF units box
-        create_atoms 1 region drop
-        mass 1 2.1
-        displace_atoms all random 0.01 0.01 0 77 units box
-        velocity all set 0 -3 0 units box
-        pair_style sph/tait {H} tension yes
-        pair_coeff 1 1 fluid {RHO0} c0 {C0}
-        neighbor 0.03 bin
-        neigh_modify every 1 delay 0 check yes
+    lmp.commands_string(
+        header("p f p", FLUID, dimension=2)
+        + a_box("-1 1 -0.2 1 -0.05 0.05")
+        + "lattice sq 0.05 origin 0.5 0.27 0\n"
+        + filled("drop", "-0.1 0.1 0.1 0.3 INF INF")
+        + "mass 1 2.1\n"
+        + jitter(0.01, 77, dimension=2)
+        + "velocity all set 0 -3 0 units box\n"
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0}", support=H, options="tension yes")
+        + neighbor(0.03)
+        + f"""
         fix move all nve
         fix wall all wall/sph ylo 0
         fix_modify wall energy yes
         thermo_modify norm no
         thermo_style custom step pe ke etotal
         timestep {dt}
-        run 0""")
+        run 0"""
+    )
     energy, force = [lmp.get_thermo("etotal")], 0.0
     for _ in range(40):
         lmp.command(f"run {round(1e-3 / dt)} post no")
@@ -462,25 +407,17 @@ def test_what_is_slower_than_sound_is_turned_back(what, speed, ratio):
     """A drop, and a lone particle, whose own density would not stop it."""
     dx = H / ratio
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        atom_style sph
-        comm_modify vel yes
-        boundary f f f
-        region box block -4 4 -4 4 -0.3 4
-        create_box 1 box
-        mass 1 {RHO0 * dx**3}
-        lattice sc {dx} origin 0.31 0.12 0.17
-        region drop sphere 0 0 0.2 0.1 units box
-        create_atoms 1 {what}
-        velocity all set 0 0 {-speed * C0} units box
-        pair_style sph/tait {H}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0}
-        neighbor 0.03 bin
-        timestep 1e-3
-        fix step all sph/integrate global
-        fix wall all wall/sph zlo 0
-        run 0 post no""")
+    lmp.commands_string(
+        header("f f f", FLUID)
+        + a_box("-4 4 -4 4 -0.3 4")
+        + f"mass 1 {RHO0 * dx**3}\nlattice sc {dx} origin 0.31 0.12 0.17\n"
+        + f"region drop sphere 0 0 0.2 0.1 units box\ncreate_atoms 1 {what}\n"
+        + f"velocity all set 0 0 {-speed * C0} units box\n"
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0}", support=H)
+        + neighbor(0.03)
+        + "timestep 1e-3\nfix step all sph/integrate global\n"
+        + "fix wall all wall/sph zlo 0\nrun 0 post no\n"
+    )
     lowest, start = math.inf, lmp.get_natoms()
     for _ in range(round(20 + 40 / speed)):
         lmp.command("run 1 pre no post no")
@@ -504,27 +441,22 @@ def test_the_floor_carries_the_weight(dim):
     dx = 0.05
     up = "y" if dim == 2 else "z"
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        dimension {dim}
-        atom_style sph
-        comm_modify vel yes
-        boundary {"p f p" if dim == 2 else "p p f"}
-        region box block 0 0.2 {"-0.2 0.6 -0.025 0.025" if dim == 2 else "0 0.2 -0.2 0.6"}
-        create_box 1 box
-        mass 1 {RHO0 * dx**dim}
-        lattice {"sq" if dim == 2 else "sc"} {dx} origin 0.5 0.5 {0 if dim == 2 else 0.5}
-        region water block INF INF {"0 0.4 INF INF" if dim == 2 else "INF INF 0 0.4"} units box
-        create_atoms 1 region water
-        pair_style sph/tait {3 * dx}
-        pair_coeff 1 1 fluid {RHO0} c0 {C0} alpha 0.5
-        neighbor 0.03 bin
-        timestep 0.002
-        fix gravity all gravity 9.81 vector {"0 -1 0" if dim == 2 else "0 0 -1"}
+    lmp.commands_string(
+        header("p f p" if dim == 2 else "p p f", FLUID, dimension=dim)
+        + a_box("0 0.2 -0.2 0.6 -0.025 0.025" if dim == 2 else "0 0.2 0 0.2 -0.2 0.6")
+        + f"mass 1 {RHO0 * dx**dim}\n"
+        + lattice(dx, dim)
+        + filled("water", "INF INF 0 0.4 INF INF" if dim == 2 else "INF INF INF INF 0 0.4")
+        + sph_tait(f"1 1 fluid {RHO0} c0 {C0} alpha 0.5", support=3 * dx)
+        + neighbor(0.03)
+        + "timestep 0.002\n"
+        + gravity(vector="0 -1 0" if dim == 2 else "0 0 -1")
+        + f"""
         fix step all sph/integrate global
         fix wall all wall/sph {up}lo 0
         fix mean all ave/time 1 1000 1000 f_wall[{dim}]
-        run 4000""")
+        run 4000"""
+    )
     weight = by_id(lmp, "x").shape[0] * RHO0 * dx**dim * 9.81
     assert -lmp.extract_fix("mean", 0, 0) == pytest.approx(weight, rel=1e-3)
     height = by_id(lmp, "x")[:, dim - 1]
@@ -566,25 +498,24 @@ def test_start_up_between_walls(exact, limit):
     lid = f"velocity yhi {V0} 0 0" if exact is couette else ""
     drive = "" if exact is couette else f"fix drive all gravity {BODY} vector 1 0 0"
     lmp = instance()
-    lmp.commands_string(f"""
-        units si
-        dimension 2
-        atom_style sph
-        comm_modify vel yes
-        boundary p f p
-        region box block 0 {8 * dx} {-3 * dx} {L + 3 * dx} {-dx} {dx}
-        create_box 1 box
-        lattice sq {dx} origin 0.5 0.5 0
-        region water block INF INF 0 {L} INF INF units box
-        create_atoms 1 region water
-        mass 1 {RHO0 * dx**2}
-        pair_style sph/tait {3 * dx} tension yes
-        pair_coeff 1 1 fluid {RHO0} c0 {20 * V0} nu {NU_MORRIS}
-        neighbor {0.5 * dx} bin
+    lmp.commands_string(
+        header("p f p", FLUID, dimension=2)
+        + a_box(f"0 {8 * dx} {-3 * dx} {L + 3 * dx} {-dx} {dx}")
+        + lattice(dx, 2)
+        + filled("water", f"INF INF 0 {L} INF INF")
+        + f"mass 1 {RHO0 * dx**2}\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 {20 * V0} nu {NU_MORRIS}",
+            support=3 * dx,
+            options="tension yes",
+        )
+        + neighbor(0.5 * dx)
+        + f"""
         timestep 1
         fix step all sph/integrate global
         fix wall all wall/sph ylo 0 yhi {L} {lid}
-        {drive}""")
+        {drive}"""
+    )
     for t in (0.0225, 0.045, 0.1125, 0.225, 1.0):
         lmp.commands_string(f"""
             variable reached equal time>={t}
@@ -624,18 +555,11 @@ def test_slip_walls_leave_a_uniform_flow_alone():
 
 # ---------------------------------------------------------------------- errors
 
-BOX = f"""
-units si
-dimension {{dim}}
-atom_style sph
-comm_modify vel yes
-boundary {{boundary}}
-region box {{box}}
-create_box 1 box
-mass 1 0.1
-pair_style sph/tait {H}
-pair_coeff 1 1 fluid 1000 c0 20
-"""
+BOX = (
+    header("{boundary}", FLUID, dimension="{dim}")
+    + "region box {box}\ncreate_box 1 box\nmass 1 0.1\n"
+    + sph_tait("1 1 fluid 1000 c0 20", support=H)
+)
 
 
 def box(dim=3, boundary="f f f", box="block -1 1 -1 1 -1 1"):

@@ -55,7 +55,6 @@ class Scene:
         return f"comm_modify vel yes\nread_restart {restart}\n" + self.settings + self.fixes
 
 
-HEADER = header("{boundary}")
 END = "\nrun ${steps}\n" + final_dump()
 
 # A jittered block of water falls on a pinned sheet.

@@ -48,7 +48,7 @@ class Bug:
         return (ROOT / SOURCE / self.file).read_text().count(self.old)
 
 
-STEPPING, PARALLEL = "tests/styles/test_stepping.py", "tests/styles/test_parallel.py"
+STEPPING, RANKS = "tests/styles/test_stepping.py", "tests/styles/test_styles.py::test_ranks"
 SOURCES, BLOCK = "tests/styles/test_sources.py", "tests/styles/test_block.py"
 PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
@@ -69,7 +69,7 @@ BUGS = [
         "    halo.forward_displacements(constraints.channel_of_edge_color(c), displacement.data(),\n"
         "                               substep_dt());\n"
         "  } else {",
-        "  } else {", PARALLEL),
+        "  } else {", RANKS),
     Bug("cloth: twice the impulse is lent", "fix_pbd_cloth.cpp",
         "part = 0.5 * (1.0 - 1.0 / substeps)", "part = 1.0 - 1.0 / substeps",
         f"{CLOTH}::test_springs_of_other_fixes_neither_feed_nor_damp"),
@@ -83,7 +83,7 @@ BUGS = [
         "Vec3(-hold[i][0], -hold[i][1], -hold[i][2])", "Vec3(hold[i][0], hold[i][1], hold[i][2])",
         "tests/styles/test_cloth_held.py"),
     Bug("pair: ghosts without density and pressure", "pair_sph_tait.cpp",
-        "  comm->forward_comm(this, 2);\n  if (extrapolate)", "  if (extrapolate)", PARALLEL),
+        "  comm->forward_comm(this, 2);\n  if (extrapolate)", "  if (extrapolate)", RANKS),
     Bug("pair: one mass for all of a type", "pair_sph_tait.cpp",
         "if (mass[t] != amount[i]) mass[t] = 0.0;", "",
         f"{PAIR}::test_particles_of_one_type_count_with_masses_of_their_own"),
@@ -96,7 +96,7 @@ BUGS = [
         f"{STEPPING}::test_semi_implicit_euler"),
     Bug("step: the first rank decides", "stepping/step_control.cpp",
         "MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);",
-        "out = in; MPI_Bcast(&out, 1, MPI_DOUBLE_INT, 0, world);", PARALLEL),
+        "out = in; MPI_Bcast(&out, 1, MPI_DOUBLE_INT, 0, world);", RANKS),
     Bug("block: impulses reach twice as far", "stepping/block_state.cpp",
         "columns[Columns::REACH][i] = now + half;", "columns[Columns::REACH][i] = now + 2.0 * half;",
         BLOCK),

@@ -22,6 +22,8 @@ compute cloth cloth pbd/atom sheet strain curvature area nx ny nz
 compute edges all pbd/local sheet edge length strain
 compute longest all reduce max c_edges[1] inputs local
 compute most all reduce max c_edges[2] inputs local
+compute steps all sph/step dt active compression updates
+compute held all pbd/cloth force/z strain
 """,
     steps=60,
 )
@@ -34,7 +36,8 @@ RAIN = replace(
     settings=DROP_SCENE.settings.replace("timestep 0.002[s]", "timestep 5e-4[s]"),
     fixes=DROP_SCENE.fixes.replace("sph/integrate global gain 1", "sph/integrate constant").replace(
         "0.015[m]", "0.02[m]"
-    ),
+    )
+    + "compute met all cloth/contact overlap contacts\n",
     steps=50,
 )
 # every kind of constraint at once, with edges projected along their start
@@ -159,7 +162,7 @@ class Entry:
         columns: dump column -> unit; none of them is zero everywhere.
         tables: file that the scene writes -> units of its columns.
         commands: beginnings of commands; every keyword that the style then says it knows is tried.
-        flags: keywords that take no value.
+        flags: pattern of keywords that take no value.
         free: keywords whose value may be any word.
         fails: check -> why it fails today.
     """
@@ -273,7 +276,35 @@ ENTRIES = (
         "tank",
         output={f"f_wall[{k}]": "N" for k in range(1, 19)},
         commands=("fix x all wall/sph xlo -1",),
-        flags="xlo xhi ylo yhi zlo zhi",
+        flags="[xyz](lo|hi)",
+    ),
+    Entry(
+        "compute",
+        "cloth/contact",
+        "rain",
+        output={"c_met[1]": "m"},
+        counts={"c_met[2]": ""},
+        commands=("compute x all cloth/contact",),
+        flags="(?!fix$).*",
+        free="fix",
+    ),
+    Entry(
+        "compute",
+        "pbd/cloth",
+        "drop",
+        output={"c_held[1]": "N", "c_held[2]": ""},
+        commands=("compute x all pbd/cloth",),
+        flags="(?!fix$).*",
+        free="fix",
+    ),
+    Entry(
+        "compute",
+        "sph/step",
+        "drop",
+        output={"c_steps[1]": "s", "c_steps[2]": "", "c_steps[3]": "", "c_steps[4]": ""},
+        commands=("compute x all sph/step",),
+        flags="(?!fix$).*",
+        free="fix",
     ),
     Entry(
         "compute",
@@ -281,7 +312,7 @@ ENTRIES = (
         "drop",
         columns={f"c_cloth[{k}]": u for k, u in enumerate(["", "1/m", "m^2", "", "", ""], 1)},
         commands=(CLOTH + "compute x all pbd/atom s",),
-        flags="strain curvature area nx ny nz fx fy fz",
+        flags=".*",
     ),
     Entry(
         "compute",
@@ -292,7 +323,7 @@ ENTRIES = (
             CLOTH + "compute x all pbd/local s edge",
             CLOTH + "compute x all pbd/local s hinge",
         ),
-        flags="id1 id2 id3 id4 type rest length strain angle curvature",
+        flags=".*",
     ),
     Entry(
         "compute",
@@ -303,7 +334,7 @@ ENTRIES = (
             for k, unit in enumerate(["kg/m^3", "Pa", "J", "m/s", "m^3", "", "s", ""], 1)
         },
         commands=("compute x all sph/atom",),
-        flags="density pressure energy sound volume neighbors dt active side",
+        flags=".*",
     ),
     Entry(
         "command",
@@ -322,7 +353,7 @@ ENTRIES = (
             "state.table": ("kg/m^2", "Pa*m", "m/s", "J/kg"),
         },
         commands=("sph_write",),
-        flags="kernel state",
+        flags=".*",
     ),
     Entry(
         "run",
@@ -330,6 +361,6 @@ ENTRIES = (
         "block steps",
         output={"f_step": "s", "f_step[2]": ""},
         commands=("fix x water sph/integrate global\nrun_style sph/adaptive",),
-        flags="constant global individual block",
+        flags=".*",
     ),
 )

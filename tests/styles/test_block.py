@@ -96,7 +96,7 @@ def test_all_in_one_bin_is_the_global_scheme(folder):
 
 
 def test_unequal_steps_are_taken_where_they_gain_enough(folder, monkeypatch):
-    """With one for all everybody is updated in every step, and as many steps are as with global."""
+    """A uniform step updates all particles in every step, in as many steps as global."""
     updates, active = {}, {}
     for scheme, gain in (("global", 1), ("block", 1), ("block", 1.5), ("block", 50)):
         lmp = started(folder, collide(scheme, f"gain {gain}"), monkeypatch)
@@ -247,7 +247,7 @@ def test_a_steady_state_and_a_moving_frame_take_the_longest_step(tmp_path, monke
 )
 @pytest.mark.parametrize(("ranks", "newton"), [(2, "on"), (4, "on"), (2, "off")])
 def test_ranks(folder, scene, ranks, newton):
-    """Active and inactive neighbours on two sides of a border, periodic ones too."""
+    """Active and inactive neighbors on two sides of a border, periodic ones too."""
     run(write(folder, scene + END), dump="one.txt", steps=120)
     run(write(folder, scene + END), ranks=ranks, dump="many.txt", steps=120, newton=newton)
     one, many = last_frame(folder / "one.txt"), last_frame(folder / "many.txt")
@@ -370,7 +370,7 @@ def splash(scheme, limits="", ceiling=2e-3, end=0.14, height=0.3):
 
 
 def test_a_fast_drop_wakes_a_pool_that_sleeps():
-    """As with small steps for all; who is not woken remains a wall."""
+    """As with a small uniform step; what is not woken remains a wall."""
     reference, _ = splash("constant", ceiling=2e-4)
     awake, updates = splash("block")
     woken, fewer = splash("block", "sleep 0.01")
@@ -444,7 +444,7 @@ def sleepers(lmp):
 
 @pytest.mark.parametrize("floor", FLOORS)
 def test_a_floor_that_begins_to_move_wakes_water_that_sleeps(floor):
-    """It is lifted as with a small step for all."""
+    """It is lifted as with a small uniform step."""
     kinetic = {}
     for scheme, ceiling in (("constant", 2e-4), ("block", 1e-3)):
         lmp = instance()

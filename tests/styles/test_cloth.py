@@ -301,16 +301,16 @@ def test_damping_decays_stretching_at_its_rate_and_leaves_the_fall():
 
 def test_cloth_that_crosses_the_periodic_border_moves_like_one_that_does_not():
     shapes = []
-    for centre, left in (([0, 0, 0], "INF -0.45"), ([2, 1.9, 1.95], "1.4 1.55")):
+    for center, left in (([0, 0, 0], "INF -0.45"), ([2, 1.9, 1.95], "1.4 1.55")):
         lmp = cloth(
             "run 60",
             bend=0.2,
-            options=f"center {' '.join(map(str, centre))} pin left pins",
+            options=f"center {' '.join(map(str, center))} pin left pins",
             fix="pin pins",
             regions=f"region left block {left} INF INF INF INF\n",
         )
         boxes = np.array([lmp.decode_image_flags(int(i)) for i in by_id(lmp, "image")])
-        shapes.append(by_id(lmp, "x") + 4.0 * boxes - np.array(centre))
+        shapes.append(by_id(lmp, "x") + 4.0 * boxes - np.array(center))
     assert np.ptp(shapes[0][:, 2]) > 0.01
     np.testing.assert_allclose(shapes[1], shapes[0], atol=1e-10)
 
@@ -318,13 +318,13 @@ def test_cloth_that_crosses_the_periodic_border_moves_like_one_that_does_not():
 def test_cloth_that_crosses_a_face_that_moves_feels_nothing_of_it():
     """It turns as it does elsewhere: 1.6e-7 m apart, since LAMMPS moves images a step late."""
     shapes = []
-    for centre in (0, 2):
+    for center in (0, 2):
         lmp = cloth(
             "unfix gravity\nfix grow all deform 1 x vel 0.8 remap v\n"
             "velocity all ramp vz -2 2 y -0.5 0.5 units box\n"
             "velocity all set 1 NULL NULL units box\nrun 100",
             bend=0.2,
-            options=f"center {centre} 0 0",
+            options=f"center {center} 0 0",
         )
         shapes.append(by_id(lmp, "x")[:, 1:])
     assert np.ptp(shapes[0][:, 1]) > 0.3
@@ -554,7 +554,7 @@ def test_pins_that_move_carry_the_cloth_along(solver):
 
 
 def string_under_tension(dt, direction):
-    """Largest deflection of a taut string after 2000 steps, of a tenth of a millimetre at first.
+    """Largest deflection of a taut string after 2000 steps, of a tenth of a millimeter at first.
 
     20 links of 0.055 m and 1 g under 50 N: m l / T allows 1.05 ms along old directions.
     """

@@ -1,4 +1,4 @@
-"""Cloth that nobody would sew: its motion stays finite and keeps momentum, or an error names it.
+"""Cloth far from any use: its motion stays finite and keeps momentum, or an error names it.
 
 SPHCLOTH_EXAMPLES=5000 looks at as many random cloths in each test that draws them.
 """
@@ -276,7 +276,7 @@ def test_pins_stay_to_the_last_bit(folder, cloth):
 
 @st.composite
 def gentle_cloths(draw, hinges=0, directions=("current", "start")):
-    """Edges of half a metre or more that move by little in a step, at every mass and stiffness."""
+    """Edges of half a meter or more that move by little in a step, at every mass and stiffness."""
     n = draw(st.integers(4, 8))
     grid = draw(st.lists(st.tuples(FEW, FEW, FEW), min_size=n, max_size=n, unique=True))
     rng = np.random.default_rng(draw(st.integers(0, 99)))
@@ -314,16 +314,16 @@ def test_edges_along_their_start_keep_angular_momentum(folder, cloth):
     assert changed <= np.linalg.norm(x, axis=2).max() * round_off(cloth, x, v)
 
 
-def moved_to(cloth, centre, box):
-    return replace(cloth, x=cloth.x + centre, rest=cloth.rest + centre, box=box)
+def moved_to(cloth, center, box):
+    return replace(cloth, x=cloth.x + center, rest=cloth.rest + center, box=box)
 
 
 @examples(60)
-@given(cloth=gentle_cloths(), centre=st.tuples(*3 * [st.sampled_from([0.0, 4.0, 3.3])]))
-def test_a_periodic_border_changes_nothing(folder, cloth, centre):
+@given(cloth=gentle_cloths(), center=st.tuples(*3 * [st.sampled_from([0.0, 4.0, 3.3])]))
+def test_a_periodic_border_changes_nothing(folder, cloth, center):
     x, v = finite_motion(cloth, folder)
-    there, v_there = finite_motion(moved_to(cloth, np.array(centre), 8.0), folder)
-    assert np.abs(there - centre - x).max() < 1e-9
+    there, v_there = finite_motion(moved_to(cloth, np.array(center), 8.0), folder)
+    assert np.abs(there - center - x).max() < 1e-9
     assert np.abs(v_there - v).max() < 1e-9 / cloth.dt
 
 

@@ -165,7 +165,7 @@ def test_the_order_of_the_fixes_does_not_matter():
 @pytest.mark.parametrize(
     ("commands", "words"),
     [
-        ("fix s cloth pbd/cloth attach who", "attach group is 'who'.*group command"),
+        ("fix s cloth pbd/cloth attach gone", "attach group is 'gone'.*group command"),
         ("group no empty\nfix s cloth pbd/cloth attach no", "attach group is 'no'.*no vertex"),
         (BODY + "solver substeps", "solver is 'substeps'.*solver gs"),
         (BODY + "pin bar", "in the group of pin and in that of attach"),
@@ -252,8 +252,8 @@ def test_a_rolled_sheet_has_the_curvature_of_its_cylinder(radius):
     ("commands", "words"),
     [
         ("compute p all pbd/atom", "ID of a fix pbd/cloth is missing"),
-        ("compute p all pbd/atom nobody strain", "no fix pbd/cloth with the ID 'nobody'"),
-        ("compute p all pbd/atom s colour", "keyword is 'colour'.*strain"),
+        ("compute p all pbd/atom gone strain", "no fix pbd/cloth with the ID 'gone'"),
+        ("compute p all pbd/atom s color", "keyword is 'color'.*strain"),
         ("compute p all pbd/local s vertex strain", "kind is 'vertex'.*edge or hinge"),
         ("compute p all pbd/local s edge angle", "keyword is 'angle'.*strain"),
         ("compute p all pbd/local s hinge", "keyword is missing"),

@@ -1,4 +1,4 @@
-"""compute sph/atom: every column against its definition, and who may ask when."""
+"""compute sph/atom: every column against its definition, and when it has values."""
 
 import math
 
@@ -70,7 +70,7 @@ def test_the_energies_add_up_to_the_pair_energy(ran):
     assert columns(ran)["energy"].sum() == pytest.approx(ran.get_thermo("pe"), rel=1e-12)
 
 
-def test_neighbours_and_volumes_of_the_floor_against_all_distances(ran):
+def test_neighbors_and_volumes_of_the_floor_against_all_distances(ran):
     c, kind, r = columns(ran), by_id(ran, "type"), distances(ran)
     support = np.array(
         [[0, 0, 0, 0], [0, 0.1, 0.11, 0.1], [0, 0.11, 0.12, 0.12], [0, 0.1, 0.12, 0]]
@@ -117,7 +117,7 @@ def test_order_vector_group_and_repetition(ran):
 
 
 def test_what_comes_between_two_runs_changes_nothing(tmp_path):
-    """Other commands initialise LAMMPS anew; lists and values outlive that."""
+    """Other commands initialize LAMMPS anew; lists and values outlive that."""
     compute = f"compute c all sph/atom {KEYWORDS}\n"
     whole = scene(compute + "run 10")
     parts = scene(compute + f"run 4\nwrite_data {tmp_path / 'x.data'}")
@@ -130,7 +130,7 @@ def test_what_comes_between_two_runs_changes_nothing(tmp_path):
 @pytest.mark.parametrize("before", ["", "run 3\ncreate_atoms 1 single 0.1 0.1 0.4\n"])
 def test_particles_that_were_not_evaluated(before, tmp_path):
     lmp = scene(f"compute c all sph/atom {KEYWORDS}\n" + before)
-    lmp.command(f"write_data {tmp_path / 'x.data'}")  # initialises everything, without a step
+    lmp.command(f"write_data {tmp_path / 'x.data'}")  # initializes everything, without a step
     with pytest.raises(Exception, match=r"compute c sph/atom: .*not evaluated.*run 0"):
         lmp.numpy.extract_compute("c", 1, 2)
     lmp.command("run 0")

@@ -241,7 +241,7 @@ def test_nothing_passes_a_light_sheet_that_is_thrown_about(direction, tmp_path):
     assert crossed(lmp, tmp_path, 20) == 0
 
 
-def test_who_starts_too_near_is_named(tmp_path):
+def test_a_particle_that_starts_too_near_is_named(tmp_path):
     script = TABLE.format(contact="", x=0.0, height=0.002) + "run 1\n"
     (tmp_path / "in.near").write_text(script)
     out = run(tmp_path / "in.near", ranks=2)

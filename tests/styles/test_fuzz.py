@@ -1,4 +1,4 @@
-"""Arguments that nobody would give: each ends in success, or in an error that names its style.
+"""Arguments beyond all use: each ends in success, or in an error that names its style.
 
 No crash, no hang, no NaN.  Commands are made of each style's grammar, with right values, values at
 the edge of what a number can be, and words that are lost, doubled or in the wrong place.
@@ -31,7 +31,7 @@ NUMBER = ["1", "0.5", "2.0", "0.01"]
 SHARE = ["0", "0.5", "1"]
 COUNT = ["1", "2", "7"]
 YES = ["yes", "no"]
-GROUP = ["water", "cloth", "all", "nobody"]
+GROUP = ["water", "cloth", "all", "vacant"]
 FACES = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"]
 WALL = {face: [["EDGE", "-0.9", "0.9", "v_x"]] for face in FACES}
 BOND = {"compress": [SHARE], "limit": [NUMBER], "rest": [["model", "zero"]]}

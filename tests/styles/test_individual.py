@@ -38,7 +38,7 @@ def test_few_are_active_and_the_updates_are_counted(folder, monkeypatch):
     assert lmp.extract_fix("step", 0, 1, 2) == pytest.approx(updates, rel=1e-12)
 
 
-def test_who_rests_goes_on_as_at_the_last_update(folder, monkeypatch):
+def test_inactive_particles_go_on_as_at_the_last_update(folder, monkeypatch):
     """(x, v, rho) of an inactive particle follow from its last update alone: lines 12, 31 to 33."""
     monkeypatch.chdir(folder)
     lmp = instance()

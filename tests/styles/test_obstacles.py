@@ -189,7 +189,7 @@ def test_restart_continues_to_the_last_bit(tmp_path, carrier):
 @pytest.mark.parametrize(
     ("fixes", "words"),
     [
-        ("fix c water cloth/contact 0.01 obstacle who", "obstacle group is 'who'"),
+        ("fix c water cloth/contact 0.01 obstacle gone", "obstacle group is 'gone'"),
         (
             "fix s cloth pbd/cloth\nfix c water cloth/contact 0.01 obstacle cloth\nrun 0",
             "obstacle group cloth holds vertices of fix s",

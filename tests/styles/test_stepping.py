@@ -485,7 +485,7 @@ def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
 
 
 def test_inactive_particles_rest_and_cost_no_sums():
-    """Their position, density and force stay; their active neighbours still feel them."""
+    """Their position, density and force stay; their active neighbors still feel them."""
     lmp = instance()
     lmp.commands_string(DAM.format(scheme="global", style="").replace("run 100", "run 10"))
     tags = lmp.numpy.extract_atom("id")[: lmp.extract_setting("nlocal")]
@@ -504,12 +504,12 @@ def test_inactive_particles_rest_and_cost_no_sums():
     assert lmp.extract_fix("step", 0, 1, 1) == pytest.approx(1 - 1 / fluid.sum())
     x, rho = by_id(lmp, "x"), by_id(lmp, "rho")
     near = np.linalg.norm(x - x[asleep - 1], axis=1)
-    neighbour = np.flatnonzero((near < 0.08) & (near > 0) & fluid)[0]
-    awake = rho[neighbour]
+    neighbor = np.flatnonzero((near < 0.08) & (near > 0) & fluid)[0]
+    awake = rho[neighbor]
     state = lmp.numpy.extract_fix("step", 1, 2)
     state[:, 2] = 1.0
     lmp.command("run 0")
-    assert by_id(lmp, "rho")[neighbour] == pytest.approx(awake, rel=1e-12)
+    assert by_id(lmp, "rho")[neighbor] == pytest.approx(awake, rel=1e-12)
     assert by_id(lmp, "rho")[asleep - 1] != before["rho"]
 
 

@@ -156,7 +156,7 @@ def test_units_are_those_of_the_script():
 
 
 def test_only_the_group_meets_the_wall():
-    more = "group nobody empty\nunfix wall\nfix wall nobody wall/sph xlo 0\nrun 0"
+    more = "group vacant empty\nunfix wall\nfix wall vacant wall/sph xlo 0\nrun 0"
     lmp = particle("0.03 0 0", "xlo 0", more=more)
     assert np.all(by_id(lmp, "f") == 0)
 
@@ -590,14 +590,17 @@ ERRORS = {
         r"across the wall is '1.*give 0",
     ),
     "velocity in z": (box(2) + WALL + "xlo 0 velocity xlo 0 0 1", r"in z is '1.*2-D"),
-    "no variable": (box() + WALL + "xlo v_who\nrun 0", r"'v_who': define an equal-style variable"),
+    "no variable": (
+        box() + WALL + "xlo v_place\nrun 0",
+        r"'v_place': define an equal-style variable",
+    ),
     "variable style": (
-        box() + "variable who atom x\n" + WALL + "xlo v_who\nrun 0",
-        r"'v_who': define an equal-style variable",
+        box() + "variable place atom x\n" + WALL + "xlo v_place\nrun 0",
+        r"'v_place': define an equal-style variable",
     ),
     "variable not finite": (
-        box() + "variable who equal exp(1e9)\n" + WALL + "xlo v_who\nrun 0",
-        r"position of xlo is 'inf'.*correct variable who",
+        box() + "variable place equal exp(1e9)\n" + WALL + "xlo v_place\nrun 0",
+        r"position of xlo is 'inf'.*correct variable place",
     ),
     "periodic": (
         box(boundary="p f f") + WALL + "xlo 0\nrun 0",

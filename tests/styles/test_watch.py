@@ -224,7 +224,7 @@ WRONG = {
     "finite maybe": r"finite is 'maybe': use no or yes",
     "restart": r"restart file is missing",
     "keep 0": r"keep is '0'",
-    "colour 1": r"unknown keyword 'colour'.*every, finite",
+    "color 1": r"unknown keyword 'color'.*every, finite",
 }
 
 

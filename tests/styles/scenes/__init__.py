@@ -21,8 +21,10 @@ from scenes.fragments import (
     jitter,
     lattice,
     neighbor,
+    no_other_bonds,
     sheet,
     sph_tait,
+    stiffness,
 )
 from scenes.shared import (
     AGAIN_DROP,
@@ -61,6 +63,8 @@ __all__ = [
     "jitter",
     "lattice",
     "neighbor",
+    "no_other_bonds",
     "sheet",
     "sph_tait",
+    "stiffness",
 ]

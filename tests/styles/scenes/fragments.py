@@ -58,14 +58,22 @@ def sph_tait(*coefficients, support=0.1, options=""):
     return "\n".join([style, *(f"pair_coeff {c}" for c in coefficients)]) + "\n"
 
 
-def cloth_styles(edge="1.0", hinge="0.1", types="1"):
-    """Stiffness of edges and hinges; triangles have no force."""
+def stiffness(edge="1.0", hinge="0.1", types="1"):
+    """Of edges and hinges, which a restart file holds."""
     return (
-        "special_bonds lj/coul 1 1 1\n"
         f"bond_style pbd\nbond_coeff {types} {edge}\n"
-        "angle_style zero\nangle_coeff *\n"
         f"dihedral_style pbd\ndihedral_coeff {types} {hinge}\n"
     )
+
+
+def no_other_bonds():
+    """Triangles have no force, and bonds hide no pair; a restart file does not hold that."""
+    return "special_bonds lj/coul 1 1 1\nangle_style zero\nangle_coeff *\n"
+
+
+def cloth_styles(edge="1.0", hinge="0.1", types="1"):
+    """Forces of a cloth."""
+    return no_other_bonds() + stiffness(edge, hinge, types)
 
 
 def neighbor(skin, cutoff=""):

@@ -14,8 +14,10 @@ from scenes.fragments import (
     jitter,
     lattice,
     neighbor,
+    no_other_bonds,
     sheet,
     sph_tait,
+    stiffness,
 )
 from scenes.units import render
 
@@ -26,7 +28,7 @@ class Scene:
 
     Attributes:
         atoms: from the header to the last group.
-        forces: styles and coefficients, which a restart file holds.
+        forces: styles, coefficients and the time step, which a restart file holds.
         settings: what it does not hold, regions included.
         fixes: fixes, the run style, and computes.
         make: script, in SI, that writes the data file which `atoms` reads, so that atom IDs and
@@ -88,10 +90,9 @@ group pins intersect pins cloth
         "2 2 boundary",
         support="0.1[m]",
     )
-    + "bond_style pbd\nbond_coeff 1 1.0\ndihedral_style pbd\ndihedral_coeff 1 0.1\n",
-    settings="special_bonds lj/coul 1 1 1\nangle_style zero\nangle_coeff *\n"
-    + neighbor("0.03[m]")
+    + stiffness()
     + "timestep 0.002[s]\n",
+    settings=no_other_bonds() + neighbor("0.03[m]"),
     fixes=gravity(g="9.81[N/kg]")
     + """fix step fluid sph/integrate global gain 1
 fix sheet cloth pbd/cloth iterations 5 pin pins damping 2.0[1/s]
@@ -207,6 +208,7 @@ SMALL_SHEET = (
     + sheet(2, 1.0, "0.6 0.6", 0.1, "group cloth pin none vacant")
     + "create_atoms 1 single 0 0 0.5\ngroup water type 1\n"
     + sph_tait("1 1 fluid 1000 c0 20", "2 2 boundary")
-    + "special_bonds lj/coul 1 1 1\nbond_style pbd\nbond_coeff 1 1.0\n"
-    + "dihedral_style pbd\ndihedral_coeff 1 0.1\nneighbor 0.05 bin\n"
+    + "special_bonds lj/coul 1 1 1\n"
+    + stiffness()
+    + "neighbor 0.05 bin\n"
 )

@@ -165,3 +165,12 @@ $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed
 	$(BIN)/python -c "from PIL import Image; \
 	  picture = Image.open('build/$*/contact_sheet.png').convert('RGB').resize((1296, 684)); \
 	  picture.quantize(palette=picture.quantize(256)).save('$@', optimize=True)"
+
+# the left panel of the plot of a validation case
+pictures: docs/pictures/couette.png
+docs/pictures/couette.png: $(VENV)/installed
+	mkdir -p $(@D)
+	$(BIN)/sphcloth validate couette --out build/couette
+	$(BIN)/python -c "from PIL import Image; \
+	  picture = Image.open('build/couette/couette.png').convert('RGB').crop((0, 0, 765, 480)); \
+	  picture.quantize(64).save('$@', optimize=True)"

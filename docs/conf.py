@@ -64,6 +64,7 @@ apidoc_modules = [
 ]
 autodoc_mock_imports = ["pypbd", "pysplishsplash"]
 autodoc_member_order = "bysource"
+suppress_warnings = ["ref.python"]  # classes of one name in several modules, such as Scene
 napoleon_use_ivar = True  # attributes of dataclasses: in the docstring, not once more as members
 
 

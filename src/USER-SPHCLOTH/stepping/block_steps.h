@@ -7,7 +7,7 @@
 // Hamiltonian by particles,
 //   H = sum_i m_i v_i^2 / 2 + sum_i m_i e(rho_i),
 // with kicks of m_i e(rho_i) every dt_i, which is the impulse method of Tuckerman, Berne & Martyna,
-// J.  Chem.  Phys. 97 (1992) 1990, with semi-implicit Euler in place of Verlet.  With equal steps
+// J. Chem. Phys. 97 (1992) 1990, with semi-implicit Euler in place of Verlet.  With equal steps
 // it is the scheme of (2) and lines 30 to 33.  Forces of other styles act in every smallest step.
 
 #ifndef SPHCLOTH_STEPPING_BLOCK_STEPS_H

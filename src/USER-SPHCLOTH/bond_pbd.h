@@ -15,7 +15,7 @@ BondStyle(pbd,BondPBD);
 
 namespace LAMMPS_NS {
 
-class BondPBD : public Bond {
+class BondPBD : public Bond, public HasPBDMaterials {
  public:
   BondPBD(class LAMMPS *);
   ~BondPBD() override;
@@ -28,8 +28,8 @@ class BondPBD : public Bond {
   void write_data(FILE *) override;
   double single(int, double, int, int, double &) override;
 
-  bool owns(int type) const { return setflag && setflag[type]; }
-  const PBDMaterial &material(int type) const { return materials[type]; }
+  bool owns(int type) const override { return setflag && setflag[type]; }
+  const PBDMaterial &material(int type) const override { return materials[type]; }
 
  private:
   PBDMaterials materials;

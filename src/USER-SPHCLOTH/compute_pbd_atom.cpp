@@ -102,9 +102,10 @@ double ComputePBDAtom::strain(int i) const
   double largest = 0.0;
   for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
     const int m = mesh.edges.incident[k];
-    if (!cloth->has_strain(m)) continue;
+    if (!cloth->rest().has_strain(m)) continue;
     const auto &[a, b] = mesh.edges.vertices[m];
-    const double strain = mesh.from(i, a == vertex ? b : a).norm() / cloth->rest_length(m) - 1.0;
+    const double strain =
+        mesh.from(i, a == vertex ? b : a).norm() / cloth->rest().rest_length(m) - 1.0;
     if (std::fabs(strain) > std::fabs(largest)) largest = strain;
   }
   return largest;

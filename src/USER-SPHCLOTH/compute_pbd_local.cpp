@@ -100,9 +100,9 @@ void ComputePBDLocal::collect(const ClothElements<N> &elements, Measure measure)
 std::array<double, 3> ComputePBDLocal::measure_edge(int m, int i) const
 {
   const ClothTopology &mesh = cloth->topology();
-  const double rest = cloth->rest_length(m),
+  const double rest = cloth->rest().rest_length(m),
                length = mesh.from(i, mesh.edges.vertices[m][1]).norm();
-  return {rest, length, cloth->has_strain(m) ? length / rest - 1.0 : 0.0};
+  return {rest, length, cloth->rest().has_strain(m) ? length / rest - 1.0 : 0.0};
 }
 
 // Rest angle, angle, curvature: the angle is spread over a third of the heights of the two triangles,
@@ -115,9 +115,9 @@ std::array<double, 3> ComputePBDLocal::measure_hinge(int m, int i) const
   const Vec3 p1 = mesh.from(i, e1), p2 = mesh.from(i, e2), pb = mesh.from(i, b);
   const Vec3 edge = p2 - p1;
   const double angle = hinge_angle(Vec3::Zero(), p1, p2, pb);
-  if (std::isnan(angle)) return {cloth->rest_angle(m), 0.0, 0.0};
+  if (std::isnan(angle)) return {cloth->rest().rest_angle(m), 0.0, 0.0};
   const double heights = (edge.cross(p1).norm() + edge.cross(pb - p1).norm()) / edge.norm();
-  return {cloth->rest_angle(m), angle, 3.0 * angle / heights};
+  return {cloth->rest().rest_angle(m), angle, 3.0 * angle / heights};
 }
 
 double ComputePBDLocal::memory_usage()

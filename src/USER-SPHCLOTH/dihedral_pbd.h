@@ -15,7 +15,7 @@ DihedralStyle(pbd,DihedralPBD);
 
 namespace LAMMPS_NS {
 
-class DihedralPBD : public Dihedral {
+class DihedralPBD : public Dihedral, public HasPBDMaterials {
  public:
   DihedralPBD(class LAMMPS *);
   ~DihedralPBD() override;
@@ -26,8 +26,8 @@ class DihedralPBD : public Dihedral {
   void read_restart(FILE *) override;
   void write_data(FILE *) override;
 
-  bool owns(int type) const { return setflag && setflag[type]; }
-  const PBDMaterial &material(int type) const { return materials[type]; }
+  bool owns(int type) const override { return setflag && setflag[type]; }
+  const PBDMaterial &material(int type) const override { return materials[type]; }
 
  private:
   PBDMaterials materials;

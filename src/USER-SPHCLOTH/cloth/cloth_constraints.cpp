@@ -1,38 +1,44 @@
 // Constraints (4) to (6) of a cloth.
 //
-// The colours follow from the global IDs alone and every rank projects each constraint that touches
+// The colors follow from the global IDs alone and every rank projects each constraint that touches
 // one of its vertices, so that the result does not depend on the number of ranks.  Nor does it on
-// the order within a colour, which is that of the vertices in memory.
+// the order within a color, which is that of the vertices in memory.
 
 #include "cloth/cloth_constraints.h"
 
 #include "atom.h"
-#include "bond_pbd.h"
+#include "bond.h"
+#include "cloth/pbd_material.h"
 #include "core/pbd/coloring.h"
-#include "dihedral_pbd.h"
+#include "dihedral.h"
 #include "domain.h"
 #include "error.h"
 #include "force.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 // null: another style's
 
+static const PBDMaterial *material_of(const HasPBDMaterials *style, int type)
+{
+  return style && style->owns(type) ? &style->material(type) : nullptr;
+}
+
 const PBDMaterial *ClothConstraints::material_of_edge(int type) const
 {
-  const auto *bond = dynamic_cast<BondPBD *>(force->bond_match("pbd"));
-  return bond->owns(type) ? &bond->material(type) : nullptr;
+  Bond *bond = force->bond ? force->bond_match("pbd") : nullptr;
+  return material_of(dynamic_cast<HasPBDMaterials *>(bond), type);
 }
 
 const PBDMaterial *ClothConstraints::material_of_hinge(int type) const
 {
-  const auto *dihedral =
-      dynamic_cast<DihedralPBD *>(force->dihedral ? force->dihedral_match("pbd") : nullptr);
-  return dihedral && dihedral->owns(type) ? &dihedral->material(type) : nullptr;
+  Dihedral *dihedral = force->dihedral ? force->dihedral_match("pbd") : nullptr;
+  return material_of(dynamic_cast<HasPBDMaterials *>(dihedral), type);
 }
 
 bool ClothConstraints::has_strain(int m) const
@@ -47,16 +53,16 @@ bool ClothConstraints::has_strain(int m) const
 
 // Rest lengths and rest angles from the rest positions, which each vertex carries.
 
-void ClothConstraints::measure_rest(int groupbit, double **rest_x)
+void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x)
 {
   const int n = mesh.n_vertices();
   std::vector<Vec3> mine(n, Vec3::Zero()), rest(n);
   int missing = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (!std::isfinite(rest_x[i][0] + rest_x[i][1] + rest_x[i][2]))
-      missing = static_cast<int>(atom->tag[i]);
-    mine[mesh.index_of(atom->tag[i])] = Vec3(rest_x[i][0], rest_x[i][1], rest_x[i][2]);
+    const Vec3 own(rest_x[0][i], rest_x[1][i], rest_x[2][i]);
+    if (!std::isfinite(own[0] + own[1] + own[2])) missing = static_cast<int>(atom->tag[i]);
+    mine[mesh.index_of(atom->tag[i])] = own;
   }
   int any_missing = 0;
   MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);
@@ -106,17 +112,17 @@ void ClothConstraints::color(int sweeps, bool at_once)
   edges.color = color_constraints(mesh.edges.vertices, mesh.n_vertices(), edges.colors);
   hinges.color = color_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinges.colors);
 
-  crowd.assign(at_once ? mesh.n_vertices() : 0, 0);
+  constraints_of.assign(at_once ? mesh.n_vertices() : 0, 0);
   count(edges);
   count(hinges);
 }
 
 template <std::size_t N> void ClothConstraints::count(const Kind<N> &kind)
 {
-  if (crowd.empty()) return;
+  if (constraints_of.empty()) return;
   for (std::size_t m = 0; m < kind.elements.size(); m++)
     for (int vertex : kind.elements.vertices[m])
-      crowd[vertex] += static_cast<int>(kind.springs[kind.elements.type[m]].size());
+      constraints_of[vertex] += static_cast<int>(kind.springs[kind.elements.type[m]].size());
 }
 
 // What a constraint may do of its projection in a Jacobi sweep: the same for all its vertices, so
@@ -124,10 +130,41 @@ template <std::size_t N> void ClothConstraints::count(const Kind<N> &kind)
 
 template <std::size_t N> double ClothConstraints::share_of(const std::array<int, N> &vertices) const
 {
-  if (crowd.empty()) return 1.0;
-  int most = 1;
-  for (int vertex : vertices) most = std::max(most, crowd[vertex]);
-  return 1.0 / most;
+  if (constraints_of.empty()) return 1.0;
+  int max = 1;
+  for (int vertex : vertices) max = std::max(max, constraints_of[vertex]);
+  return 1.0 / max;
+}
+
+double ClothConstraints::shortest_edge(int i) const
+{
+  double shortest = std::numeric_limits<double>::infinity();
+  const int vertex = mesh.index_of(atom->tag[i]);
+  for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
+    const double rest = rest_length(mesh.edges.incident[k]);
+    if (rest > 0.0) shortest = std::min(shortest, rest);
+  }
+  return shortest;
+}
+
+double ClothConstraints::largest_strain(const VertexHalo &halo, int held_bits) const
+{
+  const auto is_held = [&](int i) { return (atom->mask[i] & held_bits) != 0; };
+  double strain = 0.0;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s), vertex = mesh.index_of(atom->tag[i]);
+    for (int k = mesh.edges.first[vertex]; k < mesh.edges.first[vertex + 1]; k++) {
+      const int m = mesh.edges.incident[k];
+      if (!has_strain(m)) continue;
+      const auto &[a, b] = mesh.edges.vertices[m];
+      const int j = mesh.image_near(a == vertex ? b : a, i);
+      if (j < 0 || (is_held(i) && is_held(j))) continue;
+      const Vec3 edge(atom->x[i][0] - atom->x[j][0], atom->x[i][1] - atom->x[j][1],
+                      atom->x[i][2] - atom->x[j][2]);
+      strain = std::max(strain, std::fabs(edge.norm() / rest_length(m) - 1.0));
+    }
+  }
+  return strain;
 }
 
 /* ----------------------------------------------------------------------
@@ -146,7 +183,7 @@ void ClothConstraints::collect(VertexHalo &halo)
   ask_for_ghosts(halo);
 }
 
-// Every element with at least one owned vertex, once, by colour: it is taken from the view of the
+// Every element with at least one owned vertex, once, by color: it is taken from the view of the
 // first of its vertices that is owned here.
 
 template <std::size_t N>

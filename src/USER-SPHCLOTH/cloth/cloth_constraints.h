@@ -7,6 +7,7 @@
 #include "cloth/cloth_topology.h"
 #include "cloth/vertex_halo.h"
 #include "core/pbd/cloth_solver.h"
+#include "lammps_util/particle_columns.h"
 
 #include <array>
 #include <string>
@@ -25,15 +26,15 @@ class ClothConstraints : protected Pointers {
   {
   }
 
-  // 1. when the mesh was gathered.  rest_x: rest position of each atom.  sweeps: so many together do
-  // what a stiffness says.  at_once: a sweep sees none of itself, so that a constraint may do only a
-  // share.
+  // 1. when the mesh was gathered.  rest_x: rest position of each atom, three columns.  sweeps: that
+  // many together do what a stiffness says.  at_once: a sweep sees none of itself, so that a
+  // constraint may do only a share.
 
-  void measure_rest(int groupbit, double **rest_x);
+  void measure_rest(int groupbit, const ParticleColumns &rest_x);
   void color(int sweeps, bool at_once);
 
-  // 2. after each list build, between reset() and connect() of the halo, which must have so many
-  // channels: all ghosts, then the vertices of one colour each
+  // 2. after each list build, between reset() and connect() of the halo, which must have that many
+  // channels: all ghosts, then the vertices of one color each
 
   int n_channels() const { return channel_of_hinge_color(hinges.colors); }
   void collect(VertexHalo &);
@@ -51,7 +52,7 @@ class ClothConstraints : protected Pointers {
   int channel_of_hinge_color(int c) const { return 1 + edges.colors * edges.layers + c; }
 
   // what this rank projects, with slots of the halo as vertices.  A type may be several constraints
-  // at once: the colours of the second of each edge are behind those of the first.
+  // at once: the colors of the second of each edge are behind those of the first.
   sphcloth::Constraints<2> distance;
   sphcloth::Constraints<4> bending;
   int edge_colors() const { return edges.colors; }    // of the first
@@ -61,6 +62,11 @@ class ClothConstraints : protected Pointers {
   double rest_angle(int m) const { return hinges.rest[m]; }
   bool has_strain(int m) const;
   double mean_length() const { return mean; }
+  // rest length of the shortest edge at an owned vertex, infinite without any; a seam, which closes
+  // to nothing, does not count
+  double shortest_edge(int owned_atom) const;
+  // of this rank's edges, but for those between vertices that are both in a group of held_bits
+  double largest_strain(const VertexHalo &, int held_bits) const;
 
  private:
   template <std::size_t N> struct Kind {
@@ -84,7 +90,7 @@ class ClothConstraints : protected Pointers {
   Kind<2> edges;
   Kind<4> hinges;
   double mean = 0.0;
-  std::vector<int> crowd;    // of a mesh vertex: constraints that it is in; empty: not at once
+  std::vector<int> constraints_of;    // of a mesh vertex: how many; empty: not at once
 
   const PBDMaterial *material_of_edge(int type) const;
   const PBDMaterial *material_of_hinge(int type) const;

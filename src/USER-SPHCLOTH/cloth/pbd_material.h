@@ -94,7 +94,18 @@ struct PBDMaterial {    // plain and without gaps, for the restart file
 static_assert(sizeof(PBDMaterial) == 2 * sizeof(int) + 4 * sizeof(double),
               "what lies in gaps would go to the restart file");
 
-// of all types, as bond_style pbd and dihedral_style pbd store them
+// a style that has materials of types: bond_style pbd, dihedral_style pbd
+
+class HasPBDMaterials {
+ public:
+  virtual bool owns(int type) const = 0;    // or is it another style's, of a hybrid one?
+  virtual const PBDMaterial &material(int type) const = 0;
+
+ protected:
+  ~HasPBDMaterials() noexcept(false) = default;
+};
+
+// of all types, as these store them
 
 class PBDMaterials {
  public:

@@ -2,7 +2,7 @@
 //
 // Slots 0 .. n_owned-1 are owned vertices, the slots behind are those ghost images that the rank
 // asked for.  Data travels in channels: a channel forwards only the vertices that were asked for
-// in it, so that one colour of constraints costs one small message per neighbouring rank.
+// in it, so that one color of constraints costs one small message per neighboring rank.
 
 #ifndef SPHCLOTH_CLOTH_VERTEX_HALO_H
 #define SPHCLOTH_CLOTH_VERTEX_HALO_H
@@ -33,7 +33,7 @@ class VertexHalo : protected Pointers {
   int slot_of(int atom_index);
   void need(int slot, int channel);
 
-  // 3. collective: tell the owners.  The fix lends its forward communication: its
+  // 3. collective: tell the owners.  It goes through the forward communication of a fix, whose
   // pack_forward_comm / unpack_forward_comm call pack_link / unpack_link, comm_forward is LINK.
   static constexpr int LINK = 5;
   void connect(Fix *);
@@ -45,12 +45,12 @@ class VertexHalo : protected Pointers {
   int atom_of(int slot) const { return atoms[slot]; }
   bool is_ghost(int slot) const { return slot >= owned; }
 
-  // Owners to ghosts: what is the same for all images, and what is not.  Places get the box vectors
-  // between owner and image, as they were `ago`; ways in a time get how far these moved, velocities how
-  // fast they do.
+  // Owners to ghosts: what is the same for all images, and what is not.  Positions get the box
+  // vectors between owner and image, as they were `ago`; displacements in a time get how far these
+  // moved, velocities how fast they do.
   void forward(int channel, Vec3 *data) { add_to_images(channel, data, 0.0, 0.0); }
   void forward(int channel, std::vector<double> &data);
-  template <class Data> void forward_places(int channel, Data *data, double ago = 0.0)
+  template <class Data> void forward_positions(int channel, Data *data, double ago = 0.0)
   {
     add_to_images(channel, data, 1.0, -ago);
   }

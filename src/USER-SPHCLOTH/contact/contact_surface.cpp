@@ -205,8 +205,8 @@ bool ContactSurface::begin_step(const Vertex *from_here, const Vertex *to_here, 
     end[s] = Vec3(to_here[s].x, to_here[s].y, to_here[s].z);
   }
   remaining = dt;
-  halo.forward_places(0, start.data(), remaining);
-  halo.forward_places(0, end.data());
+  halo.forward_positions(0, start.data(), remaining);
+  halo.forward_positions(0, end.data());
   bound();
   meet();
   int mine = !pairs.empty(), any = 0;
@@ -329,7 +329,7 @@ void ContactSurface::begin_substep(const Vertex *vertices, const Vertex *v, doub
   from.resize(halo.n_slots());
   for (int s = 0; s < halo.n_owned(); s++)
     from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
-  halo.forward_places(0, from.data(), before);
+  halo.forward_positions(0, from.data(), before);
 }
 
 void ContactSurface::project(Vertex *displacement)
@@ -340,7 +340,7 @@ void ContactSurface::project(Vertex *displacement)
     end[s] = Vec3(from_here.x + displacement[s].x, from_here.y + displacement[s].y,
                   from_here.z + displacement[s].z);
   }
-  halo.forward_places(0, end.data(), remaining);
+  halo.forward_positions(0, end.data(), remaining);
   change.assign(halo.n_slots(), Vec3::Zero());
   for (Particle &particle : particles) particle.change.setZero();
 

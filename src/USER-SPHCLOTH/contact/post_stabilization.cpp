@@ -53,8 +53,8 @@ void ContactSurface::load_sweeps()
     start[s] = sweep.start;
     end[s] = sweep.end;
   }
-  halo.forward_places(0, start.data(), update->dt);
-  halo.forward_places(0, end.data());
+  halo.forward_positions(0, start.data(), update->dt);
+  halo.forward_positions(0, end.data());
 }
 
 // The particle that is deepest below its gap in each pass is put back to it, alone.  One that was too

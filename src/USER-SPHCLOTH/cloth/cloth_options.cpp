@@ -1,0 +1,79 @@
+#include "cloth/cloth_options.h"
+
+#include "atom.h"
+#include "error.h"
+#include "group.h"
+#include "lammps_util/arg_reader.h"
+#include "lammps_util/atom_tools.h"
+
+using namespace LAMMPS_NS;
+
+void ClothOptions::read(ArgReader &args)
+{
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "iterations")
+      solving.iterations = args.integer("iterations", 1, 100000);
+    else if (keyword == "solver") {
+      solving.solver = static_cast<ClothSolver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
+      solver_given = true;
+    } else if (keyword == "order")
+      solving.symmetric_sweeps = args.choice(keyword, {"forward", "symmetric"});
+    else if (keyword == "direction")
+      solving.from_start = args.choice(keyword, {"current", "start"});
+    else if (keyword == "tolerance")
+      solving.tolerance = args.positive(keyword);
+    else if (keyword == "reference")
+      reference = args.positive(keyword);
+    else if (keyword == "pin")
+      pinbit = read_held(args, keyword);
+    else if (keyword == "velocity")
+      pin_motion.read(args);
+    else if (keyword == "attach")
+      attachbit = read_held(args, keyword);
+    else if (keyword == "damping")
+      solving.damping = args.at_least("damping rate", 0.0);
+    else if (keyword == "rest")
+      rest_property = args.word("rest property");
+    else
+      args.unknown(keyword,
+                   "iterations, solver, order, direction, tolerance, reference, pin, velocity, "
+                   "attach, damping, rest");
+  }
+  check(args);
+}
+
+void ClothOptions::check(ArgReader &args)
+{
+  if (pin_motion && !pinbit)
+    error->all(FLERR, "{}: velocity is that of pins: name their group with 'pin'", owner);
+  if (pinbit && attachbit && share_atoms(atom, pinbit, attachbit, world))
+    error->all(FLERR, "{}: a vertex is in the group of pin and in that of attach: it can be in one",
+               owner);
+  if (!solver_given && (attachbit || solving.tolerance > 0.0))
+    solving.solver = ClothSolver::GAUSS_SEIDEL;
+  if (attachbit && solving.solver == ClothSolver::SUBSTEPS)
+    args.fail("solver", "substeps",
+              "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
+  if (solving.symmetric_sweeps && solving.solver == ClothSolver::JACOBI)
+    args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
+  if (solving.tolerance > 0.0 && solving.solver == ClothSolver::SUBSTEPS)
+    args.fail("tolerance", std::to_string(solving.tolerance),
+              "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
+}
+
+// group of the vertices that something else moves
+
+int ClothOptions::read_held(ArgReader &args, const std::string &keyword)
+{
+  const std::string name = args.word(keyword + " group");
+  const int held = group->find(name);
+  if (held < 0) args.fail(keyword + " group", name, "define it with the group command first");
+  if (!share_atoms(atom, group->bitmask[igroup], group->bitmask[held], world))
+    args.fail(
+        keyword + " group", name,
+        fmt::format("it has no vertex of group {}: choose among the cloth's vertices or leave "
+                    "the keyword away",
+                    group->names[igroup]));
+  return group->bitmask[held];
+}

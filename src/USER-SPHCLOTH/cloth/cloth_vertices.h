@@ -1,0 +1,57 @@
+// The vertices of a cloth that a rank owns or needs, as arrays by slot of their halo.
+
+#ifndef SPHCLOTH_CLOTH_CLOTH_VERTICES_H
+#define SPHCLOTH_CLOTH_CLOTH_VERTICES_H
+
+#include "cloth/vertex_halo.h"
+#include "core/pbd/cloth_solver.h"
+#include "core/util/bytes.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct ClothVertices {
+  explicit ClothVertices(LAMMPS *lmp) : halo(lmp) {}
+
+  VertexHalo halo;
+  // positions, velocities, positions at the start of the (sub)step, displacements since then, and
+  // the change of a Jacobi sweep (empty for other solvers); one idle vertex behind those of the halo.
+  // Their w is the inverse mass in the solver, 0 for pins.
+  sphcloth::Vertices p, v, start, displacement, change;
+  // inverse mass to forces: 0 for attached vertices, too, which another fix integrates
+  std::vector<double> inverse_mass;
+  std::vector<int> attached;    // slots
+
+  // solver_mass: inverse masses of all slots in the solver
+  void reset(const std::vector<double> &solver_mass, bool jacobi)
+  {
+    const std::size_t n = halo.n_slots() + 1;
+    p.assign(n, {});
+    for (int s = 0; s < halo.n_slots(); s++) p[s].w = solver_mass[s];
+    start = p;
+    v = p;
+    displacement = p;
+    inverse_mass = solver_mass;
+    for (int s : attached) inverse_mass[s] = 0.0;
+    change.assign(jacobi ? n : 0, {});
+  }
+
+  void update_positions()
+  {
+    for (int s = 0; s < halo.n_slots(); s++) {
+      p[s].x = start[s].x + displacement[s].x;
+      p[s].y = start[s].y + displacement[s].y;
+      p[s].z = start[s].z + displacement[s].z;
+    }
+  }
+
+  double bytes() const
+  {
+    return sphcloth::bytes_of(p, v, start, displacement, change) + halo.memory_usage();
+  }
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,193 @@
+// Constraints (cloth/cloth_constraints.h) are projected color by color; after a color only the
+// vertices that it moved are forwarded to other ranks.
+
+#include "cloth/substepping.h"
+
+#include "atom.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+static constexpr int ALL = ClothConstraints::ALL;
+
+// What a sweep leaves of a stretch acts as a spring of the stiffness m/h^2, h the substep, and so does
+// a k below 1.  Where steps go to and fro between powers of two that would feed what they stretch:
+// substeps stay as long as those of the shortest recent step.
+
+void Substepping::begin_step(const StepInfo &step)
+{
+  // factors: by which substeps may lengthen from step to step, and by which a step may be longer than
+  // the shortest recent one for its substeps to be as short
+  constexpr double LENGTHENS = 1.01, MAX_RATIO = 8.0, ROUNDING = 1e-6;
+  step_dt = step.dt;
+  n_substeps = usual_substeps();
+  if (!uses(ClothSolver::SUBSTEPS) || !step.powers_of_two) return;
+  recent_shortest = std::min(LENGTHENS * recent_shortest, step_dt);
+  recent_shortest = std::max(recent_shortest, step_dt / MAX_RATIO);
+  const double per_time = n_substeps / recent_shortest;
+  n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));
+}
+
+void Substepping::substep(int n, const std::vector<SolverCoupling *> &couplings,
+                          HolderForces &holders)
+{
+  const double dt = substep_dt();
+  const bool last = n == n_substeps - 1;
+  if (options.damping > 0.0) damp();    // before the forces: weight is not damped
+  // from velocities at the time of the positions to those of half a step later
+  apply_forces((options.from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v);
+  predict(last);
+  for (SolverCoupling *coupling : couplings)
+    coupling->begin_substep(vertices.start.data(), vertices.v.data(), dt);
+
+  project_all(couplings);
+  vertices.update_positions();
+  if (holders.wanted()) {
+    const Vertex *start = options.from_start ? vertices.start.data() : nullptr;
+    holders.add_pull(constraints.distance, start, dt, n_substeps);
+    holders.add_pull(constraints.bending, start, dt, n_substeps);
+  }
+  set_velocities();
+  for (SolverCoupling *coupling : couplings) coupling->end_substep(vertices.v.data(), dt);
+  if (!last) vertices.start = vertices.p;
+}
+
+void Substepping::apply_forces(double dtf)
+{
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+    const double *f = atom->f[vertices.halo.atom_of(s)], by = dtf * vertices.inverse_mass[s];
+    vertices.v[s].x += by * f[0];
+    vertices.v[s].y += by * f[1];
+    vertices.v[s].z += by * f[2];
+  }
+}
+
+void Substepping::predict(bool last)
+{
+  const double dt = substep_dt();
+  Vertices &displacement = vertices.displacement;
+  const Vertices &start = vertices.start, &v = vertices.v;
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+    displacement[s] = {dt * v[s].x, dt * v[s].y, dt * v[s].z, displacement[s].w};
+    if (!last || displacement[s].w > 0.0) continue;
+    const double *x = atom->x[vertices.halo.atom_of(s)];    // without rounding
+    displacement[s] = {x[0] - start[s].x, x[1] - start[s].y, x[2] - start[s].z, 0.0};
+  }
+  vertices.halo.forward_displacements(ALL, displacement.data(), dt);
+}
+
+void Substepping::set_velocities()
+{
+  const double inv_dt = 1.0 / substep_dt();
+  const Vertices &displacement = vertices.displacement;
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+    if (displacement[s].w == 0.0) continue;
+    vertices.v[s].x = inv_dt * displacement[s].x;
+    vertices.v[s].y = inv_dt * displacement[s].y;
+    vertices.v[s].z = inv_dt * displacement[s].z;
+  }
+}
+
+// Takes the stretching motion out of the edges (line 29), at the rate that the user gave.
+
+void Substepping::damp()
+{
+  const double share = -std::expm1(-options.damping * substep_dt());
+  Vertex *v = vertices.v.data();
+  vertices.halo.forward_velocities(ALL, v);
+  for (int c = 0; c < constraints.edge_colors(); c++) {
+    sphcloth::damp(constraints.distance, c, vertices.start.data(), v, share);
+    vertices.halo.forward_velocities(constraints.channel_of_edge_color(c), v);
+  }
+}
+
+void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
+{
+  const double dt = substep_dt();
+  Vertex *displacement = vertices.displacement.data();
+  const ClothState state{vertices.start.data(), displacement, options.from_start,
+                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
+                         1.0 / (dt * dt)};
+  std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
+  std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
+  const int n = uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations;
+  for (sweeps = 0; sweeps < n;) {
+    uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
+    for (SolverCoupling *coupling : couplings) {
+      coupling->project(displacement);
+      vertices.halo.forward_displacements(ALL, displacement, dt);
+    }
+    sweeps++;
+    if (options.tolerance == 0.0) continue;
+    vertices.update_positions();
+    if (converged()) break;
+  }
+}
+
+// One after the other in a fixed order, a sweep pulls harder one way than the other: what it does to
+// a sheet is no force with an energy.  Forward and backward it is.
+
+void Substepping::gauss_seidel(const ClothState &state)
+{
+  const int n = constraints.distance.colors() + constraints.bending.colors();
+  for (int c = 0; c < n; c++) project_color(c, state);
+  for (int c = n - 1; options.symmetric_sweeps && c >= 0; c--) project_color(c, state);
+}
+
+// edges first, then hinges
+
+void Substepping::project_color(int c, const ClothState &state)
+{
+  const int hinge = c - constraints.distance.colors();
+  Vertex *displacement = vertices.displacement.data();
+  if (hinge < 0) {
+    project(constraints.distance, c, state);
+    vertices.halo.forward_displacements(constraints.channel_of_edge_color(c), displacement,
+                                        substep_dt());
+  } else {
+    project(constraints.bending, hinge, state);
+    vertices.halo.forward_displacements(constraints.channel_of_hinge_color(hinge), displacement,
+                                        substep_dt());
+  }
+}
+
+void Substepping::jacobi(const ClothState &state)
+{
+  for (int c = 0; c < constraints.distance.colors(); c++) project(constraints.distance, c, state);
+  for (int c = 0; c < constraints.bending.colors(); c++) project(constraints.bending, c, state);
+  Vertices &displacement = vertices.displacement;
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+    displacement[s].x += vertices.change[s].x;
+    displacement[s].y += vertices.change[s].y;
+    displacement[s].z += vertices.change[s].z;
+  }
+  std::fill(vertices.change.begin(), vertices.change.end(), Vertex());
+  vertices.halo.forward_displacements(ALL, displacement.data(), substep_dt());
+}
+
+double Substepping::residual() const
+{
+  const double dt = substep_dt(), inv_dt_sq = 1.0 / (dt * dt);
+  const Vertex *p = vertices.p.data();
+  return std::max(sphcloth::residual(constraints.distance, p, inv_dt_sq, constraints.mean_length()),
+                  sphcloth::residual(constraints.bending, p, inv_dt_sq));
+}
+
+double Substepping::energy() const
+{
+  const int n_owned = vertices.halo.n_owned();
+  return force->mvv2e *
+      (elastic_energy(constraints.distance, vertices.p.data(), n_owned) +
+       elastic_energy(constraints.bending, vertices.p.data(), n_owned));
+}
+
+bool Substepping::converged() const
+{
+  double mine = residual(), all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all < options.tolerance;
+}

@@ -65,22 +65,23 @@ BUGS = [
         "b.mass += sink->compute_vector(0)", "b.mass -= sink->compute_vector(0)", WATCH),
     Bug("watch: kinetic energy without its half", "fix_sph_watch.cpp",
         "mine[KINETIC] += 0.5 * mass", "mine[KINETIC] += mass", WATCH),
-    Bug("cloth: ghosts of a color are old", "fix_pbd_cloth.cpp",
-        "    halo.forward_displacements(constraints.channel_of_edge_color(c), displacement.data(),\n"
-        "                               substep_dt());\n"
+    Bug("cloth: ghosts of a color are old", "cloth/substepping.cpp",
+        "    vertices.halo.forward_displacements(constraints.channel_of_edge_color(c), "
+        "displacement,\n"
+        "                                        substep_dt());\n"
         "  } else {",
         "  } else {", RANKS),
-    Bug("cloth: twice the impulse is lent", "fix_pbd_cloth.cpp",
+    Bug("cloth: the half-kick correction is twice as large", "cloth/half_kick_correction.h",
         "part = 0.5 * (1.0 - 1.0 / substeps)", "part = 1.0 - 1.0 / substeps",
         f"{CLOTH}::test_springs_of_other_fixes_neither_feed_nor_damp"),
-    Bug("cloth: as many substeps in each block step", "fix_pbd_cloth.cpp",
-        "  substeps = static_cast<int>(std::ceil(usual * step_dt - ROUNDING));\n", "",
+    Bug("cloth: as many substeps in each block step", "cloth/substepping.cpp",
+        "  n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));\n", "",
         "tests/styles/test_block.py::test_steps_that_jump_do_not_feed_a_sheet"),
     Bug("cloth: a reference is forgotten", "fix_pbd_cloth.cpp",
-        "if (step_of_k > 0.0) constraints.rescale_stiffness(", "if (false) constraints.rescale_stiffness(",
+        "  if (reference_step > 0.0)\n", "  if (false)\n",
         f"{CLOTH}::test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step"),
     Bug("cloth: pins pull the wrong way", "fix_pbd_cloth.cpp",
-        "Vec3(-hold[i][0], -hold[i][1], -hold[i][2])", "Vec3(hold[i][0], hold[i][1], hold[i][2])",
+        "Vec3(-holders.force_on_holder(i))", "holders.force_on_holder(i)",
         "tests/styles/test_cloth_held.py"),
     Bug("pair: ghosts without density and pressure", "pair_sph_tait.cpp",
         "  comm->forward_comm(this, 2);\n  if (extrapolate)", "  if (extrapolate)", RANKS),

@@ -175,8 +175,8 @@ void FixPBDCloth::check_styles()
                force->bond_style ? force->bond_style : "none");
 }
 
-// A stiffness that acts once in each step is that of a spring as one over the square of the step.  Where
-// steps go to and fro between powers of two that would feed the motion.
+// A stiffness that acts once in each step is that of a spring as one over the square of the step.
+// Where steps go to and fro between powers of two that would feed the motion.
 
 double FixPBDCloth::find_reference_step() const
 {
@@ -207,7 +207,7 @@ void FixPBDCloth::post_neighbor()
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     w[s] = inverse_mass_in_solver(i);
-    if is_attached (i) vertices.attached.push_back(s);
+    if (is_attached(i)) vertices.attached.push_back(s);
   }
   halo.forward(ClothConstraints::ALL, w);
   vertices.reset(w, substepping.uses(ClothSolver::JACOBI));

@@ -26,8 +26,8 @@ class ClothConstraints : protected Pointers {
   {
   }
 
-  // 1. when the mesh was gathered.  rest_x: rest position of each atom, three columns.  sweeps: that
-  // many together do what a stiffness says.  at_once: a sweep sees none of itself, so that a
+  // 1. when the mesh was gathered.  rest_x: rest position of each atom, three columns.  sweeps:
+  // that many together do what a stiffness says.  at_once: a sweep sees none of itself, so that a
   // constraint may do only a share.
 
   void measure_rest(int groupbit, const ParticleColumns &rest_x);

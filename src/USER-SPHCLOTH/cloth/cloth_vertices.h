@@ -16,8 +16,8 @@ struct ClothVertices {
 
   VertexHalo halo;
   // positions, velocities, positions at the start of the (sub)step, displacements since then, and
-  // the change of a Jacobi sweep (empty for other solvers); one idle vertex behind those of the halo.
-  // Their w is the inverse mass in the solver, 0 for pins.
+  // the change of a Jacobi sweep (empty for other solvers); one idle vertex behind those of the
+  // halo. Their w is the inverse mass in the solver, 0 for pins.
   sphcloth::Vertices p, v, start, displacement, change;
   // inverse mass to forces: 0 for attached vertices, too, which another fix integrates
   std::vector<double> inverse_mass;

@@ -1,7 +1,7 @@
-// Substeps spread the forces of the start of a step evenly over it, so that what hangs at rest hangs
-// exactly, but they come half a step, less half a substep, late.  That much is given ahead at the
-// start of each step, and what the last one gave ahead is taken back: that makes the step velocity
-// Verlet, which feeds no motion.
+// Substeps spread the forces of the start of a step evenly over it, so that what hangs at rest
+// hangs exactly, but they come half a step, less half a substep, late.  That much is given ahead at
+// the start of each step, and what the last one gave ahead is taken back: that makes the step
+// velocity Verlet, which feeds no motion.
 
 #ifndef SPHCLOTH_CLOTH_HALF_KICK_CORRECTION_H
 #define SPHCLOTH_CLOTH_HALF_KICK_CORRECTION_H

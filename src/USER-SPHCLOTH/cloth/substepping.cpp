@@ -14,14 +14,14 @@ using namespace sphcloth;
 
 static constexpr int ALL = ClothConstraints::ALL;
 
-// What a sweep leaves of a stretch acts as a spring of the stiffness m/h^2, h the substep, and so does
-// a k below 1.  Where steps go to and fro between powers of two that would feed what they stretch:
-// substeps stay as long as those of the shortest recent step.
+// What a sweep leaves of a stretch acts as a spring of the stiffness m/h^2, h the substep, and so
+// does a k below 1.  Where steps go to and fro between powers of two that would feed what they
+// stretch: substeps stay as long as those of the shortest recent step.
 
 void Substepping::begin_step(const StepInfo &step)
 {
-  // factors: by which substeps may lengthen from step to step, and by which a step may be longer than
-  // the shortest recent one for its substeps to be as short
+  // factors: by which substeps may lengthen from step to step, and by which a step may be longer
+  // than the shortest recent one for its substeps to be as short
   constexpr double LENGTHENS = 1.01, MAX_RATIO = 8.0, ROUNDING = 1e-6;
   step_dt = step.dt;
   n_substeps = usual_substeps();
@@ -128,8 +128,8 @@ void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
   }
 }
 
-// One after the other in a fixed order, a sweep pulls harder one way than the other: what it does to
-// a sheet is no force with an energy.  Forward and backward it is.
+// One after the other in a fixed order, a sweep pulls harder one way than the other: what it does
+// to a sheet is no force with an energy.  Forward and backward it is.
 
 void Substepping::gauss_seidel(const ClothState &state)
 {

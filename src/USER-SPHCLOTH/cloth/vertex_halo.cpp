@@ -38,7 +38,7 @@ void VertexHalo::need(int slot, int channel)
 }
 
 /* ----------------------------------------------------------------------
-   who owns the ghosts, which periodic image are they, who needs what
+   owners of the ghosts, their periodic images, and what is needed of them
 ------------------------------------------------------------------------- */
 
 void VertexHalo::connect(Fix *fix)
@@ -93,7 +93,7 @@ void VertexHalo::find_images()
   }
 }
 
-// Images go with the box only where LAMMPS changes the velocity of who crosses its faces, too.
+// Images go with the box only where LAMMPS changes the velocity of atoms that cross its faces, too.
 
 VertexHalo::Vec3 VertexHalo::shift(int slot, double vectors, double rates) const
 {

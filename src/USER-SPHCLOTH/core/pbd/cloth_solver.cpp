@@ -9,10 +9,10 @@ namespace {
   constexpr int WIDE = GROUP<double>;
 
   // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is
-  // projected in columns: x of each, y of each, and so on.  Only differences of vertices are needed,
-  // so these are taken row by row and then turned into columns, with a w in the lane that is free.
-  // What a vertex is moved by, but for its w, is turned back into rows, whose last lane is 0: added
-  // to the rows of the vertices they leave w as it is.
+  // projected in columns: x of each, y of each, and so on.  Only differences of vertices are
+  // needed, so these are taken row by row and then turned into columns, with a w in the lane that
+  // is free. What a vertex is moved by, but for its w, is turned back into rows, whose last lane is
+  // 0: added to the rows of the vertices they leave w as it is.
 
   struct Column {
     alignas(64) double x[WIDE], y[WIDE], z[WIDE], w[WIDE];
@@ -48,15 +48,16 @@ namespace {
       before.to(e);
       now.to(d);
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
-                   *most = &c.most[m];
+                   *max_lambda = &c.max_lambda[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const double a = compliance[l] * s.inv_dt_sq;
         const DistanceStep by = START
             ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
-                                  k[l], a, lambda[l], most[l])
-            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l], most[l]);
+                                  k[l], a, lambda[l], max_lambda[l])
+            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l],
+                            max_lambda[l]);
         lambda[l] += by.lambda;
         step.put(l, by.x, by.y, by.z);
       }
@@ -101,7 +102,7 @@ namespace {
     SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
-                   *most = &c.most[m];
+                   *max_lambda = &c.max_lambda[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
@@ -117,9 +118,9 @@ namespace {
         const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
         const double lever = weight - LEAST_LEVER * w * steepest;
-        const double acting = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
-        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, acting,
-                                            compliance[l] * inv_dt_sq, lambda[l], most[l]);
+        const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
+        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, step_ratio,
+                                            compliance[l] * inv_dt_sq, lambda[l], max_lambda[l]);
         lambda[l] += step;
         a.put(l, step * h.ax, step * h.ay, step * h.az);
         e2.put(l, step * x2, step * y2, step * z2);
@@ -148,8 +149,8 @@ namespace {
     }
   };
 
-  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only project
-  // or only move, a processor begins with the next group before it has ended the last.
+  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only
+  // project or only move, a processor begins with the next group before it has ended the last.
 
   SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int color, const ClothState &s)
   {
@@ -238,7 +239,7 @@ namespace {
       for (std::size_t q = 0; q < N; q++) any_moves = any_moves || p[c.slot[q][m]].w > 0.0;
       if (!any_moves) continue;
       const double left = error_of(c, p, m) + c.compliance[m] * inv_dt_sq * c.lambda[m];
-      if (left < 0.0 && c.lambda[m] >= c.most[m]) continue;    // slack
+      if (left < 0.0 && c.lambda[m] >= c.max_lambda[m]) continue;    // slack
       largest = std::max(largest, std::fabs(left) / unit(c.rest[m]));
     }
     return largest;
@@ -251,7 +252,7 @@ namespace {
     for (int m = 0; m < c.size(); m++) {
       if (c.compliance[m] == 0.0 || c.slot[0][m] >= n_owned) continue;
       const double error = error_of(c, p, m);
-      if (error < 0.0 && c.most[m] == 0.0) continue;
+      if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
       sum += 0.5 * error * error / c.compliance[m];
     }
     return sum;

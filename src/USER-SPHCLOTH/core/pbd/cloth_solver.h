@@ -1,6 +1,6 @@
-// Projection of the constraints of a cloth, colour by colour.
+// Projection of the constraints of a cloth, color by color.
 //
-// No two constraints of one colour share a vertex, so a colour is a loop without order: groups of
+// No two constraints of one color share a vertex, so a color is a loop without order: groups of
 // four constraints become columns, are projected as vectors, and are written back.  The result
 // does not depend on where in a group a constraint stands.
 
@@ -25,7 +25,7 @@ struct Vertex {
 
 using Vertices = AlignedVector<Vertex>;
 
-// Constraints of N vertices sorted by colour.  Every colour is filled up to whole groups with
+// Constraints of N vertices sorted by color.  Every color is filled up to whole groups with
 // constraints of a vertex that has no mass, `idle`.
 
 template <std::size_t N> class Constraints {
@@ -37,11 +37,10 @@ template <std::size_t N> class Constraints {
     begin.reserve(colors + 1);
     for (auto &s : slot) s.clear();
     hard.clear();
-    for (auto *list : {&rest, &k, &compliance, &most, &lambda, &given}) list->clear();
-    acting = 1.0;
+    for (auto *list : {&rest, &k, &compliance, &max_lambda, &lambda, &reference_k}) list->clear();
+    step_ratio = 1.0;
   }
-  // one after the other, colour by colour
-  // share: what one sweep may do of it
+  // in order of their colors; share: the part of a projection that one sweep may do
   void add(const std::array<int, N> &vertices, const Spring &spring, double share = 1.0)
   {
     for (std::size_t q = 0; q < N; q++) slot[q].push_back(vertices[q]);
@@ -49,7 +48,7 @@ template <std::size_t N> class Constraints {
     k.push_back(share * spring.k);
     hard.push_back(spring.k == 1.0);
     compliance.push_back(spring.compliance);
-    most.push_back(spring.most);
+    max_lambda.push_back(spring.max_lambda);
     lambda.push_back(0.0);
   }
   void close_color()
@@ -60,15 +59,15 @@ template <std::size_t N> class Constraints {
     begin.push_back(size());
   }
 
-  // The springs that the constraints are where they do what k says, in steps whose square is one over
-  // `ratio` of that there: see the share of a spring in constraints.h.
+  // k of soft constraints such that they stay the springs that k is in a reference step.  ratio:
+  // the square of that step over the square of the present one.
   void rescale_stiffness(double ratio)
   {
-    if (ratio == acting) return;
-    if (given.empty()) given = k;
-    acting = ratio;
+    if (ratio == step_ratio) return;
+    if (reference_k.empty()) reference_k = k;
+    step_ratio = ratio;
     for (int m = 0; m < size(); m++)
-      if (!hard[m]) k[m] = rescaled_stiffness(given[m], ratio);
+      if (!hard[m]) k[m] = rescaled_stiffness(reference_k[m], ratio);
   }
 
   int size() const { return static_cast<int>(rest.size()); }
@@ -76,48 +75,48 @@ template <std::size_t N> class Constraints {
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
-    double sum = bytes_of(rest, k, compliance, most, lambda, given);
+    double sum = bytes_of(rest, k, compliance, max_lambda, lambda, reference_k);
     for (const std::vector<int> &vertex : slot) sum += bytes_of(vertex);
     return sum;
   }
 
-  std::vector<int> begin{0};    // of each colour, and the end
+  std::vector<int> begin{0};    // of each color, and the end
   std::array<std::vector<int>, N> slot;
-  AlignedVector<double> rest, k, compliance, most, lambda;
-  std::vector<char> hard;    // not in part, as (9) with k < 1
+  AlignedVector<double> rest, k, compliance, max_lambda, lambda;
+  std::vector<char> hard;    // k = 1: to be met in full
 
  private:
   int idle = 0;
-  AlignedVector<double> given;    // k where its ratio is 1, unless it always is
-  double acting = 1.0;
+  AlignedVector<double> reference_k;    // k at a ratio of 1; empty before the first other ratio
+  double step_ratio = 1.0;
 };
 
-// What a sweep works on.  Vertices of constraints are indices into these.  Vertices move from where they
-// were at the start of the (sub)step: ways are short, so that what two vertices exchange is not
-// rounded as places are, and momentum is kept.
+// What a sweep works on.  Vertices of constraints are indices into these.  Displacements count from
+// the start of the (sub)step: they are short, so that what two vertices exchange is not rounded as
+// positions are, and momentum is kept.
 
 struct ClothState {
-  const Vertex *start = nullptr;    // places
-  Vertex *displacement =
-      nullptr;    // since then, moved (Gauss-Seidel); the inverse masses are these
+  const Vertex *start = nullptr;    // positions
+  // since then; Gauss-Seidel changes them.  Their w are the inverse masses.
+  Vertex *displacement = nullptr;
   bool along_start = false;    // project edges along the directions that they had at the start
-  Vertex *change = nullptr;    // Jacobi: add up here what the ways would change by, or null
+  Vertex *change = nullptr;    // Jacobi: sum of the changes of displacements; or null
   double inv_dt_sq = 0.0;
 };
 
 void project(Constraints<2> &, int color, const ClothState &);
 void project(Constraints<4> &, int color, const ClothState &);
 
-// takes the share of the stretching motion out of the velocities v of one colour
+// takes the share of the stretching motion out of the velocities v of one color
 void damp(const Constraints<2> &, int color, const Vertex *p, Vertex *v, double share);
 
-// C + a lambda, which vanishes in a converged step: largest of the constraints that are to be met in
-// full and are not slack.  Of lengths it is relative, to the rest length or to `length` if that is 0.
+// Largest C + a lambda, which vanishes in a converged step, of the hard constraints that are not
+// slack.  Of lengths it is relative: to the rest length, or to `length` where that is 0.
 double residual(const Constraints<2> &, const Vertex *p, double inv_dt_sq, double length);
 double residual(const Constraints<4> &, const Vertex *p, double inv_dt_sq);
 
-// lambda grad C on every vertex with w = 0: on(slot, vector), once for each constraint that it is in.
-// With `start` edges have the directions that they had there.
+// lambda grad C on every vertex with w = 0: on(slot, vector), once for each constraint that it is
+// in. With `start` edges have the directions that they had there.
 using OnHeld = std::function<void(int, const Vec3 &)>;
 void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);

@@ -1,8 +1,8 @@
-// Greedy colouring of constraints: two constraints of one colour share no vertex, so a colour can
+// Greedy coloring of constraints: two constraints of one color share no vertex, so a color can
 // be projected in any order, by any number of ranks, with the same result.
 //
 // Vertices are numbered 0 .. n_vertices-1 in the order of their global IDs and constraints come
-// sorted by them, so the colours depend on the mesh alone.
+// sorted by them, so the colors depend on the mesh alone.
 
 #ifndef SPHCLOTH_CORE_PBD_COLORING_H
 #define SPHCLOTH_CORE_PBD_COLORING_H
@@ -17,8 +17,7 @@ template <std::size_t N>
 std::vector<int> color_constraints(const std::vector<std::array<int, N>> &constraints,
                                    int n_vertices, int &n_colors)
 {
-  std::vector<std::vector<bool>> used(
-      n_vertices);    // used[v][c]: v is in a constraint of colour c
+  std::vector<std::vector<bool>> used(n_vertices);    // used[v][c]: v is in a constraint of color c
   std::vector<int> color(constraints.size());
   n_colors = 0;
   const auto taken = [&](const std::array<int, N> &vertices, std::size_t c) {

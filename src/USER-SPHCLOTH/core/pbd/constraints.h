@@ -4,8 +4,8 @@
 // (core/pbd/cloth_solver.h).  Equation (8) is used in its mass-weighted form with a compliance,
 //   d lambda = -k' (C + a lambda) / (sum_j w_j |grad_j C|^2 + a),   dp_i = w_i grad_i C d lambda,
 // which keeps linear and angular momentum and leaves a pinned vertex (w = 0) where it is.
-// a = 0: plain position-based dynamics with k' of (9).  k' = 1, a = compliance/dt^2, lambda kept over
-// the sweeps of a step: Macklin, Mueller & Chentanez, MIG 2016.
+// a = 0: plain position-based dynamics with k' of (9).  k' = 1, a = compliance/dt^2, lambda kept
+// over the sweeps of a step: Macklin, Mueller & Chentanez, MIG 2016.
 // Mueller et al., J. Vis. Commun. Image R. 18 (2007) 109.
 
 #ifndef SPHCLOTH_CORE_PBD_CONSTRAINTS_H
@@ -29,35 +29,35 @@ using Vec3 = Eigen::Vector3d;
 
 inline double stiffness_per_iteration(double k, int n) { return -std::expm1(std::log1p(-k) / n); }
 
-// A constraint of which a step takes back the share k is a spring: by (8) with a compliance,
-// k = W/(W + a), a = compliance/dt^2, so that k/(1 - k) is as the square of the step.  The share of the
-// same spring where the square of the step is one over `ratio` of that for which k holds:
+// A constraint with k < 1 is a spring: by (8) with a compliance, k = W/(W + a), a =
+// compliance/dt^2, so that k/(1 - k) grows with the square of the step.  k of the same spring in
+// another step; ratio: the square of the step for which k holds over the square of the other one.
 
 SPHCLOTH_INLINE double rescaled_stiffness(double k, double ratio)
 {
   return k / (k + (1.0 - k) * ratio);
 }
 
-// What one constraint of a mesh is made of.  The multiplier never exceeds `most`: infinity, or 0 for
-// a constraint that only pulls.
+// What one constraint of a mesh is made of.  The multiplier never exceeds `max_lambda`: infinity,
+// or 0 for a constraint that only pulls.
 
 struct Spring {
   double rest = 0.0;    // length or angle
   double k = 1.0;    // k' of (9)
   double compliance = 0.0;    // a dt^2
-  double most = 0.0;
+  double max_lambda = 0.0;
 };
 
 // d lambda; weight = sum_j w_j |grad_j C|^2.  A constraint that can move nothing is left alone.
 // The division does not wait for the error: a projection takes as long as its longest chain.
 
 SPHCLOTH_INLINE double multiplier_step(double error, double weight, double k, double a,
-                                       double lambda, double most)
+                                       double lambda, double max_lambda)
 {
   const double denominator = weight + a;
   const double share = denominator > 0.0 ? k : 0.0;
   const double by = -share / (denominator > 0.0 ? denominator : 1.0);
-  return std::min(by * (error + a * lambda), most - lambda);
+  return std::min(by * (error + a * lambda), max_lambda - lambda);
 }
 
 // (4): dp_1 = w_1 d, dp_2 = -w_2 d.  Coincident ends have no direction: they are left alone until
@@ -71,20 +71,21 @@ struct DistanceStep {
 // (dx, dy, dz) = p_1 - p_2
 
 SPHCLOTH_INLINE DistanceStep distance_step(double dx, double dy, double dz, double w, double rest,
-                                           double k, double a, double lambda, double most)
+                                           double k, double a, double lambda, double max_lambda)
 {
   const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
   const bool apart = length > 0.0;
   const double per_length = 1.0 / (apart ? length : 1.0);
-  const double step = multiplier_step(length - rest, w, apart ? k : 0.0, a, lambda, most);
+  const double step = multiplier_step(length - rest, w, apart ? k : 0.0, a, lambda, max_lambda);
   const double along = step * per_length;
   return {along * dx, along * dy, along * dz, step};
 }
 
-// The direction that an edge had at the start of the step is of no use if it has turned by more than 60
-// degrees since (cosine: of that angle, times the length `before` that it had), or if the step is
-// long for its tension: a string of links of length l and masses m under a tension T swings ever
-// higher if dt^2 T > m l, which is a pull of 2.  pull: what its ends are moved, over its length.
+// The direction that an edge had at the start of the step is of no use if it has turned by more
+// than 60 degrees since (cosine: of that angle, times the length `before` that it had), or if the
+// step is long for its tension: a string of links of length l and masses m under a tension T swings
+// ever higher if dt^2 T > m l, which is a pull of 2.  pull: what its ends are moved, over its
+// length.
 
 inline constexpr double MAX_PULL = 0.5;
 
@@ -94,12 +95,13 @@ SPHCLOTH_INLINE bool start_is_void(double cosine, double before, double pull)
 }
 
 // The same along the direction (sx, sy, sz) that the edge had at the start of the step, as SHAKE
-// does: second order in time.  The length changes with the cosine between the two; where the start is
-// void the present direction is taken.
+// does: second order in time.  The length changes with the cosine between the two; where the start
+// is void the present direction is taken.
 
 SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz, double sx,
                                                  double sy, double sz, double w, double rest,
-                                                 double k, double a, double lambda, double most)
+                                                 double k, double a, double lambda,
+                                                 double max_lambda)
 {
   const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
   const double before = std::sqrt(sx * sx + sy * sy + sz * sz);
@@ -113,7 +115,7 @@ SPHCLOTH_INLINE DistanceStep distance_step_along(double dx, double dy, double dz
   const double nx = inv * (present ? dx : sx), ny = inv * (present ? dy : sy),
                nz = inv * (present ? dz : sz);
   const double slope = present ? 1.0 : inv * cosine;
-  const double step = multiplier_step(error, w * slope, apart ? k : 0.0, a, lambda, most);
+  const double step = multiplier_step(error, w * slope, apart ? k : 0.0, a, lambda, max_lambda);
   return {step * nx, step * ny, step * nz, step};
 }
 
@@ -146,10 +148,10 @@ SPHCLOTH_INLINE double arc_tangent(double y, double x)
 }
 
 // Hinge: vertices in the order of a LAMMPS dihedral, wing a, edge 1, edge 2, wing b.  The angle is
-// signed, 0 when flat, positive or negative for ridge and valley, in (-pi, pi]: by arc tangent, since
-// arccos of (5) has no sign and no digits near flat.  Gradients as in Bridson, Marino & Fedkiw, SCA
-// 2003, equation for the bending mode: each wing moves along its triangle's normal, the ends of the
-// edge by shares of that.
+// signed, 0 when flat, positive or negative for ridge and valley, in (-pi, pi]: by arc tangent,
+// since arccos of (5) has no sign and no digits near flat.  Gradients as in Bridson, Marino &
+// Fedkiw, SCA 2003, equation for the bending mode: each wing moves along its triangle's normal, the
+// ends of the edge by shares of that.
 
 struct HingeShape {
   double angle;
@@ -200,7 +202,7 @@ SPHCLOTH_INLINE double angle_difference(double angle, double rest)
 
 // If only vertices can move that hardly turn the hinge (an edge vertex below a right angle, the
 // others pinned), a projection would throw them far away: below this share of the lever that a
-// wing has, squared, the hinge is left to its neighbours.
+// wing has, squared, the hinge is left to its neighbors.
 inline constexpr double LEAST_LEVER = 1e-3;
 
 // the share of the relative velocity (vx, vy, vz) of two ends along their edge, over the sum of the

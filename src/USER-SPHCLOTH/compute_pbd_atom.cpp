@@ -112,8 +112,8 @@ double ComputePBDAtom::strain(int i) const
 }
 
 // What a triangle of a vertex and edges b and c from it adds: Meyer, Desbrun, Schroeder & Barr,
-// Visualization and Mathematics III (2003) 35, section 3.3: its Voronoi region, or a half or quarter
-// of an obtuse triangle.
+// Visualization and Mathematics III (2003) 35, section 3.3: its Voronoi region, or a half or
+// quarter of an obtuse triangle.
 
 static double mixed_area(const Eigen::Vector3d &b, const Eigen::Vector3d &c)
 {

@@ -105,8 +105,9 @@ std::array<double, 3> ComputePBDLocal::measure_edge(int m, int i) const
   return {rest, length, cloth->rest().has_strain(m) ? length / rest - 1.0 : 0.0};
 }
 
-// Rest angle, angle, curvature: the angle is spread over a third of the heights of the two triangles,
-// as in Grinspun, Hirani, Desbrun & Schroeder, SCA 2003.  A hinge without an angle has none.
+// Rest angle, angle, curvature: the angle is spread over a third of the heights of the two
+// triangles, as in Grinspun, Hirani, Desbrun & Schroeder, SCA 2003.  A hinge without an angle has
+// none.
 
 std::array<double, 3> ComputePBDLocal::measure_hinge(int m, int i) const
 {

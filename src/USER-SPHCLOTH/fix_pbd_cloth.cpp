@@ -355,7 +355,7 @@ Eigen::Vector3d FixPBDCloth::reaction_force(int i) const
 
 /* ----------------------------------------------------------------------
    output: force of the holders on the cloth (x, y, z), largest edge strain, residual, sweeps,
-   elastic energy, momentum that is lent ahead of time (x, y, z)
+   elastic energy, momentum that the half-kick correction has given ahead (x, y, z)
 ------------------------------------------------------------------------- */
 
 double FixPBDCloth::compute_vector(int n)

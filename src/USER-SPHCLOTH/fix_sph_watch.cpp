@@ -110,7 +110,7 @@ void FixSPHWatch::need_fluid()
              label, allowed[DENSITY], force->pair_style ? force->pair_style : "none");
 }
 
-// who brings in, takes out, stores and lends
+// fixes that add or take out particles, and those that hold energy or momentum
 
 void FixSPHWatch::find_partners()
 {
@@ -150,7 +150,7 @@ void FixSPHWatch::setup(int)
   output->write_restart(update->ntimestep);
 }
 
-// Cloth has its whole momentum from the end of its first step on, see FixPBDCloth::lend().
+// Cloth has its whole momentum from the end of its first step on, see cloth/half_kick_correction.h.
 
 void FixSPHWatch::end_of_step()
 {
@@ -260,14 +260,14 @@ FixSPHWatch::Balance FixSPHWatch::balance() const
   b.flow = all[FLOW];
   b.energy = force->mvv2e * (all[KINETIC] + all[STORED]);
   b.momentum = {all[VECTOR], all[VECTOR + 1], all[VECTOR + 2]};
-  take_off_guests(b);
+  take_off_exchanged(b);
   return b;
 }
 
-// What came in, what left, and what cloths have lent ahead of time.  What leaves takes energy along,
-// which is not asked for: energy may fall.
+// What came in, what left, and what cloths have been given ahead of time.  What leaves takes energy
+// along, which is not counted: energy may fall.
 
-void FixSPHWatch::take_off_guests(Balance &b) const
+void FixSPHWatch::take_off_exchanged(Balance &b) const
 {
   for (const FixSPHEmit *source : sources) {
     const FixSPHEmit::Poured in = source->poured();

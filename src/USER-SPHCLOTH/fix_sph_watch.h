@@ -86,7 +86,7 @@ class FixSPHWatch : public Fix {
   void look_at_particles();
   void look_at_balance();
   Balance balance() const;
-  void take_off_guests(Balance &) const;
+  void take_off_exchanged(Balance &) const;
   int wrong(int i) const;
   double speed(int i) const;
   double deviation(int i) const;

@@ -1,9 +1,9 @@
 // Counts what a program sends through MPI: preloaded before it, by `sphcloth bench messages`.
 //
-// Every call is passed on to MPI's profiling interface.  When MPI ends, each rank writes one line of
-// numbers to the file that SPHCLOTH_MESSAGES names, with its rank behind the name:
-// messages, their bytes, collective calls, the bytes that this rank contributes to them.
-// A message of a rank to itself counts as none.
+// Every call is passed on to MPI's profiling interface.  When MPI ends, each rank writes one line
+// of numbers to the file that SPHCLOTH_MESSAGES names, with its rank behind the name: messages,
+// their bytes, collective calls, the bytes that this rank contributes to them. A message of a rank
+// to itself counts as none.
 
 #include <mpi.h>
 

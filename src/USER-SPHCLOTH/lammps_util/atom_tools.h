@@ -36,8 +36,8 @@ inline double physical_time(const Update *update)
   return update->atime + static_cast<double>(update->ntimestep - update->atimestep) * update->dt;
 }
 
-// For fixes that are restored.  LAMMPS, where a run begins, would forget the time between the last change
-// of dt and a restart file that was written in the middle of a run.
+// For fixes that are restored.  LAMMPS, where a run begins, would forget the time between the last
+// change of dt and a restart file that was written in the middle of a run.
 
 inline void keep_restored_time(Update *update) { update->update_time(); }
 

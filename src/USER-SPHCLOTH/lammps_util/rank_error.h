@@ -13,8 +13,8 @@
 
 namespace LAMMPS_NS {
 
-// As Error::one().  It ends all ranks, and a launcher may stop them before it has passed on what this one
-// printed: it waits for that.
+// As Error::one().  It ends all ranks, and a launcher may stop them before it has passed on what
+// this one printed: it waits for that.
 
 template <class... Words>
 [[noreturn]] void rank_error(LAMMPS *lmp, const char *file, int line, const std::string &format,

@@ -1,5 +1,5 @@
-// What a fix keeps in restart files: one plain record behind its length and a mark.  LAMMPS hands it
-// back by ID and style, without its length; a record of another release is told by these two.
+// What a fix keeps in restart files: one plain record behind its length and a mark.  LAMMPS hands
+// it back by ID and style, without its length; a record of another release is told by these two.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_RESTART_RECORD_H
 #define SPHCLOTH_LAMMPS_UTIL_RESTART_RECORD_H

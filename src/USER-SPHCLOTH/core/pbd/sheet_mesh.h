@@ -21,7 +21,7 @@ namespace sphcloth {
 enum class Pattern { SQUARE, DIAGONAL, EQUILATERAL };
 
 struct Sheet {
-  std::vector<Eigen::Vector2d> vertices;    // in the plane of the sheet, centred on 0
+  std::vector<Eigen::Vector2d> vertices;    // in the plane of the sheet, centered on 0
   std::vector<std::array<int, 3>> triangles;    // counter-clockwise
   bool has_cells;    // triangles are halves of rectangles along the axes
 };
@@ -123,7 +123,7 @@ inline SheetRow disc_ring(int k, double radius, Sheet &sheet)
   return ring;
 }
 
-// Rings around a vertex in the centre: a hexagon of equilateral triangles, bent until its border is
+// Rings around a vertex in the center: a hexagon of equilateral triangles, bent until its border is
 // a circle.  With the distance h of rings, edges are h to sqrt(1 + (pi/3)^2) h long.
 
 inline Sheet make_disc(double radius, double spacing)

@@ -12,7 +12,6 @@
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
-#include "memory.h"
 #include "modify.h"
 #include "pair_sph_tait.h"
 #include "update.h"
@@ -22,16 +21,16 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-// of the looks at all surfaces behind the solver: what one of them puts back another may mind
-static constexpr int MOST_ROUNDS = 10;
+// over all surfaces behind the solver: what one of them puts back may penetrate another
+static constexpr int MAX_ROUNDS = 10;
 
 /* ----------------------------------------------------------------------
    fix ID group cloth/contact thickness keyword value ...
 ------------------------------------------------------------------------- */
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), places(nullptr),
-    pushes(nullptr), beyond(nullptr), linking(nullptr), sight(0.0), vertex_bits(0)
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)),
+    linking(nullptr), sight(0.0), vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -60,11 +59,11 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
       args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
   }
   restart_peratom = !obstacle_groups.empty();
-  FixClothContact::grow_arrays(atom->nmax);
+  last_positions.create(3, atom->nmax);
+  if (!obstacle_groups.empty()) impulses.create(3, atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
   atom->add_callback(Atom::GROW);
   if (restart_peratom) atom->add_callback(Atom::RESTART);
-  if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);
 }
 
 void FixClothContact::read_obstacle(ArgReader &args)
@@ -81,15 +80,12 @@ FixClothContact::~FixClothContact()
 {
   atom->delete_callback(id, Atom::GROW);
   if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
-  memory->destroy(places);
-  memory->destroy(pushes);
-  memory->destroy(beyond);
 }
 
 int FixClothContact::setmask()
 {
   return POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
-      (pushes ? PRE_REVERSE : 0);
+      (impulses.empty() ? 0 : PRE_REVERSE);
 }
 
 void FixClothContact::init()
@@ -112,9 +108,8 @@ void FixClothContact::init()
                  "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
                  "the cloth",
                  label, group->names[igroup], fix->id);
-    surfaces.push_back(
-        std::make_unique<ContactSurface>(lmp, cloth, this, groupbit, &rules, &counts));
-    cloth->register_coupling(surfaces.back().get());
+    surfaces.push_back(make_surface(cloth, groupbit));
+    cloth->register_coupling(&surfaces.back()->solver);
     cloths.push_back(cloth);
     vertex_bits |= cloth->groupbit;
   }
@@ -124,29 +119,32 @@ void FixClothContact::init()
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
   auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  memory->destroy(beyond);
-  if (fluid && fluid->integrates_density()) {
-    memory->create(beyond, atom->nmax, 3, "cloth/contact:beyond");
-    std::fill_n(beyond[0], 3 * atom->nmax, 0.0);
-  }
+  const bool follows = fluid && fluid->integrates_density();
+  excess_velocities.create(follows ? 3 : 0, atom->nmax);
   if (!walls) return;
   walls->init(fluid);
-  for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], surfaces[k].get());
-  for (std::size_t k = 0; k < hard.size(); k++) walls->add(obstacles[k].get(), hard[k].get());
+  for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], &surfaces[k]->triangles);
+  for (std::size_t k = 0; k < hard.size(); k++) walls->add(obstacles[k].get(), &hard[k]->triangles);
 }
 
-// Meets the group of this fix and the vertices of all cloths.
+std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
+{
+  return std::make_unique<ContactSurface>(lmp, mesh, this, label, groupbits, rules, counts,
+                                          last_positions);
+}
+
+// The group of this fix and the vertices of all cloths collide with it.
 
 void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDCloth *> &cloths)
 {
   const int bit = group->bitmask[obstacle_group];
   const char *name = group->names[obstacle_group];
-  int meets = groupbit;
+  int groupbits = groupbit;
   for (FixPBDCloth *cloth : cloths) {
     if (share_atoms(atom, bit, cloth->groupbit, world))
       error->all(FLERR, "{}: obstacle group {} holds vertices of fix {}: an obstacle is no cloth",
                  label, name, cloth->id);
-    meets |= cloth->groupbit;
+    groupbits |= cloth->groupbit;
   }
   if (share_atoms(atom, bit, groupbit, world))
     error->all(
@@ -154,7 +152,7 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
         "{}: obstacle group {} holds atoms of group {}: give the group of the particles that "
         "meet the obstacle",
         label, name, group->names[igroup]);
-  obstacles.push_back(std::make_unique<Obstacle>(lmp, label, bit));
+  obstacles.push_back(std::make_unique<Obstacle>(lmp, label, bit, impulses));
   Obstacle &obstacle = *obstacles.back();
   obstacle.gather();
   if (obstacle.topology().triangles.size() == 0)
@@ -162,12 +160,12 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
                "{}: obstacle group {} has no triangles: they are LAMMPS angles; 'sphcloth mesh' "
                "writes them",
                label, name);
-  obstacle.set_pushes(pushes);
-  hard.push_back(std::make_unique<ContactSurface>(lmp, &obstacle, this, meets, &rules, &counts));
-  for (FixPBDCloth *cloth : cloths) {
-    couplings.push_back(std::make_unique<ObstacleCoupling>(lmp, cloth, hard.back().get(), &rules));
-    cloth->register_coupling(couplings.back().get());
-    hard.back()->meet_vertices_of(cloth);
+  hard.push_back(make_surface(&obstacle, groupbits));
+  for (std::size_t k = 0; k < cloths.size(); k++) {
+    couplings.push_back(std::make_unique<ObstacleCoupling>(lmp, surfaces[k]->triangles,
+                                                           hard.back()->triangles));
+    cloths[k]->register_coupling(couplings.back().get());
+    hard.back()->triangles.add_vertices_of(cloths[k]);
   }
 }
 
@@ -182,18 +180,18 @@ template <class Do> void FixClothContact::for_all_surfaces(Do something)
 void FixClothContact::setup_post_neighbor()
 {
   if (!surfaces.empty() && std::none_of(surfaces.begin(), surfaces.end(), [](const auto &surface) {
-        return surface->has_triangles();
+        return surface->triangles.has_triangles();
       }))
     error->all(FLERR,
                "{}: the cloth has no triangles: they are LAMMPS angles, create_cloth makes them, a "
                "data file needs an Angles section",
                label);
-  keep_places();
+  store_positions();
   if (rules.sides && surfaces.size() > sphcloth::MAX_SHEETS)
     error->all(FLERR, "{}: {} cloths have sides, the most are {}: give 'sides no'", label,
                surfaces.size(), sphcloth::MAX_SHEETS);
   if (rules.sides)
-    for (auto &surface : surfaces) surface->check_winding();
+    for (auto &surface : surfaces) surface->triangles.check_winding();
   post_neighbor();
   warn_of_too_near();
 }
@@ -202,7 +200,7 @@ void FixClothContact::warn_of_too_near()
 {
   for_all_surfaces([this](ContactSurface &surface) {
     tagint one;
-    const bigint n = surface.count_too_near(one);
+    const bigint n = surface.stabilization.count_too_near(one);
     if (n > 0 && comm->me == 0)
       error->warning(
           FLERR,
@@ -215,78 +213,79 @@ void FixClothContact::warn_of_too_near()
 
 void FixClothContact::post_neighbor()
 {
-  follow_into_box();
-  const double far = std::max(rules.thickness, walls ? walls->reach() : 0.0);
-  for_all_surfaces([this, far](ContactSurface &surface) {
+  wrap_last_positions();
+  const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
+  for_all_surfaces([this, distance](ContactSurface &surface) {
     linking = &surface;
-    surface.rebuild(far);
-    surface.set_last_places(places);
+    surface.rebuild(distance);
   });
   if (walls) walls->look();
   if (rules.sides) find_sides();
 }
 
-// They hold until the next list build, since nobody passes.
+// They hold until the next list build, since particles do not pass.
 
 void FixClothContact::find_sides()
 {
   side.assign(atom->nmax, 0);
   if (sight == 0.0) return;
   for (std::size_t sheet = 0; sheet < surfaces.size(); sheet++)
-    surfaces[sheet]->find_sides(sight, static_cast<int>(sheet), side);
+    surfaces[sheet]->sides.find(sight, static_cast<int>(sheet), side);
   linking = nullptr;
   comm->forward_comm(this, 1);
 }
 
 void FixClothContact::initial_integrate(int)
 {
-  for_all_surfaces([](ContactSurface &surface) { surface.begin(); });
-  if (pushes) std::fill_n(pushes[0], 3 * atom->nmax, 0.0);
+  for_all_surfaces([](ContactSurface &surface) { surface.triangles.moved.clear(); });
+  impulses.clear();
 }
 
-// The cloths have been solved, with what they met: see ContactSurface.
+// The cloths have been solved, with their contacts: see SolverContact and ObstacleCoupling.
 
 void FixClothContact::post_integrate()
 {
-  for (int round = 0; round < MOST_ROUNDS; round++) {
+  for (int round = 0; round < MAX_ROUNDS; round++) {
     bool any = false;
-    for_all_surfaces([&any](ContactSurface &surface) { any = surface.settle() || any; });
+    for_all_surfaces([&any](ContactSurface &surface) {
+      any = surface.stabilization.resolve_penetrations() || any;
+    });
     if (!any || surfaces.size() + hard.size() == 1) break;
   }
-  if (beyond) show_way();
-  keep_places();
+  if (!excess_velocities.empty()) subtract_excess_velocities();
+  store_positions();
 }
 
-// Vertices, and particles in contact, leave a step with the velocity of its last substep, which is not
-// that of their way.  A density that is integrated must follow the way: forces are evaluated with the
-// velocity of the way, and what is beyond comes back behind them.
+// Vertices, and particles in contact, end a step with the velocity of its last substep, which is
+// not the mean velocity of the step.  A density that is integrated must follow displacements:
+// forces are evaluated with the mean velocity, and the difference comes back behind them.
 
-void FixClothContact::show_way()
+void FixClothContact::subtract_excess_velocities()
 {
   for_all_surfaces([&](const ContactSurface &surface) {
-    for (int i : surface.met()) show_way_of(i);
+    for (int i : surface.triangles.moved) subtract_excess_velocity(i);
   });
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & vertex_bits) show_way_of(i);
+    if (atom->mask[i] & vertex_bits) subtract_excess_velocity(i);
 }
 
-void FixClothContact::show_way_of(int i)
+void FixClothContact::subtract_excess_velocity(int i)
 {
   double *v = atom->v[i];
   for (int d = 0; d < 3; d++) {
-    const double more = v[d] - (atom->x[i][d] - places[i][d]) / update->dt;
-    beyond[i][d] += more;
-    v[d] -= more;
+    const double excess = v[d] - (atom->x[i][d] - last_positions[d][i]) / update->dt;
+    excess_velocities[d][i] += excess;
+    v[d] -= excess;
   }
 }
 
 void FixClothContact::post_force(int)
 {
-  if (!beyond) return;
+  if (excess_velocities.empty()) return;
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < 3; d++) {
-      atom->v[i][d] += beyond[i][d];
-      beyond[i][d] = 0.0;
+      atom->v[i][d] += excess_velocities[d][i];
+      excess_velocities[d][i] = 0.0;
     }
 }
 
@@ -296,7 +295,7 @@ void FixClothContact::pre_reverse(int, int)
   for (const auto &obstacle : obstacles)
     for (int i = 0; i < atom->nlocal; i++)
       if (obstacle->has_vertex(i))
-        for (int d = 0; d < 3; d++) atom->f[i][d] += by * pushes[i][d];
+        for (int d = 0; d < 3; d++) atom->f[i][d] += by * impulses[d][i];
 }
 
 int FixClothContact::side_of(int i) const
@@ -310,19 +309,20 @@ int FixClothContact::side_of(int i) const
 
 // LAMMPS has put atoms back into the box.  It may be another box by the end of the next step.
 
-void FixClothContact::follow_into_box()
+void FixClothContact::wrap_last_positions()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     double displacement[3];
-    for (int d = 0; d < 3; d++) displacement[d] = atom->x[i][d] - places[i][d];
+    for (int d = 0; d < 3; d++) displacement[d] = atom->x[i][d] - last_positions[d][i];
     domain->minimum_image(FLERR, displacement);
-    for (int d = 0; d < 3; d++) places[i][d] = atom->x[i][d] - displacement[d];
+    for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d] - displacement[d];
   }
 }
 
-void FixClothContact::keep_places()
+void FixClothContact::store_positions()
 {
-  if (atom->nlocal > 0) std::copy_n(atom->x[0], 3 * atom->nlocal, places[0]);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d];
 }
 
 /* ----------------------------------------------------------------------
@@ -336,9 +336,9 @@ double FixClothContact::compute_vector(int n)
                      counts.impulse[0], counts.impulse[1], counts.impulse[2]};
   double all;
   mine[10] = counts.seconds;
-  if (n >= 7 && n < 10 && pushes)
+  if (n >= 7 && n < 10 && !impulses.empty())
     for (int i = 0; i < atom->nlocal; i++)
-      mine[n] += pushes[i][n - 7] / (update->dt * force->ftm2v);
+      mine[n] += impulses[n - 7][i] / (update->dt * force->ftm2v);
   MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, n == 3 || n == 10 ? MPI_MAX : MPI_SUM, world);
   return all;
 }
@@ -349,64 +349,56 @@ double FixClothContact::compute_vector(int n)
 
 int FixClothContact::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
 {
-  if (linking) return linking->pack_link(n, sendlist, buf);
+  if (linking) return linking->triangles.pack_link(n, sendlist, buf);
   for (int k = 0; k < n; k++) buf[k] = side[sendlist[k]];
   return n;
 }
 
 void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 {
-  if (linking) return linking->unpack_link(n, first, buf);
+  if (linking) return linking->triangles.unpack_link(n, first, buf);
   for (int k = 0; k < n; k++) side[first + k] = static_cast<sphcloth::Sides>(buf[k]);
 }
 
 void FixClothContact::grow_arrays(int nmax)
 {
-  memory->grow(places, nmax, 3, "cloth/contact:places");
-  if (beyond) memory->grow(beyond, nmax, 3, "cloth/contact:beyond");
-  if (!obstacle_groups.empty()) memory->grow(pushes, nmax, 3, "cloth/contact:pushes");
-  for (auto &obstacle : obstacles) obstacle->set_pushes(pushes);
-  for_all_surfaces([this](ContactSurface &surface) { surface.set_last_places(places); });
+  for (ParticleColumns *each : columns()) each->grow(nmax);
 }
 
 void FixClothContact::copy_arrays(int i, int j, int)
 {
-  for (double **each : {places, pushes, beyond})
-    if (each) std::copy_n(each[i], 3, each[j]);
+  for (ParticleColumns *each : columns()) each->copy(i, j);
 }
 
 void FixClothContact::set_arrays(int i)
 {
-  std::copy_n(atom->x[i], 3, places[i]);
-  for (double **each : {pushes, beyond})
-    if (each) std::fill_n(each[i], 3, 0.0);
+  for (ParticleColumns *each : columns()) each->clear(i);
+  last_positions.unpack(i, atom->x[i]);
 }
 
 int FixClothContact::pack_exchange(int i, double *buf)
 {
   double *end = buf;
-  for (double **each : {places, pushes, beyond})
-    if (each) end = std::copy_n(each[i], 3, end);
+  for (const ParticleColumns *each : columns()) end = each->pack(i, end);
   return static_cast<int>(end - buf);
 }
 
 int FixClothContact::unpack_exchange(int i, double *buf)
 {
   const double *from = buf;
-  for (double **each : {places, pushes, beyond})
-    if (each) {
-      std::copy_n(from, 3, each[i]);
-      from += 3;
-    }
+  for (ParticleColumns *each : columns()) {
+    each->unpack(i, from);
+    from += each->count();
+  }
   return static_cast<int>(from - buf);
 }
 
-// only what obstacles feel; the first value of a restart record is its length
+// only the impulses on obstacles; the first value of a restart record is its length
 
 int FixClothContact::pack_restart(int i, double *buf)
 {
   buf[0] = 4;
-  std::copy(pushes[i], pushes[i] + 3, buf + 1);
+  impulses.pack(i, buf + 1);
   return 4;
 }
 
@@ -414,17 +406,14 @@ void FixClothContact::unpack_restart(int i, int nth)
 {
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
-  std::copy(record + 1, record + 4, pushes[i]);
+  impulses.unpack(i, record + 1);
 }
-
-int FixClothContact::size_restart(int) { return 4; }
-int FixClothContact::maxsize_restart() { return 4; }
 
 double FixClothContact::memory_usage()
 {
   double bytes = 0.0;
-  for (double **each : {places, pushes, beyond})
-    if (each) bytes += 3.0 * sizeof(double) * atom->nmax;
+  for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
+  for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
 }

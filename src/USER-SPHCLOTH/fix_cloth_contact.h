@@ -13,8 +13,11 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "contact/contact_surface.h"
 #include "contact/obstacle.h"
+#include "contact/obstacle_coupling.h"
 #include "fluid/mesh_boundary.h"
+#include "lammps_util/particle_columns.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,8 +50,8 @@ class FixClothContact : public Fix {
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
+  int size_restart(int) override { return 4; }
+  int maxsize_restart() override { return 4; }
   double memory_usage() override;
 
   bool has_sides() const { return rules.sides; }
@@ -57,35 +60,40 @@ class FixClothContact : public Fix {
   const sphcloth::Sides *sides() const { return side.data(); }
   // what fills the kernel of fluid near the meshes; null with 'wall no'
   MeshBoundary *wall() const { return walls.get(); }
-  // how far pair_style sph/tait looks
+  // the cutoff of pair_style sph/tait
   void set_sight(double distance) { sight = distance; }
 
  private:
   std::string label;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
-  double **places;         // of all atoms at the end of the last step
-  double **pushes;    // on obstacles in this step, mass times velocity; null: there are none
-  double *
-      *beyond;    // velocity that contact has left beyond the way; null: densities do not follow it
+  // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
+  // step, mass times velocity, if there are any; and velocity minus displacement over the step, if
+  // densities follow displacements
+  ParticleColumns last_positions, impulses, excess_velocities;
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
   std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
   std::unique_ptr<MeshBoundary> walls;
-  ContactSurface *linking;    // whose halo uses the communication of this fix, null: the sides do
+  ContactSurface *linking;    // whose halo uses the communication of this fix; null: sides do
   std::vector<sphcloth::Sides> side;
   double sight;
-  int vertex_bits;    // groups of the cloths
+  int vertex_bits;    // group bits of the cloths
 
-  void keep_places();
-  void follow_into_box();
-  void show_way();
-  void show_way_of(int);
+  std::array<ParticleColumns *, 3> columns()
+  {
+    return {&last_positions, &impulses, &excess_velocities};
+  }
+  void store_positions();
+  void wrap_last_positions();
+  void subtract_excess_velocities();
+  void subtract_excess_velocity(int i);
   void warn_of_too_near();
   void find_sides();
   void read_obstacle(ArgReader &);
+  std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
   template <class Do> void for_all_surfaces(Do);
 };

@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_CASE(through_the_middle_from_both_sides_at_any_speed)
   for (double side : {1.0, -1.0})
     for (double speed : {0.02, 1.0, 1000.0}) {
       const Sweep p{{0.3, 0.1, side * 0.01}, {0.3, 0.1, side * (0.01 - speed)}};
-      const ContactResult t = touch(p, resting_triangle(), 1e-3);
+      const ContactResult t = point_triangle_contact(p, resting_triangle(), 1e-3);
       BOOST_CHECK(t.hit);
       BOOST_CHECK(t.through == (speed > 0.01));
       BOOST_CHECK_SMALL(t.normal[2] - side, 1e-15);
@@ -47,23 +47,28 @@ BOOST_AUTO_TEST_CASE(through_the_middle_from_both_sides_at_any_speed)
     }
 }
 
+static ContactResult contact_at_rest(const Sweep &p)
+{
+  return point_triangle_contact(p, resting_triangle(), 1e-3);
+}
+
 BOOST_AUTO_TEST_CASE(past_the_edge_away_along_and_short_of_it_do_not_count)
 {
-  BOOST_CHECK(!touch({{0.8, 0.8, 0.1}, {0.8, 0.8, -0.1}}, resting_triangle(), 1e-3).hit);
-  BOOST_CHECK(!touch({{0.2, 0.2, 0.1}, {0.2, 0.2, 0.3}}, resting_triangle(), 1e-3).hit);
-  BOOST_CHECK(!touch({{0.2, 0.2, 0.1}, {0.3, 0.2, 0.1}}, resting_triangle(), 1e-3).hit);
-  BOOST_CHECK(!touch({{0.2, 0.2, 0.1}, {0.2, 0.2, 0.01}}, resting_triangle(), 1e-3).hit);
+  BOOST_CHECK(!contact_at_rest({{0.8, 0.8, 0.1}, {0.8, 0.8, -0.1}}).hit);
+  BOOST_CHECK(!contact_at_rest({{0.2, 0.2, 0.1}, {0.2, 0.2, 0.3}}).hit);
+  BOOST_CHECK(!contact_at_rest({{0.2, 0.2, 0.1}, {0.3, 0.2, 0.1}}).hit);
+  BOOST_CHECK(!contact_at_rest({{0.2, 0.2, 0.1}, {0.2, 0.2, 0.01}}).hit);
 }
 
 BOOST_AUTO_TEST_CASE(inside_the_thickness_the_gap_may_not_shrink_and_is_never_widened)
 {
   const ContactResult nearer =
-      touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 3e-4}}, resting_triangle(), 1e-3);
+      point_triangle_contact({{0.2, 0.2, 4e-4}, {0.2, 0.2, 3e-4}}, resting_triangle(), 1e-3);
   BOOST_CHECK(nearer.hit);
   BOOST_CHECK(!nearer.through);
   BOOST_CHECK_SMALL(nearer.depth - 1e-4, 1e-12);
-  BOOST_CHECK(!touch({{0.2, 0.2, 4e-4}, {0.25, 0.2, 4e-4}}, resting_triangle(), 1e-3).hit);
-  BOOST_CHECK(!touch({{0.2, 0.2, 4e-4}, {0.2, 0.2, 5e-4}}, resting_triangle(), 1e-3).hit);
+  BOOST_CHECK(!contact_at_rest({{0.2, 0.2, 4e-4}, {0.25, 0.2, 4e-4}}).hit);
+  BOOST_CHECK(!contact_at_rest({{0.2, 0.2, 4e-4}, {0.2, 0.2, 5e-4}}).hit);
 }
 
 BOOST_AUTO_TEST_CASE(a_falling_or_turning_triangle_sweeps_over_a_resting_point)
@@ -71,11 +76,11 @@ BOOST_AUTO_TEST_CASE(a_falling_or_turning_triangle_sweeps_over_a_resting_point)
   const Vec3 rest(0.2, 0.2, 0.0);
   std::array<Sweep, 3> falling = resting_triangle(0.5);
   for (Sweep &s : falling) s.end[2] = -0.5;
-  BOOST_CHECK(touch({rest, rest}, falling, 1e-3).hit);
+  BOOST_CHECK(point_triangle_contact({rest, rest}, falling, 1e-3).hit);
   std::array<Sweep, 3> turning = resting_triangle(0.05);
   turning[1].end = Vec3(1, 0, -2);
   turning[2].end = Vec3(0, 1, -2);
-  BOOST_CHECK(touch({rest, rest}, turning, 1e-3).hit);
+  BOOST_CHECK(point_triangle_contact({rest, rest}, turning, 1e-3).hit);
 }
 
 BOOST_AUTO_TEST_CASE(no_seam_between_two_triangles)
@@ -89,7 +94,7 @@ BOOST_AUTO_TEST_CASE(no_seam_between_two_triangles)
     const double s = u(generator);    // points right on the shared edge
     const Vec3 on_edge = a + s * (c - a);
     const Sweep p{on_edge + Vec3(0, 0, u(generator)), on_edge - Vec3(0, 0, u(generator))};
-    BOOST_CHECK(touch(p, t1, 1e-6).hit || touch(p, t2, 1e-6).hit);
+    BOOST_CHECK(point_triangle_contact(p, t1, 1e-6).hit || point_triangle_contact(p, t2, 1e-6).hit);
   }
 }
 
@@ -97,13 +102,13 @@ BOOST_AUTO_TEST_CASE(edges_and_vertices_keep_their_distance_too)
 {
   // beside the edge from (0, 0) to (1, 0), and off the corner at the origin
   const ContactResult edge =
-      touch({{0.5, -0.02, 0.0}, {0.5, -0.005, 0.0}}, resting_triangle(), 0.01);
+      point_triangle_contact({{0.5, -0.02, 0.0}, {0.5, -0.005, 0.0}}, resting_triangle(), 0.01);
   BOOST_CHECK(edge.hit && !edge.through);
   BOOST_CHECK_SMALL(edge.depth - 0.005, 1e-12);
   BOOST_CHECK_SMALL((edge.normal - Vec3(0, -1, 0)).norm(), 1e-12);
   BOOST_CHECK_SMALL((edge.weight - Vec3(0.5, 0.5, 0.0)).norm(), 1e-12);
   const ContactResult corner =
-      touch({{-0.3, -0.4, 0.0}, {-0.003, -0.004, 0.0}}, resting_triangle(), 0.01);
+      point_triangle_contact({{-0.3, -0.4, 0.0}, {-0.003, -0.004, 0.0}}, resting_triangle(), 0.01);
   BOOST_CHECK(corner.hit);
   BOOST_CHECK_SMALL(corner.depth - 0.005, 1e-12);
   BOOST_CHECK_SMALL((corner.weight - Vec3(1, 0, 0)).norm(), 1e-12);
@@ -131,14 +136,14 @@ BOOST_AUTO_TEST_CASE(no_point_of_a_triangle_is_nearer_than_the_closest)
   }
 }
 
-BOOST_AUTO_TEST_CASE(volume_that_is_never_flat_has_no_root)
+BOOST_AUTO_TEST_CASE(volume_that_is_never_zero_has_no_root)
 {
   std::mt19937 generator(9);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int never = 0;
   for (int k = 0; k < 20000; k++) {
-    const Volume v{u(generator), u(generator), u(generator), u(generator)};
-    if (!v.never_flat()) continue;
+    const SignedVolume v{u(generator), u(generator), u(generator), u(generator)};
+    if (!v.never_zero()) continue;
     never++;
     BOOST_CHECK(cubic_roots(v.c0, v.c1, v.c2, v.c3).n == 0);
   }

@@ -1,97 +1,85 @@
-// Contact behind the solver of a cloth: the guarantee that nobody passes.  What still goes wrong on the way
-// of a step is stopped, pass after pass; what is caught between moving triangles moves with them as one.
-
-#include "contact/contact_surface.h"
+#include "contact/post_stabilization.h"
 
 #include "atom.h"
 #include "comm.h"
+#include "core/contact/contact_impulse.h"
 #include "error.h"
-#include "force.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// Of the gap, what may be missing behind the solver, and a hair, so that the next look finds done what
-// is done.  The smaller the hair, the less depends on whether it was.
-static constexpr double SLACK = 1e-6, HAIR = 1e-10;
+// Of the gap: what may be missing behind the solver, and how much farther a particle is put back,
+// so that the next pass finds it resolved.  The smaller it is, the less depends on whether
+// a particle was put back.
+static constexpr double SLACK = 1e-6, OVERSHOOT = 1e-10;
 
 // of the thickness: what a particle that is too near may get back in one step
 static constexpr double RECOVERY = 0.1;
 
-// Of the speed with which a particle came too near behind the solver, as much is taken: the whole approach,
-// unless it hardly came too near.
-static constexpr double FIRM = 10.0;
+// Of the speed with which a particle came too near behind the solver, so much is removed: the
+// whole approach, unless it hardly came too near.
+static constexpr double APPROACH_FACTOR = 10.0;
 
-static constexpr int STOP_PASSES = 200;
+static constexpr int MAX_PASSES = 200;
 
-bool ContactSurface::settle()
+bool PostStabilization::resolve_penetrations()
 {
-  const Clock clock(counts->seconds);
-  load_sweeps();
-  bound();
-  forget_pairs();
+  const WallTimer clock(mesh.counts.seconds);
+  mesh.load_step();
+  candidates.update();
+  contacts.clear();
   int pass = 0;
-  while (stop(pass == 0))
-    if (++pass == STOP_PASSES) break;
-  if (pass > 0) stop_approach();
-  if (pass == STOP_PASSES) freeze();
-  for (const Particle &p : particles) moved.push_back(p.atom);
+  while (resolve_deepest(pass == 0))
+    if (++pass == MAX_PASSES) break;
+  if (pass > 0) solve_velocities();
+  if (pass == MAX_PASSES) freeze_zones();
+  for (const ContactParticle &p : contacts.particles) mesh.moved.push_back(p.atom);
   return pass > 0;
 }
 
-void ContactSurface::load_sweeps()
-{
-  for (int s = 0; s < halo.n_owned(); s++) {
-    const Sweep sweep = sweep_of(halo.atom_of(s));
-    start[s] = sweep.start;
-    end[s] = sweep.end;
-  }
-  halo.forward_positions(0, start.data(), update->dt);
-  halo.forward_positions(0, end.data());
-}
+// Each particle is put back from the triangle in which it is deepest, the triangle stays.  One that
+// was too near before the step gets a part of the way back, in the first pass.
 
-// The particle that is deepest below its gap in each pass is put back to it, alone.  One that was too
-// near before the step gets a part of the way back, in the first pass.
-
-bool ContactSurface::stop(bool recover)
+bool PostStabilization::resolve_deepest(bool recover)
 {
   int mine = 0, particle = -1, triangle = -1;
   ContactResult deepest;
-  double approach = 0.0;    // of the deepest
+  double max_approach = 0.0;    // of the deepest
   const auto put_back = [&] {
     if (triangle < 0) return;
     for (int d = 0; d < 3; d++) atom->x[particle][d] += deepest.depth * deepest.normal[d];
     if (!deepest.hit) return;
     mine = 1;
-    counts->stops++;
-    remember(particle, triangle, deepest);
-    pairs.back().approach = approach;
+    mesh.counts.stops++;
+    contacts.add(particle, triangle, deepest).max_approach = max_approach;
   };
-  for_overlapping([&](int i, int t, const Sweep &sweep) {
+  candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
     if (i != particle) {
       put_back();
       particle = i;
       triangle = -1;
       deepest = ContactResult();
     }
-    ContactResult touched = touch(sweep, sweep_of_triangle(t), rules->thickness, SLACK);
-    const double into = touched.depth - SLACK * touched.kept;
-    if (touched.through)
-      touched.depth += SLACK * touched.kept;
+    ContactResult contact =
+        point_triangle_contact(sweep, mesh.sweep_of_triangle(t), mesh.rules.thickness, SLACK);
+    const double into = contact.depth - SLACK * contact.gap;
+    if (contact.through)
+      contact.depth += SLACK * contact.gap;
     else {
-      if (touched.hit) touched.depth = into + HAIR * touched.kept;
-      if (recover) give_room(touched, sweep.end, t);
+      if (contact.hit) contact.depth = into + OVERSHOOT * contact.gap;
+      if (recover) recover_gap(contact, sweep.end, t);
     }
-    if (!is_deeper(touched, t, deepest, triangle)) return;
-    deepest = touched;
-    approach = touched.through ? std::numeric_limits<double>::max() : FIRM * into / update->dt;
+    if (!mesh.is_deeper(contact, t, deepest, triangle)) return;
+    deepest = contact;
+    max_approach = contact.through ? std::numeric_limits<double>::max()
+                                   : APPROACH_FACTOR * into / update->dt;
     triangle = t;
   });
   put_back();
@@ -100,66 +88,32 @@ bool ContactSurface::stop(bool recover)
   return any;
 }
 
-// Two triangles may be met alike, on an edge: then the same one on all ranks is taken.
-
-bool ContactSurface::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,
-                               int triangle_b) const
-{
-  if (!(a.depth > 0.0)) return false;
-  if (triangle_b < 0 || a.depth > b.depth * (1.0 + SEAM)) return true;
-  return a.depth >= b.depth * (1.0 - SEAM) && element[triangle_a] < element[triangle_b];
-}
-
 // at least a part of the thickness, if something of it is missing; false if nothing is
 
-bool ContactSurface::give_room(ContactResult &touched, const Vec3 &p, int t) const
+bool PostStabilization::recover_gap(ContactResult &contact, const Vec3 &p, int t) const
 {
-  const std::array<int, 3> &s = triangles[t];
+  const auto &[a, b, c] = mesh.triangles[t];
+  const double thickness = mesh.rules.thickness;
   Vec3 weight;
-  const Vec3 gap = distance_vector(p, end[s[0]], end[s[1]], end[s[2]], weight);
-  const double distance = gap.norm();
-  if (distance == 0.0 || distance >= rules->thickness) return false;
-  touched.weight = weight;
-  touched.normal = gap / distance;
-  touched.depth =
-      std::max(touched.depth, std::min(rules->thickness - distance, RECOVERY * rules->thickness));
+  const Vec3 vector = distance_vector(p, mesh.end[a], mesh.end[b], mesh.end[c], weight);
+  const double distance = vector.norm();
+  if (distance == 0.0 || distance >= thickness) return false;
+  contact.weight = weight;
+  contact.normal = vector / distance;
+  contact.depth = std::max(contact.depth, std::min(thickness - distance, RECOVERY * thickness));
   return true;
 }
 
-void ContactSurface::remember(int i, int triangle, const ContactResult &touched)
+bigint PostStabilization::count_too_near(tagint &one)
 {
-  if (entry[i] < 0) {
-    entry[i] = static_cast<int>(particles.size());
-    particles.push_back({});
-    particles.back().atom = i;
-    particles.back().w = 1.0 / atom_mass(atom, i);
-  }
-  particles[entry[i]].contacts++;
-  pairs.push_back({});
-  pairs.back().particle = entry[i];
-  pairs.back().triangle = triangle;
-  pairs.back().weight = touched.weight;
-  pairs.back().normal = touched.normal;
-}
-
-void ContactSurface::forget_pairs()
-{
-  for (const Particle &p : particles) entry[p.atom] = -1;
-  particles.clear();
-  pairs.clear();
-  entry.resize(atom->nlocal, -1);
-}
-
-bigint ContactSurface::count_too_near(tagint &one)
-{
-  load_sweeps();
-  bound();
+  mesh.load_step();
+  candidates.update();
   bigint mine = 0, all;
   tagint example = 0;
   int last = -1;
-  for_overlapping([&](int i, int t, const Sweep &sweep) {
-    ContactResult touched;
-    if (i == last || !give_room(touched, sweep.end, t)) return;
+  candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
+    ContactResult contact;
+    if (i == last || !recover_gap(contact, sweep.end, t)) return;
     last = i;
     mine++;
     example = std::max(example, atom->tag[i]);
@@ -169,76 +123,77 @@ bigint ContactSurface::count_too_near(tagint &one)
   return all;
 }
 
-// Both sides of what was stopped lose the motion towards each other, see FIRM.  What comes back comes
-// back at once.
+// Both sides of what was put back lose the approach, see APPROACH_FACTOR.  What restitution gives
+// back comes back at once.
 
-void ContactSurface::stop_approach()
+void PostStabilization::solve_velocities()
 {
-  share_out([](const Pair &, int) { return 1.0; });
-  now.resize(halo.n_slots());
-  for (int s = 0; s < halo.n_owned(); s++) {
-    const double *v = atom->v[halo.atom_of(s)];
-    now[s] = Vec3(v[0], v[1], v[2]);
-  }
-  halo.forward_velocities(0, now.data());
-  change.assign(halo.n_slots(), Vec3::Zero());
-  for (Particle &p : particles) {
-    const double *v = atom->v[p.atom];
-    p.velocity = Vec3(v[0], v[1], v[2]);
-    p.change.setZero();
-  }
-  for (const Pair &pair : pairs) {
-    const Vec3 velocity = velocity_from(pair);
+  const double restitution = mesh.rules.restitution;
+  contacts.share_evenly();
+  load_velocities();
+  contacts.clear_impulses();
+  for (const ContactPair &pair : contacts.pairs) {
+    const Vec3 velocity = contacts.relative_velocity(pair);
     const double speed = velocity.dot(pair.normal);
     if (speed >= 0.0) continue;
-    const double taken = rules->restitution > 0.0 ? -speed : std::min(-speed, pair.approach);
-    const double mass = split_mass(pair, w), step = (1.0 + rules->restitution) * taken * mass;
+    const double removed = restitution > 0.0 ? -speed : std::min(-speed, pair.max_approach);
+    const double mass = contacts.split_mass(pair, mesh.w);
+    const double step = (1.0 + restitution) * removed * mass;
     const Vec3 sliding = mass * (velocity - speed * pair.normal);
-    give(pair, step * pair.normal - at_most(sliding, rules->friction * step));
+    contacts.apply_impulse(
+        pair, step * pair.normal - clamp_length(sliding, mesh.rules.friction * step));
   }
-  take_velocities();
+  apply_velocity_changes();
 }
 
-// what give() has handed out were impulses
-
-void ContactSurface::take_velocities()
+void PostStabilization::load_velocities()
 {
-  for (const Particle &p : particles)
-    for (int d = 0; d < 3; d++) atom->v[p.atom][d] += p.w * p.change[d];
-  halo.reverse_add(0, change.data());
-  for (int s = 0; s < halo.n_owned(); s++) {
-    if (change[s].isZero(0.0)) continue;
-    const int i = halo.atom_of(s);
-    for (int d = 0; d < 3; d++) atom->v[i][d] += w[s] * change[s][d];
-    if (w[s] == 0.0) take_held(i, change[s]);
+  contacts.velocity.resize(mesh.halo.n_slots());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const double *v = atom->v[mesh.halo.atom_of(s)];
+    contacts.velocity[s] = Vec3(v[0], v[1], v[2]);
+  }
+  mesh.halo.forward_velocities(0, contacts.velocity.data());
+  for (ContactParticle &p : contacts.particles) {
+    const double *v = atom->v[p.atom];
+    p.velocity = Vec3(v[0], v[1], v[2]);
   }
 }
 
-void ContactSurface::take_held(int i, const Vec3 &impulse)
+void PostStabilization::apply_velocity_changes()
 {
-  mesh->push_held(i, impulse);
-  for (int d = 0; d < 3; d++) counts->impulse[d] += impulse[d] / force->ftm2v;
+  for (const ContactParticle &p : contacts.particles)
+    for (int d = 0; d < 3; d++) atom->v[p.atom][d] += p.w * p.impulse[d];
+  std::vector<Vec3> &impulse = contacts.impulse;
+  mesh.halo.reverse_add(0, impulse.data());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    if (impulse[s].isZero(0.0)) continue;
+    const int i = mesh.halo.atom_of(s);
+    for (int d = 0; d < 3; d++) atom->v[i][d] += mesh.w[s] * impulse[s][d];
+    if (mesh.w[s] == 0.0) mesh.push_held(i, impulse[s]);
+  }
 }
 
 /* ----------------------------------------------------------------------
    the last resort: what is still caught between moving triangles moves with them as one
 ------------------------------------------------------------------------- */
 
-// A particle that passes through a triangle, the triangle, and all that shares a vertex or a particle
-// with them, form a zone.  It keeps the shape of the start of the step, where nobody was on a wrong
-// side, and moves with its mean velocity: momentum is kept, energy lost.  Zones grow until all is well.
-// Provot, Graphics Interface 1997.
+// A particle that passes through a triangle, the triangle, and all that shares a vertex or
+// a particle with them, form a zone.  It keeps the shape of the start of the step, where no
+// particle was on a wrong side, and moves with its mean velocity: momentum is kept, energy lost.
+// Zones grow until no particle passes.
 
-void ContactSurface::freeze()
+void PostStabilization::freeze_zones()
 {
-  ContactZones zones;
+  ImpactZones zones;
   for (;;) {
     std::vector<tagint> caught;
-    for_overlapping([&](int i, int t, const Sweep &sweep) {
-      if (!touch(sweep, sweep_of_triangle(t), rules->thickness).through) return;
-      counts->frozen++;
+    candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
+      if (!point_triangle_contact(sweep, mesh.sweep_of_triangle(t), mesh.rules.thickness).through)
+        return;
+      mesh.counts.frozen++;
       caught.push_back(atom->tag[i]);
-      for (int s : triangles[t]) caught.push_back(atom->tag[halo.atom_of(s)]);
+      for (int s : mesh.triangles[t]) caught.push_back(atom->tag[mesh.halo.atom_of(s)]);
     });
     const std::vector<tagint> groups = allgather(caught, comm->nprocs, world);
     if (groups.empty()) return;
@@ -247,29 +202,30 @@ void ContactSurface::freeze()
       error->all(FLERR,
                  "{}: held vertex {} or its neighbours move apart from others and crush what is "
                  "between them, particle {}: move pins slower or lower the time step",
-                 label, groups[1], groups[0]);
+                 mesh.label, groups[1], groups[0]);
     move_zones(zones);
-    load_sweeps();
-    bound();
+    mesh.load_step();
+    candidates.update();
   }
 }
 
-void ContactSurface::move_zones(const ContactZones &zones)
+void PostStabilization::move_zones(const ImpactZones &zones)
 {
   struct Sum {
     double mass, displacement[3], momentum[3];    // of the free members
-    double held, held_displacement[3],
-        held_velocity[3];    // number of the held ones, and sums over them
+    double held, held_displacement[3], held_velocity[3];    // number of held members, and sums
   };
   constexpr int SIZE = sizeof(Sum) / sizeof(double);
   std::vector<Sum> mine(zones.size(), Sum{}), all(zones.size());
   std::vector<std::pair<int, int>> members;    // atom and zone
   for (int i = 0; i < atom->nlocal; i++)
-    if (const int z = zones.of(atom->tag[i]); z >= 0) members.emplace_back(i, z);
-  const auto is_held = [&](int i) { return mesh->has_vertex(i) && mesh->inverse_mass(i) == 0.0; };
+    if (const int z = zones.zone_of(atom->tag[i]); z >= 0) members.emplace_back(i, z);
+  const auto is_held = [&](int i) {
+    return mesh.mesh->has_vertex(i) && mesh.mesh->inverse_mass(i) == 0.0;
+  };
 
   for (const auto &[i, z] : members) {
-    const Vec3 displacement = sweep_of(i).end - sweep_of(i).start;
+    const Vec3 displacement = mesh.sweep_of(i).end - mesh.sweep_of(i).start;
     const double m = atom_mass(atom, i);
     (is_held(i) ? mine[z].held : mine[z].mass) += is_held(i) ? 1.0 : m;
     for (int d = 0; d < 3; d++) {
@@ -283,7 +239,7 @@ void ContactSurface::move_zones(const ContactZones &zones)
 
   for (const auto &[i, z] : members) {
     const Sum &sum = all[z];
-    const Sweep sweep = sweep_of(i);
+    const Sweep sweep = mesh.sweep_of(i);
     Vec3 displacement, velocity, lost;
     for (int d = 0; d < 3; d++) {
       displacement[d] = sum.held > 0.0 ? sum.held_displacement[d] / sum.held
@@ -299,11 +255,11 @@ void ContactSurface::move_zones(const ContactZones &zones)
       continue;
     }
     const double apart = (sweep.end - sweep.start - displacement).norm();
-    if (apart > rules->thickness)
+    if (apart > mesh.rules.thickness)
       rank_error(lmp, FLERR,
                  "{}: held vertex {} moves {} away from others in one step and crushes what is "
                  "between them: move pins slower or lower the time step",
-                 label, atom->tag[i], apart);
-    take_held(i, lost / sum.held);
+                 mesh.label, atom->tag[i], apart);
+    mesh.push_held(i, lost / sum.held);
   }
 }

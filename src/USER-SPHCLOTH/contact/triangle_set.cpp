@@ -14,7 +14,7 @@
 using namespace LAMMPS_NS;
 
 TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_, const std::string &label_) :
-    Pointers(lmp_), label(label_), mesh(mesh_), link(link_), halo(lmp)
+    Pointers(lmp_), label(label_), mesh(mesh_), halo(lmp), link(link_)
 {
 }
 
@@ -24,7 +24,7 @@ Eigen::Vector3d TriangleSet::place(int slot) const
   return {x[0], x[1], x[2]};
 }
 
-void TriangleSet::rebuild(double far)
+void TriangleSet::rebuild(double max_distance)
 {
   if (at_border.empty()) find_border();
   std::vector<int> owned, reach;
@@ -39,7 +39,7 @@ void TriangleSet::rebuild(double far)
   add_triangles(reach);
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
   halo.connect(link);
-  check_reach(far);
+  check_reach(max_distance);
 }
 
 // Every image of a triangle once, from the view of its first vertex; an image with a ghost vertex
@@ -69,7 +69,7 @@ void TriangleSet::add_triangles(const std::vector<int> &reach)
   }
 }
 
-void TriangleSet::check_reach(double far)
+void TriangleSet::check_reach(double max_distance)
 {
   if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
   double longest_sq = 0.0;
@@ -79,12 +79,12 @@ void TriangleSet::check_reach(double far)
       longest_sq =
           std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
     }
-  const double needed = std::sqrt(longest_sq) + far, reach = comm->get_comm_cutoff();
+  const double needed = std::sqrt(longest_sq) + max_distance, reach = comm->get_comm_cutoff();
   if (needed > reach)
     rank_error(
         lmp, FLERR,
-        "{}: the longest edge of the mesh and the reach of its triangles are {}, more than the ghost "
-        "cut-off {}: raise it with 'comm_modify cutoff', or refine the mesh",
+        "{}: the longest edge of the mesh and the reach of its triangles are {}, more than the "
+        "ghost cut-off {}: raise it with 'comm_modify cutoff', or refine the mesh",
         label, needed, reach);
 }
 

@@ -20,11 +20,11 @@ class TriangleSet : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // link: the fix that lends its communication
+  // link: the fix whose communication finds the images of vertices
   TriangleSet(LAMMPS *, ContactMesh *, Fix *link, const std::string &label);
 
-  // After each list build.  A particle must see the whole of every triangle that is nearer than `far`.
-  void rebuild(double far);
+  // after each list build; a particle must see the whole of each triangle that is nearer than this
+  void rebuild(double max_distance);
 
   // Is any there, on any rank?
   bool has_triangles() const { return mesh->topology().triangles.size() > 0; }
@@ -38,10 +38,8 @@ class TriangleSet : protected Pointers {
   }
   void unpack_link(int n, int first, const double *buf) { halo.unpack_link(n, first, buf); }
 
- protected:
-  std::string label;
-  ContactMesh *mesh;
-  Fix *link;
+  const std::string label;    // for error messages
+  ContactMesh *const mesh;
   VertexHalo halo;
   std::vector<std::array<int, 3>> triangles;    // slots
   std::vector<int> element;                     // of the mesh, of each triangle
@@ -61,13 +59,12 @@ class TriangleSet : protected Pointers {
   Vec3 place(int slot) const;
 
  private:
+  Fix *link;
   std::vector<std::array<bool, 3>> at_border;    // of each element
 
   void find_border();
   void add_triangles(const std::vector<int> &reach);
-  void check_reach(double far);
-
-  friend class BoundaryMesh;
+  void check_reach(double max_distance);
 };
 
 }    // namespace LAMMPS_NS

@@ -6,6 +6,7 @@
 
 #include "core/util/bytes.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -23,6 +24,11 @@ class ParticleColumns {
   int count() const { return static_cast<int>(columns.size()); }
   double *operator[](int column) { return columns[column].data(); }
   const double *operator[](int column) const { return columns[column].data(); }
+
+  void clear()
+  {
+    for (auto &column : columns) std::fill(column.begin(), column.end(), 0.0);
+  }
 
   // of one particle
   void clear(int i)

@@ -1,6 +1,6 @@
 // Continuous contact of a moving point with a moving triangle.
 //
-// Both move on straight lines during the step.  The point meets the triangle's plane where
+// Both move on straight lines during the step.  The point crosses the triangle's plane where
 // (e1 x e2) . q = 0 with e1 = b - a, e2 = c - a, q = p - a: a cubic in time.
 // Provot, Graphics Interface 1997; Bridson, Fedkiw & Anderson, ACM Trans. Graph. 21 (2002) 594.
 
@@ -29,11 +29,11 @@ struct ContactResult {
   bool through = false;          // it passes through, not only too near
   Vec3 weight = Vec3::Zero();    // barycentric coordinates of the contact point
   Vec3 normal = Vec3::Zero();    // at the end, from the triangle towards the point's own side
-  double depth = 0.0;            // how far the end position lacks of the gap to be kept, >= 0
-  double kept = 0.0;             // that gap: the thickness, or the gap at the start if smaller
+  double depth = 0.0;            // what the end position lacks of the gap to be kept, >= 0
+  double gap = 0.0;              // that gap: the thickness, or the gap at the start if smaller
 };
 
-// The tolerance that closes the seams between neighbouring triangles in round-off.
+// The tolerance that closes the seams between neighboring triangles in round-off.
 inline constexpr double SEAM = 1e-9;
 
 inline Vec3 barycentric(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec3 &c)
@@ -118,19 +118,19 @@ inline Vec3 distance_vector(const Vec3 &p, const Vec3 &a, const Vec3 &b, const V
   return p - weight[0] * a - weight[1] * b - weight[2] * c;
 }
 
-// The volume of the point over the triangle in the course of the step, times 6: c0 + c1 t + c2 t^2 +
-// c3 t^3.
+// The signed volume of point and triangle in the course of the step, times 6:
+// c0 + c1 t + c2 t^2 + c3 t^3.
 
-struct Volume {
+struct SignedVolume {
   double c0, c1, c2, c3;
-  bool never_flat() const    // it lies between its Bernstein coefficients
+  bool never_zero() const    // it lies between its Bernstein coefficients
   {
     const double b1 = c0 + c1 / 3.0, b2 = c0 + (2.0 * c1 + c2) / 3.0, b3 = c0 + c1 + c2 + c3;
     return std::min({c0, b1, b2, b3}) > 0.0 || std::max({c0, b1, b2, b3}) < 0.0;
   }
 };
 
-inline Volume volume_over(const Sweep &p, const std::array<Sweep, 3> &tri)
+inline SignedVolume signed_volume(const Sweep &p, const std::array<Sweep, 3> &tri)
 {
   const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
   const Vec3 q = p.start - tri[0].start;
@@ -142,11 +142,11 @@ inline Volume volume_over(const Sweep &p, const std::array<Sweep, 3> &tri)
 
 // Does point p pass through the triangle within the step, or end nearer to its inside, edges or
 // vertices than `thickness`?  A point that starts nearer than that keeps the gap it has: contact
-// takes approaching motion away and never pushes, so it cannot add energy.  `slack` is the share of
+// removes approaching motion and never pushes, so it cannot add energy.  `slack` is the share of
 // the gap that may be missing; passing through always counts.
 
-inline ContactResult touch(const Sweep &p, const std::array<Sweep, 3> &tri, double thickness,
-                           double slack = SEAM)
+inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Sweep, 3> &tri,
+                                            double thickness, double slack = SEAM)
 {
   ContactResult result;
   const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
@@ -160,9 +160,9 @@ inline ContactResult touch(const Sweep &p, const std::array<Sweep, 3> &tri, doub
   const double gap_start = normal_start.dot(q) / double_area;
   const double side = gap_start >= 0.0 ? 1.0 : -1.0;
 
-  // passes through: stays on the side where it was, along the normal
-  const Volume volume = volume_over(p, tri);
-  const Roots roots = volume.never_flat() ? Roots()
+  // passes through: put back to the side where it was, along the normal
+  const SignedVolume volume = signed_volume(p, tri);
+  const Roots roots = volume.never_zero() ? Roots()
                                           : cubic_roots(volume.c0, volume.c1, volume.c2, volume.c3);
   for (int k = 0; k < roots.n; k++) {
     const double t = roots.t[k];
@@ -173,8 +173,8 @@ inline ContactResult touch(const Sweep &p, const std::array<Sweep, 3> &tri, doub
     result.weight = weight.cwiseMax(0.0);
     result.weight /= result.weight.sum();
     result.normal = side / double_area_end * normal_end;
-    result.kept = std::min(thickness, std::fabs(gap_start));
-    result.depth = std::max(0.0, result.kept - result.normal.dot(p.end - tri[0].end));
+    result.gap = std::min(thickness, std::fabs(gap_start));
+    result.depth = std::max(0.0, result.gap - result.normal.dot(p.end - tri[0].end));
     return result;
   }
 
@@ -182,22 +182,23 @@ inline ContactResult touch(const Sweep &p, const std::array<Sweep, 3> &tri, doub
   if (std::fabs(normal_end.dot(p.end - tri[0].end)) >= thickness * double_area_end) return result;
   Vec3 weight;
   const Vec3 before = distance_vector(p.start, tri[0].start, tri[1].start, tri[2].start, weight);
-  const Vec3 gap = distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight);
-  const double distance = gap.norm();
-  result.kept = std::min(thickness, before.norm());
-  if (distance >= result.kept * (1.0 - slack)) return result;
+  const Vec3 vector = distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight);
+  const double distance = vector.norm();
+  result.gap = std::min(thickness, before.norm());
+  if (distance >= result.gap * (1.0 - slack)) return result;
   result.hit = true;
   result.weight = weight;
-  result.normal = distance > 0.0 ? Vec3(gap / distance) : Vec3(side / double_area_end * normal_end);
-  result.depth = result.kept - distance;
+  result.normal =
+      distance > 0.0 ? Vec3(vector / distance) : Vec3(side / double_area_end * normal_end);
+  result.depth = result.gap - distance;
   return result;
 }
 
-// May they meet, if neither moves as expected but nearly so?
+// May point and triangle collide, if neither moves exactly as expected?
 
-inline bool may_meet(const Sweep &p, const std::array<Sweep, 3> &tri, double reach)
+inline bool may_contact(const Sweep &p, const std::array<Sweep, 3> &tri, double reach)
 {
-  if (!volume_over(p, tri).never_flat()) return true;
+  if (!signed_volume(p, tri).never_zero()) return true;
   Vec3 weight;
   return distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight).squaredNorm() <
       reach * reach;

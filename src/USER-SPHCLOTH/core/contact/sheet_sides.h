@@ -7,8 +7,8 @@
 
 namespace sphcloth {
 
-// bits 0 to 7: above sheet 0 to 7, the side from which its triangles run counter-clockwise; bits 8 to
-// 15: below it
+// bits 0 to 7: above sheet 0 to 7, the side from which its triangles run counter-clockwise;
+// bits 8 to 15: below it
 
 using Sides = std::uint16_t;
 

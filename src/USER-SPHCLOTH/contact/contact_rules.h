@@ -1,0 +1,40 @@
+// What the user of fix cloth/contact asks for, and what it counts.
+
+#ifndef SPHCLOTH_CONTACT_CONTACT_RULES_H
+#define SPHCLOTH_CONTACT_CONTACT_RULES_H
+
+#include "platform.h"
+
+namespace LAMMPS_NS {
+
+struct ContactRules {
+  double thickness = 0.0;
+  double friction = 0.0;       // Coulomb's coefficient
+  double restitution = 0.0;    // share of the approaching speed that comes back
+  bool sides = true;           // fluids above and below a sheet do not interact
+};
+
+struct ContactCounts {
+  double contacts = 0.0;    // impulses that were exchanged
+  double stops = 0.0;       // particles that were put back to their side behind the solver
+  double frozen = 0.0;      // particles that were caught between triangles and moved with them
+  double deepest = 0.0;     // largest missing gap before it was closed
+  double seconds = 0.0;     // of wall time
+  double impulse[3] = {0.0, 0.0, 0.0};    // on held vertices
+};
+
+// wall time, added up at the end of a block
+
+class WallTimer {
+ public:
+  explicit WallTimer(double &sum_) : sum(sum_), begin(platform::walltime()) {}
+  ~WallTimer() { sum += platform::walltime() - begin; }
+
+ private:
+  double &sum;
+  const double begin;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,107 @@
+#include "contact/moving_triangles.h"
+
+#include "atom.h"
+#include "core/util/bytes.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_,
+                                 const std::string &label_, int groupbits_,
+                                 const ContactRules &rules_, ContactCounts &counts_,
+                                 const ParticleColumns &last_positions_) :
+    TriangleSet(lmp_, mesh_, link_, label_),
+    groupbits(groupbits_), rules(rules_), counts(counts_), last_positions(last_positions_)
+{
+}
+
+void MovingTriangles::rebuild(double max_distance)
+{
+  TriangleSet::rebuild(max_distance);
+  w.assign(halo.n_slots(), 0.0);
+  w_solver = w;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    w[s] = mesh->inverse_mass(i);
+    w_solver[s] = mesh->inverse_mass_in_solver(i);
+  }
+  halo.forward(0, w);
+  halo.forward(0, w_solver);
+  start.resize(halo.n_slots());
+  end.resize(halo.n_slots());
+}
+
+void MovingTriangles::load_step()
+{
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const Sweep sweep = sweep_of(halo.atom_of(s));
+    start[s] = sweep.start;
+    end[s] = sweep.end;
+  }
+  halo.forward_positions(0, start.data(), update->dt);
+  halo.forward_positions(0, end.data());
+}
+
+void MovingTriangles::load_positions()
+{
+  for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = place(s);
+}
+
+bool MovingTriangles::can_move(int i) const
+{
+  if (!(atom->mask[i] & groupbits)) return false;
+  return std::none_of(others.begin(), others.end(), [i](const ContactMesh *other) {
+    return other->has_vertex(i) && other->inverse_mass(i) == 0.0;
+  });
+}
+
+// from where the last step has left it to where it is
+
+Sweep MovingTriangles::sweep_of(int i) const
+{
+  const double *x = atom->x[i];
+  const ParticleColumns &last = last_positions;
+  return {Vec3(last[0][i], last[1][i], last[2][i]), Vec3(x[0], x[1], x[2])};
+}
+
+std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t) const
+{
+  std::array<Sweep, 3> sweep;
+  for (int q = 0; q < 3; q++) sweep[q] = {start[triangles[t][q]], end[triangles[t][q]]};
+  return sweep;
+}
+
+Box MovingTriangles::swept_box(int t) const
+{
+  Box box;
+  for (int s : triangles[t]) {
+    box.extend(start[s]);
+    box.extend(end[s]);
+  }
+  box.min().array() -= 2.0 * rules.thickness;
+  box.max().array() += 2.0 * rules.thickness;
+  return box;
+}
+
+bool MovingTriangles::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,
+                                int triangle_b) const
+{
+  if (!(a.depth > 0.0)) return false;
+  if (triangle_b < 0 || a.depth > b.depth * (1.0 + SEAM)) return true;
+  return a.depth >= b.depth * (1.0 - SEAM) && element[triangle_a] < element[triangle_b];
+}
+
+void MovingTriangles::push_held(int i, const Vec3 &impulse)
+{
+  mesh->push_held(i, impulse);
+  for (int d = 0; d < 3; d++) counts.impulse[d] += impulse[d] / force->ftm2v;
+}
+
+double MovingTriangles::memory_usage() const
+{
+  return halo.memory_usage() + bytes_of(start, end, w, w_solver, moved);
+}

@@ -1,0 +1,67 @@
+// The triangles of one mesh during a step: positions of their vertices at its start and end,
+// inverse masses, and the sweeps of the particles that may collide with them.
+// All phases of contact share it; each of them moves `end`, and the atoms, in its turn.
+
+#ifndef SPHCLOTH_CONTACT_MOVING_TRIANGLES_H
+#define SPHCLOTH_CONTACT_MOVING_TRIANGLES_H
+
+#include "contact/contact_rules.h"
+#include "contact/triangle_set.h"
+#include "core/contact/point_triangle.h"
+#include "lammps_util/particle_columns.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class MovingTriangles : public TriangleSet {
+ public:
+  // groupbits: of the atoms that collide with the mesh; last_positions: x, y, z of all owned atoms
+  // at the end of the last step
+  MovingTriangles(LAMMPS *, ContactMesh *, Fix *link, const std::string &label, int groupbits,
+                  const ContactRules &, ContactCounts &, const ParticleColumns &last_positions);
+
+  const int groupbits;
+  const ContactRules &rules;
+  ContactCounts &counts;
+  std::vector<Vec3> start, end;    // of the step so far, by slot
+  std::vector<double> w;           // inverse masses by slot, 0 of vertices that are held
+  std::vector<double> w_solver;    // the same, but attached vertices take part
+  std::vector<int> moved;          // own particles that contact moved in this step, some repeated
+
+  // after each list build; whole triangles are seen as far as this
+  void rebuild(double max_distance);
+
+  // start and end of the step from the atoms as they are, or of a step without motion
+  void load_step();
+  void load_positions();
+
+  // does an atom collide with this mesh, and can it give way?
+  bool can_move(int atom) const;
+  // a mesh whose vertices collide with this one: held vertices do not give way
+  void add_vertices_of(const ContactMesh *other) { others.push_back(other); }
+
+  sphcloth::Sweep sweep_of(int atom) const;
+  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
+  sphcloth::Box swept_box(int t) const;    // with room for contact
+
+  // Does the first contact go deeper?  Two triangles may be hit alike, on an edge: then all ranks
+  // take the same one.
+  bool is_deeper(const sphcloth::ContactResult &, int t, const sphcloth::ContactResult &than,
+                 int than_t) const;
+
+  // a held vertex takes an impulse, which is counted
+  void push_held(int atom, const Vec3 &impulse);
+
+  double memory_usage() const;
+
+ private:
+  std::vector<const ContactMesh *> others;
+  const ParticleColumns &last_positions;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,47 @@
+// Contact behind the solver of a cloth: the guarantee that no particle passes a triangle.
+// What still crosses, or is too near, is put back pass after pass, and loses its approach; what is
+// caught between moving triangles moves with them as a rigid zone.
+
+#ifndef SPHCLOTH_CONTACT_POST_STABILIZATION_H
+#define SPHCLOTH_CONTACT_POST_STABILIZATION_H
+
+#include "contact/candidate_pairs.h"
+#include "contact/contact_pairs.h"
+#include "contact/impact_zones.h"
+
+namespace LAMMPS_NS {
+
+class PostStabilization : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  PostStabilization(LAMMPS *lmp_, MovingTriangles &mesh_, CandidatePairs &candidates_) :
+      Pointers(lmp_), mesh(mesh_), candidates(candidates_), contacts(lmp, mesh)
+  {
+  }
+
+  // Of the sweeps from the last step's positions to the present ones.  Collective; was there any?
+  bool resolve_penetrations();
+
+  // now: how many particles are nearer than the thickness, and one of them, or 0.  Collective.
+  bigint count_too_near(tagint &one);
+
+  double memory_usage() const { return contacts.memory_usage(); }
+
+ private:
+  MovingTriangles &mesh;
+  CandidatePairs &candidates;
+  ContactPairs contacts;
+
+  bool resolve_deepest(bool recover);
+  bool recover_gap(sphcloth::ContactResult &, const Vec3 &p, int t) const;
+  void solve_velocities();
+  void load_velocities();
+  void apply_velocity_changes();
+  void freeze_zones();
+  void move_zones(const ImpactZones &);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

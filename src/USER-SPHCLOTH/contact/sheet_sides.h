@@ -1,0 +1,36 @@
+// On which side of a sheet each particle near it is: above, from where its triangles run
+// counter-clockwise, or below.
+// Made at each list build; it holds until the next one, since particles do not pass.
+
+#ifndef SPHCLOTH_CONTACT_SHEET_SIDES_H
+#define SPHCLOTH_CONTACT_SHEET_SIDES_H
+
+#include "contact/moving_triangles.h"
+#include "contact/triangle_discs.h"
+#include "core/contact/sheet_sides.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class SheetSides : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  SheetSides(LAMMPS *lmp_, MovingTriangles &mesh_) : Pointers(lmp_), mesh(mesh_) {}
+
+  // of owned particles nearer than the cutoff, added to what is there
+  void find(double cutoff, int sheet, std::vector<sphcloth::Sides> &);
+
+  double memory_usage() const { return discs.bytes(); }
+
+ private:
+  MovingTriangles &mesh;
+  TriangleDiscs discs;
+
+  int side_at(const Vec3 &p, double cutoff);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

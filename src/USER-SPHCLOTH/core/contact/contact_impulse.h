@@ -1,0 +1,52 @@
+// The impulse between two bodies in contact: restitution along the normal, Coulomb friction across.
+
+#ifndef SPHCLOTH_CORE_CONTACT_CONTACT_IMPULSE_H
+#define SPHCLOTH_CORE_CONTACT_CONTACT_IMPULSE_H
+
+#include <Eigen/Core>
+
+#include <algorithm>
+
+namespace sphcloth {
+
+inline Eigen::Vector3d clamp_length(const Eigen::Vector3d &v, double max)
+{
+  const double length = v.norm();
+  return length > max ? Eigen::Vector3d(max / length * v) : v;
+}
+
+struct ContactMotion {
+  Eigen::Vector3d velocity, normal;    // of the first body relative to the second, and towards it
+  double speed_before = 0.0;           // along the normal, before the contact
+  double mass = 1.0;                   // effective
+};
+
+// what has been exchanged so far, by the projection of positions
+
+struct ExchangedImpulse {
+  double normal = 0.0;
+  Eigen::Vector3d friction = Eigen::Vector3d::Zero();
+};
+
+// On the first body, in addition to what was exchanged: projected positions may leave a separating
+// velocity behind, or not all of the approach gone.  The bodies separate with the share of the
+// approach that the restitution gives back, and no more; the sum of normal impulses never pulls.
+
+inline Eigen::Vector3d contact_impulse(const ContactMotion &m, const ExchangedImpulse &so_far,
+                                       double restitution, double friction)
+{
+  const double speed = m.velocity.dot(m.normal);
+  const double target = restitution * std::max(0.0, -m.speed_before);
+  const double normal = std::max((target - speed) * m.mass, -so_far.normal);
+  Eigen::Vector3d impulse = normal * m.normal;
+  if (friction > 0.0) {
+    impulse -= so_far.friction;
+    impulse += clamp_length(so_far.friction - m.mass * (m.velocity - speed * m.normal),
+                            friction * (so_far.normal + normal));
+  }
+  return impulse;
+}
+
+}    // namespace sphcloth
+
+#endif

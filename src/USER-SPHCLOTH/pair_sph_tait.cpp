@@ -97,12 +97,14 @@ void PairSPHTait::settings(int narg, char **arg)
       args.unknown(keyword, "kernel, tension, precision, density, delta, reinit");
   }
   materials.default_support = options.support;
+  materials.set_lattice_masses(options.kernel);
 }
 
 void PairSPHTait::coeff(int narg, char **arg)
 {
   if (!allocated) allocate();
   materials.read(narg, arg, setflag);
+  materials.set_lattice_masses(options.kernel);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -121,6 +123,7 @@ void PairSPHTait::init_style()
                "{}: neigh_modify exclude group or molecule would hide neighbours from the sums: "
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
+  materials.set_lattice_masses(options.kernel);    // 'mass' may have come since
   active = nullptr;    // until a fix says who is
   hooks = nullptr;
   pressures_follow = false;
@@ -191,7 +194,7 @@ void PairSPHTait::set_model()
 
 double PairSPHTait::lattice_sum(int itype, double spacing) const
 {
-  return fluid->lattice_sum(support(itype), spacing);
+  return materials.lattice_sum(itype, spacing, options.kernel);
 }
 
 WallTable PairSPHTait::wall_table() const

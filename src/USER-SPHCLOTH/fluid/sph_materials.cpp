@@ -61,7 +61,10 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
   for (int i = ilo; i <= ihi; i++)
     for (int j = std::max(jlo, i); j <= jhi; j++) {
       if ((i == j) != of_type) continue;
-      if (of_type) types[i] = data;
+      if (of_type) {
+        data.lattice_mass = types[i].lattice_mass;
+        types[i] = data;
+      }
       pairs[i * n + j] = pair;
       setflag[i][j] = 1;
       count++;
@@ -95,8 +98,10 @@ SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &own) 
       t.alpha = args.at_least("alpha", 0.0);
     else if (keyword == "support")
       own.support = args.positive("support");
+    else if (keyword == "spacing")
+      t.spacing = args.positive("spacing");
     else
-      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support");
+      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support, spacing");
   }
   if (t.eos.k == 0.0)
     error->all(FLERR, "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'",
@@ -152,6 +157,49 @@ SPHMaterials::PairData SPHMaterials::read_pair(ArgReader &args) const
                    "boundary for one type");
   }
   return p;
+}
+
+/* ----------------------------------------------------------------------
+   the mass of a lattice at rest
+------------------------------------------------------------------------- */
+
+double SPHMaterials::lattice_sum(int i, double spacing, KernelName kernel) const
+{
+  return with_kernel(kernel, [&](auto k) {
+    return sphcloth::lattice_sum<decltype(k)>(support(i, i), spacing, domain->dimension);
+  });
+}
+
+// A mass that was set here follows a new kernel, support or spacing; one of the user must agree.
+
+void SPHMaterials::set_lattice_masses(KernelName kernel)
+{
+  constexpr double TOLERANCE = 1e-3, MAX_NEIGHBORS_ALONG_AXIS = 50.0;
+  for (std::size_t k = 1; k < types.size(); k++) {
+    TypeData &t = types[k];
+    const int i = static_cast<int>(k);
+    if (t.spacing == 0.0) continue;
+    const double radius = support(i, i);
+    if (t.spacing > radius || radius > MAX_NEIGHBORS_ALONG_AXIS * t.spacing)
+      error->all(FLERR,
+                 "{}: spacing of type {} is '{}' with a support of {}: give the distance between "
+                 "neighbors on the lattice, from {} to {}",
+                 COEFF, i, t.spacing, radius, radius / MAX_NEIGHBORS_ALONG_AXIS, radius);
+    const double mass = t.eos.rho0 / lattice_sum(i, t.spacing, kernel);
+    if (atom->rmass)
+      error->all(FLERR,
+                 "{}: spacing of type {} is '{}', but every particle has a mass of its own here: "
+                 "leave out 'spacing' and use 'set type {} mass {:.16g}'",
+                 COEFF, i, t.spacing, i, mass);
+    const bool given = atom->mass_setflag[i] && atom->mass[i] != t.lattice_mass;
+    if (given && std::fabs(atom->mass[i] / mass - 1.0) > TOLERANCE)
+      error->all(FLERR,
+                 "{}: spacing of type {} is '{}', which makes its mass {:.8g}, but 'mass {}' is "
+                 "{:.8g}: leave out 'mass {}' or 'spacing'",
+                 COEFF, i, t.spacing, mass, i, atom->mass[i], i);
+    atom->set_mass(FLERR, i, mass);
+    t.lattice_mass = mass;
+  }
 }
 
 /* ----------------------------------------------------------------------

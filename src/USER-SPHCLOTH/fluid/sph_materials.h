@@ -27,6 +27,8 @@ class SPHMaterials : protected Pointers {
     double nu = 0.0, alpha = 0.0;
     double volume = 0.0;    // of a boundary particle; 0: from the particles around it
     Pressure pressure = Pressure::EXTRAPOLATE;
+    double spacing = 0.0;         // of the lattice whose mass a fluid has; 0: 'mass' says it
+    double lattice_mass = 0.0;    // and that mass, once it is set
   };
 
   // forgets everything
@@ -51,6 +53,10 @@ class SPHMaterials : protected Pointers {
   // keeps both at hand, until something is said anew
   void settle();
   void unsettle();
+  // number density of a square or cubic lattice by summation (1)
+  double lattice_sum(int i, double spacing, sphcloth::KernelName) const;
+  // gives the types with a spacing the mass with which such a lattice has the rest density
+  void set_lattice_masses(sphcloth::KernelName);
   double nu(int i, int j) const;
   double alpha(int i, int j) const;
   // one pair, with the kernel's scale

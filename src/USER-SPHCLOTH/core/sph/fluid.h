@@ -160,8 +160,6 @@ class Fluid {
   using Receiver = void (*)(void *context, int i, const Acceleration &);
   virtual void virials(const Particles &, Receiver, void *context) = 0;
 
-  // number density of a square or cubic lattice by summation (1)
-  virtual double lattice_sum(double support, double spacing) const = 0;
   virtual double bytes() const = 0;
 
   const DualLists &order() const { return lists; }

@@ -57,7 +57,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
   void impulses(const Particles &, const std::vector<int> &slots) override;
   void virials(const Particles &, Receiver, void *context) override;
-  double lattice_sum(double support, double spacing) const override;
   double bytes() const override;
 
  private:
@@ -836,21 +835,6 @@ double FluidLoops<K, P>::weight(const Particles &p, int i, int j, const KernelSc
 }
 
 /* ---------------------------------------------------------------------- */
-
-template <class K, class P>
-double FluidLoops<K, P>::lattice_sum(double support, double spacing) const
-{
-  const KernelScale s = kernel_scale<K>(support, model.dimension);
-  const int reach = static_cast<int>(support / spacing);
-  const int reach_z = model.dimension == 3 ? reach : 0;
-  double sum = 0.0;
-  for (int i = -reach; i <= reach; i++)
-    for (int j = -reach; j <= reach; j++)
-      for (int k = -reach_z; k <= reach_z; k++)
-        sum += s.w *
-            K::shape(spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k)) / support);
-  return sum;
-}
 
 template <class K, class P> double FluidLoops<K, P>::bytes() const
 {

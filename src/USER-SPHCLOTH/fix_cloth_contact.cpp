@@ -417,3 +417,9 @@ double FixClothContact::memory_usage()
   for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
 }
+
+void *FixClothContact::extract(const char *name, int &)
+{
+  return std::strcmp(name, FluidBoundary::EXTRACT) == 0 ? static_cast<FluidBoundary *>(walls.get())
+                                                        : nullptr;
+}

@@ -59,7 +59,7 @@ class FixClothContact : public Fix {
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const { return side.data(); }
   // what fills the kernel of fluid near the meshes; null with 'wall no'
-  MeshBoundary *wall() const { return walls.get(); }
+  void *extract(const char *, int &) override;    // the boundary that it is to fluid
   // the cutoff of pair_style sph/tait
   void set_sight(double distance) { sight = distance; }
 

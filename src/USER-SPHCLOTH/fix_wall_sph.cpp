@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -173,14 +174,14 @@ void FixWallSPH::begin()
   if (any_variable) modify->addstep_compute(update->ntimestep + 1);
   find_open_space();
   last_time = now;
-  forget_pushes();
+  std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
   found.clear();
   found_at.assign(atom->nlocal, UNKNOWN);
   summed = false;
 }
 
-// where nobody can be in reach of a wall, so that most particles are not asked about each
+// the space out of reach of all walls, so that most particles need no distances
 
 void FixWallSPH::find_open_space()
 {
@@ -218,9 +219,9 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
   if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
 }
 
-// false if no wall is in reach of particle i; otherwise `near` holds what each wall is to it
+// false if no wall is in reach of particle i; otherwise `near` has the table's values of each wall
 
-bool FixWallSPH::look(int i)
+bool FixWallSPH::query(int i)
 {
   if (i >= static_cast<int>(found_at.size())) return measure(i);
   int &at = found_at[i];
@@ -263,19 +264,19 @@ bool FixWallSPH::measure(int i, double back)
   return any;
 }
 
-double FixWallSPH::density(int i)
+double FixWallSPH::density(int i, double of_particles)
 {
-  if (!look(i)) return 0.0;
-  return pair->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
+  if (!query(i)) return of_particles;
+  return of_particles + pair->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
 }
 
-double FixWallSPH::density_rate(int i, double back)
+double FixWallSPH::density_rate(int i, double of_particles, double back)
 {
-  if (!measure(i, back)) return 0.0;
+  if (!measure(i, back)) return of_particles;
   double rate = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++)
     rate += slope(i, k, joint_share(near, k)) * departure(i, k);
-  return rate;
+  return of_particles + rate;
 }
 
 // d rho_i / d distance from wall k, which keeps this share beside the other walls
@@ -304,8 +305,6 @@ void FixWallSPH::push_more(int i, double p_over_rho2, double times)
   push(i, p_over_rho2, times, false);
 }
 
-void FixWallSPH::forget_pushes() { std::fill(mine.begin(), mine.end(), 0.0); }
-
 void FixWallSPH::prolong(double times)
 {
   for (std::size_t k = 0; k + 1 < mine.size(); k++) mine[k] *= times;    // the energy stays
@@ -313,7 +312,7 @@ void FixWallSPH::prolong(double times)
 
 void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 {
-  if (!look(i)) return;
+  if (!query(i)) return;
   const int type = atom->type[i];
   const Tait &eos = pair->equation_of_state(type);
   const double support = pair->support(type), nu = slip ? 0.0 : pair->laminar_viscosity(type);
@@ -349,7 +348,7 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 
 double FixWallSPH::approach(int i)
 {
-  if (!look(i)) return 0.0;
+  if (!query(i)) return 0.0;
   const double support = pair->support(atom->type[i]);
   double fastest = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++)
@@ -359,7 +358,7 @@ double FixWallSPH::approach(int i)
 
 bool FixWallSPH::moves_beside(int i)
 {
-  if (!any_moves || !look(i)) return false;
+  if (!any_moves || !query(i)) return false;
   return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
     return wall.moves() && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
   });
@@ -367,7 +366,7 @@ bool FixWallSPH::moves_beside(int i)
 
 void FixWallSPH::add_to(ConcentrationGradient &crowd, int i)
 {
-  if (!look(i)) return;
+  if (!query(i)) return;
   const double support = pair->support(atom->type[i]);
   const int dim = domain->dimension;
   crowd.cover += joint_lambda(near);
@@ -404,3 +403,8 @@ double FixWallSPH::output(int n)
 double FixWallSPH::compute_scalar() { return output(size_vector); }
 
 double FixWallSPH::compute_vector(int n) { return output(n); }
+
+void *FixWallSPH::extract(const char *name, int &)
+{
+  return std::strcmp(name, EXTRACT) == 0 ? static_cast<FluidBoundary *>(this) : nullptr;
+}

@@ -15,6 +15,7 @@ FixStyle(wall/sph,FixWallSPH);
 #include "core/sph/shifting.h"
 #include "fluid/fluid_boundary.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -33,20 +34,20 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
+  void *extract(const char *, int &) override;
 
   void begin() override;
-  double density(int i) override;
-  double density_rate(int i, double back) override;
+  double density(int i, double of_particles) override;
+  double density_rate(int i, double of_particles, double back) override;
   void push(int i, double p_over_rho2) override;
   void push_more(int i, double p_over_rho2, double times) override;
-  void forget_pushes() override;
+  void defer(const Take &) override { std::fill(mine.begin(), mine.end(), 0.0); }
   void prolong(double times) override;
 
-  // the largest speed at which a wall in reach and a particle come near
   double approach(int i) override;
   bool moves_beside(int i) override;
 
-  // What the walls, where they were then, add to the surroundings of a fluid particle
+  // what the walls of the last evaluation add to the concentration gradient of a fluid particle
   void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
@@ -95,7 +96,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void check_face(const Wall &) const;
   void locate(Wall &, double);
   void find_open_space();
-  bool look(int i);
+  bool query(int i);
   bool measure(int i, double back = 0.0);
   double slope(int, std::size_t, double share) const;
   double departure(int, std::size_t) const;

@@ -9,7 +9,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_cloth_contact.h"
-#include "fix_wall_sph.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
@@ -129,7 +128,7 @@ void PairSPHTait::init_style()
   pressures_follow = false;
   comm_forward = diffuses() ? 3 : 2;
 
-  find_walls();
+  boundaries = find_fluid_boundaries(modify);
   find_sheets();
 
   // lists outlive init(): 'run pre no' goes on with them
@@ -137,17 +136,6 @@ void PairSPHTait::init_style()
   set_model();
   moved.assign(atom->ntypes + 1, 0);
   moved_here = moved;
-}
-
-void PairSPHTait::find_walls()
-{
-  walls.clear();
-  meshes.clear();
-  for (Fix *fix : modify->get_fix_list()) {
-    if (auto *plane = dynamic_cast<FluidBoundary *>(fix)) walls.push_back(plane);
-    if (auto *contact = dynamic_cast<FixClothContact *>(fix); contact && contact->wall())
-      meshes.push_back(contact->wall());
-  }
 }
 
 void PairSPHTait::find_sheets()
@@ -269,8 +257,7 @@ void PairSPHTait::compute(int eflag, int vflag)
   select(p);
   fluid->place(p, box());
   measure_amounts(p, new_neighbors);
-  for (FluidBoundary *wall : walls) wall->begin();
-  for (MeshBoundary *mesh : meshes) mesh->begin();
+  for (FluidBoundary *boundary : boundaries) boundary->begin();
   densities(p);
   pressures(p, pressures_follow || new_neighbors);
   stage = Stage::DENSITY;
@@ -281,13 +268,11 @@ void PairSPHTait::compute(int eflag, int vflag)
 
   fluid->forces(p, hooks ? Target::FLUID : Target::ALL);
   if (hooks) hooks->note_pair_forces();
-  for (FluidBoundary *wall : walls)
-    for_each_fluid([&](int i, const Tait &) { wall->push(i, pressure[i]); });
-  for (MeshBoundary *mesh : meshes)
-    for_each_fluid([&](int i, const Tait &) { mesh->push(i, pressure[i] / mesh->stretch(i)); });
+  for (FluidBoundary *boundary : boundaries)
+    for_each_fluid([&](int i, const Tait &) { boundary->push(i, pressure[i]); });
   if (vflag_either) tally_virial(p);
   if (hooks) hooks->apply_impulses();
-  for (MeshBoundary *mesh : meshes) mesh->end();
+  for (FluidBoundary *boundary : boundaries) boundary->end();
   if (eflag_either) tally_energy();
   is_evaluated = true;
 }
@@ -306,33 +291,29 @@ void PairSPHTait::select(const Particles &p)
 
 void PairSPHTait::push_walls_more(int i, double p_over_rho2, double times)
 {
-  for (FluidBoundary *wall : walls) wall->push_more(i, p_over_rho2, times);
-  for (MeshBoundary *mesh : meshes) mesh->push_more(i, p_over_rho2 / mesh->stretch(i), times);
+  for (FluidBoundary *boundary : boundaries) boundary->push_more(i, p_over_rho2, times);
 }
 
 void PairSPHTait::prolong_walls(double times)
 {
-  for (FluidBoundary *wall : walls) wall->prolong(times);
-  for (MeshBoundary *mesh : meshes) mesh->prolong(times);
+  for (FluidBoundary *boundary : boundaries) boundary->prolong(times);
 }
 
-void PairSPHTait::hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take)
+void PairSPHTait::hand_over_pushes(const FluidBoundary::Take &take)
 {
-  for (FluidBoundary *wall : walls) wall->forget_pushes();
-  for (MeshBoundary *mesh : meshes) mesh->hand_over(take);
+  for (FluidBoundary *boundary : boundaries) boundary->defer(take);
 }
 
 bool PairSPHTait::feels_moving_wall(int i) const
 {
-  for (FluidBoundary *wall : walls)
-    if (wall->moves_beside(i)) return true;
-  return is_beside_mesh(i);
+  return std::any_of(boundaries.begin(), boundaries.end(),
+                     [&](FluidBoundary *boundary) { return boundary->moves_beside(i); });
 }
 
 bool PairSPHTait::is_beside_mesh(int i) const
 {
-  return std::any_of(meshes.begin(), meshes.end(),
-                     [&](const MeshBoundary *mesh) { return mesh->is_beside(i); });
+  return std::any_of(boundaries.begin(), boundaries.end(),
+                     [&](FluidBoundary *boundary) { return boundary->has_vertices_beside(i); });
 }
 
 void PairSPHTait::give_impulses(const std::vector<int> &slots, const double *pressure_time,
@@ -520,10 +501,8 @@ void PairSPHTait::densities(const Particles &p)
 {
   if (!options.continuity) {
     fluid->gather(p, true);
-    for (FluidBoundary *wall : walls)
-      for_each_fluid([&](int i, const Tait &) { p.rho[i] += wall->density(i); });
-    for (MeshBoundary *mesh : meshes)
-      for_each_fluid([&](int i, const Tait &) { p.rho[i] *= mesh->stretch(i); });
+    for (FluidBoundary *boundary : boundaries)
+      for_each_fluid([&](int i, const Tait &) { p.rho[i] = boundary->density(i, p.rho[i]); });
     return;
   }
   check_densities();
@@ -542,12 +521,9 @@ void PairSPHTait::integrate_density(const Particles &p)
   if (elapsed > 0.0) {
     const double back = 0.5 * elapsed;
     density_rates(p, back);
-    for (FluidBoundary *wall : walls)
-      for_each_fluid([&](int i, const Tait &) { rate[i] += wall->density_rate(i, back); });
-    for (MeshBoundary *mesh : meshes)
-      for_each_fluid([&](int i, const Tait &) {
-        rate[i] = rate[i] * mesh->stretch(i) + mesh->density_rate(i, back);
-      });
+    for (FluidBoundary *boundary : boundaries)
+      for_each_fluid(
+          [&](int i, const Tait &) { rate[i] = boundary->density_rate(i, rate[i], back); });
     for_each_fluid([&](int i, const Tait &) { p.rho[i] += elapsed * rate[i]; });
     elapsed = 0.0;
     if (options.reinit && update->ntimestep % options.reinit == 0) {
@@ -589,8 +565,8 @@ void PairSPHTait::pressures(const Particles &p, bool of_all)
     const double rho = p.rho[i];
     double &term = pressure[i];
     term = std::max(eos.pressure(rho), least) / (rho * rho);
-    // a density that is stretched has a gradient that is
-    for (MeshBoundary *mesh : meshes) term *= mesh->stretch(i);
+    // a density that is renormalized has a gradient that is
+    for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number
     if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
       rank_error(lmp, FLERR,
@@ -657,7 +633,7 @@ double PairSPHTait::pressure_of(int i) const
 {
   double p = pressure[i] * atom->rho[i] * atom->rho[i];
   if (is_fluid(atom->type[i]))
-    for (MeshBoundary *mesh : meshes) p /= mesh->stretch(i);
+    for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
   return p;
 }
 
@@ -700,22 +676,21 @@ double PairSPHTait::p_over_rho2_beside(int i)
 
 void PairSPHTait::want_wetting() const
 {
-  for (MeshBoundary *mesh : meshes) mesh->want_wetting();
+  for (FluidBoundary *boundary : boundaries) boundary->want_wetting();
 }
 
 double PairSPHTait::approach_speed(int i)
 {
   double most = approach[i];
-  for (FluidBoundary *wall : walls) most = std::max(most, wall->approach(i));
-  for (MeshBoundary *mesh : meshes) most = std::max(most, mesh->approach(i));
+  for (FluidBoundary *boundary : boundaries) most = std::max(most, boundary->approach(i));
   return most;
 }
 
 PairSPHTait::Wetting PairSPHTait::wetting(int i)
 {
   if (!materials.is_boundary(atom->type[i])) {
-    for (const MeshBoundary *mesh : meshes)
-      if (mesh->fluid_mass(i) > 0.0) return {mesh->fluid_mass(i), mesh->sound(i)};
+    for (const FluidBoundary *boundary : boundaries)
+      if (const Wetting wet = boundary->wetting(i); wet.fluid_mass > 0.0) return wet;
     return {};
   }
   const Particles p = particles();

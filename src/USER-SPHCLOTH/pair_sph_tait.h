@@ -13,6 +13,7 @@ PairStyle(sph/tait,PairSPHTait);
 #include "pair.h"
 
 #include "core/sph/plane_wall.h"
+#include "fluid/fluid_boundary.h"
 #include "fluid/sph_materials.h"
 
 #include <Eigen/Core>
@@ -25,8 +26,6 @@ namespace LAMMPS_NS {
 
 class StepHooks;
 class FixClothContact;
-class FluidBoundary;
-class MeshBoundary;
 
 class PairSPHTait : public Pair {
  public:
@@ -73,12 +72,8 @@ class PairSPHTait : public Pair {
   // number density of a square or cubic lattice of this type, by summation (1)
   double lattice_sum(int itype, double spacing) const;
 
-  // Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass that
-  // fluid in its volume would have, and the sound speed of that fluid.  Both 0 if it is dry.  To be
-  // wanted in init().
-  struct Wetting {
-    double fluid_mass = 0.0, sound = 0.0;
-  };
+  // To be wanted in init().  A boundary particle has the mass of fluid in its volume.
+  using Wetting = LAMMPS_NS::Wetting;
   void want_wetting() const;
   Wetting wetting(int i);
 
@@ -111,12 +106,12 @@ class PairSPHTait : public Pair {
   // Particles with steps of their own, anew for each run.  Null: forces act for the step of all.
   void set_step_hooks(StepHooks *of_scheme) { hooks = of_scheme; }
   // What they ask for once the forces on the active fluid are known: to push walls once more, as
-  // FluidWall::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
+  // FluidBoundary::push_more(); the forces on boundaries, if all steps are equal; otherwise the impulses of
   // Fluid::record_impulses() on these owned particles.
   void push_walls_more(int i, double p_over_rho2, double times);
   void prolong_walls(double times);
-  // what walls have been pushed so far: take(owned vertex, force) of meshes, of others it is left out
-  void hand_over_pushes(const std::function<void(int, const Eigen::Vector3d &)> &take);
+  // what boundaries have been pushed so far, FluidBoundary::defer()
+  void hand_over_pushes(const FluidBoundary::Take &take);
   void push_boundaries() { fluid->forces(particles(), sphcloth::Target::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);
@@ -168,8 +163,7 @@ class PairSPHTait : public Pair {
   Options options;
   SPHMaterials materials;
   std::unique_ptr<sphcloth::Fluid> fluid;
-  std::vector<FluidBoundary *> walls;
-  std::vector<MeshBoundary *> meshes;    // those of them that are meshes
+  std::vector<FluidBoundary *> boundaries;
   FixClothContact *sheets;    // that part the fluid; null without
   StepHooks *hooks;    // of particles with steps of their own, null otherwise
   bool is_evaluated;
@@ -196,7 +190,6 @@ class PairSPHTait : public Pair {
   void read_density(class ArgReader &);
   void forget_evaluation();
   void set_model();
-  void find_walls();
   void find_sheets();
   bool excluded(int, int) const;
   bool diffuses() const { return options.continuity && options.delta > 0.0; }

@@ -1,37 +1,74 @@
-// What fills the kernel of fluid particles beside other particles: pair_style sph/tait asks while it
-// evaluates, in this order.
+// What completes the kernel of fluid particles beside other particles: the planes of fix wall/sph and
+// the meshes of fix cloth/contact.  pair_style sph/tait calls these functions in this order while it
+// evaluates.
 
 #ifndef SPHCLOTH_FLUID_FLUID_BOUNDARY_H
 #define SPHCLOTH_FLUID_FLUID_BOUNDARY_H
 
+#include <Eigen/Core>
+
+#include <functional>
+#include <vector>
+
 namespace LAMMPS_NS {
+
+class Modify;
+
+// Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of the
+// fluid that moves with it and the sound speed of that fluid; both 0 if it is dry
+
+struct Wetting {
+  double fluid_mass = 0.0, sound = 0.0;
+};
 
 class FluidBoundary {
  public:
-  // where it is now
+  // name of a fix's extract() for the boundary that it owns
+  static constexpr const char *EXTRACT = "fluid_boundary";
+
+  // positions are those of this evaluation
   virtual void begin() = 0;
-  // adds to the density of an owned fluid particle
-  virtual double density(int i) = 0;
-  // the same to the rate of its density, where it was a time `back` ago
-  virtual double density_rate(int i, double back) = 0;
-  // the force on it; pressure_term = p/rho^2
+
+  // the density of an owned fluid particle, from its sum over particles
+  virtual double density(int i, double of_particles) = 0;
+  // the same for the rate of its density, where it was a time `back` ago
+  virtual double density_rate(int i, double of_particles, double back) = 0;
+  // Factor 1/gamma by which density() renormalizes the sum; 1 where it adds.  Those that add come
+  // before those that renormalize.
+  virtual bool renormalizes() const { return false; }
+  virtual double inverse_gamma(int) { return 1.0; }
+
+  // the force on it; p_over_rho2 is renormalized as its density is
   virtual void push(int i, double p_over_rho2) = 0;
-  // Once more, for a particle with a step of its own: the force of another pressure term and `times`
+  // Once more, for a particle with a time step of its own: the force of another p/rho^2 and `times`
   // the rest.  What was pushed before holds for energy, virial and rate.
   virtual void push_more(int i, double p_over_rho2, double times) = 0;
-  // what was pushed so far is none of the forces on it in the coming step
-  virtual void forget_pushes() = 0;
-  // all that was pushed acts so many times as long; the forces on particles are seen to
+  // What was pushed so far is not among the forces of the coming step: take(owned vertex, force) gets it,
+  // if the boundary has vertices.
+  using Take = std::function<void(int, const Eigen::Vector3d &)>;
+  virtual void defer(const Take &take) = 0;
+  // All that was pushed acts so many times as long.  Forces on fluid particles are scaled elsewhere.
   virtual void prolong(double times) = 0;
 
-  // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
+  // all particles have been pushed
+  virtual void end() {}
+
+  // of the last evaluation: the approach speed of a particle within reach, or 0
   virtual double approach(int i) = 0;
-  // does a part of it move that is within reach of the particle?
+  // does a part of it within reach of the particle move?
   virtual bool moves_beside(int i) = 0;
+  // is a vertex of it within reach?
+  virtual bool has_vertices_beside(int) { return false; }
+  // of an owned vertex, if wanted
+  virtual void want_wetting() {}
+  virtual Wetting wetting(int) const { return {}; }
 
  protected:
   ~FluidBoundary() noexcept(false) = default;
 };
+
+// all of a scene, in the order of evaluation
+std::vector<FluidBoundary *> find_fluid_boundaries(Modify *);
 
 }    // namespace LAMMPS_NS
 

@@ -278,7 +278,7 @@ void MeshBoundary::begin()
                 return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
               });
   first.assign(atom->nlocal, -1);
-  if (wetting_wanted) wetting.assign(atom->nlocal, Vec3::Zero());
+  if (wetting_wanted) fluid_mass.assign(atom->nlocal, Vec3::Zero());
   for (std::size_t k = 0; k < closest_points.size(); k++) {
     ClosestPoint &closest = closest_points[k];
     closest.value = table(closest.distance / support(closest.particle));
@@ -297,14 +297,14 @@ template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
     something(closest_points[k]);
 }
 
-double MeshBoundary::stretch(int i)
+double MeshBoundary::inverse_gamma(int i)
 {
   double gamma = 1.0;
   for_closest_points(i, [&](const ClosestPoint &closest) { gamma *= 1.0 - covered(closest); });
   return 1.0 / gamma;
 }
 
-double MeshBoundary::density_rate(int i, double back)
+double MeshBoundary::density_rate(int i, double of_particles, double back)
 {
   double rate = 0.0;
   for_closest_points(i, [&](ClosestPoint closest) {
@@ -312,7 +312,7 @@ double MeshBoundary::density_rate(int i, double back)
     closest.value = table((closest.distance - back * velocity.dot(closest.normal)) / support(i));
     rate += rise(closest).dot(velocity);
   });
-  return rate;
+  return of_particles * inverse_gamma(i) + rate;
 }
 
 // the share of its kernel, behind the plane and not beyond the border
@@ -339,11 +339,14 @@ Eigen::Vector3d MeshBoundary::velocity_from(const ClosestPoint &closest) const
 
 // Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.
 
-void MeshBoundary::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
+void MeshBoundary::push(int i, double p_over_rho2) 
+{
+  push(i, p_over_rho2 / inverse_gamma(i), 1.0, true);
+}
 
 void MeshBoundary::push_more(int i, double p_over_rho2, double times)
 {
-  push(i, p_over_rho2, times, false);
+  push(i, p_over_rho2 / inverse_gamma(i), times, false);
 }
 
 void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push)
@@ -380,17 +383,23 @@ double MeshBoundary::approach(int i)
   return fastest;
 }
 
-void MeshBoundary::hand_over(const std::function<void(int, const Vec3 &)> &take)
+void MeshBoundary::defer(const Take &take)
 {
   for (BoundaryMesh &sheet : sheets) sheet.hand_over(take);
 }
 
 void MeshBoundary::end()
 {
-  hand_over([this](int i, const Vec3 &on) {
+  defer([this](int i, const Vec3 &on) {
     for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
   });
   if (!wetting_wanted) return;
   for (BoundaryMesh &sheet : sheets)
-    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { wetting[i] += amount; });
+    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { fluid_mass[i] += amount; });
+}
+
+Wetting MeshBoundary::wetting(int i) const
+{
+  const Vec3 &sum = fluid_mass[i];
+  return sum[0] > 0.0 ? Wetting{sum[0], sum[1] / sum[0]} : Wetting();
 }

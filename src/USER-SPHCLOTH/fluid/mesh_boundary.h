@@ -7,6 +7,7 @@
 
 #include "contact/triangle_set.h"
 #include "core/sph/plane_wall.h"
+#include "fluid/fluid_boundary.h"
 
 #include <array>
 #include <functional>
@@ -92,7 +93,7 @@ class BoundaryMesh : protected Pointers {
 // with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where several meshes
 // are near, each counts as far as it does not lie behind nearer ones.
 
-class MeshBoundary : protected Pointers {
+class MeshBoundary : protected Pointers, public FluidBoundary {
  public:
   using Vec3 = Eigen::Vector3d;
 
@@ -107,29 +108,23 @@ class MeshBoundary : protected Pointers {
   double reach() const;    // as far as fluid feels a mesh until the next list build
   void look();    // after each list build
 
-  // What pair_style sph/tait asks for while it evaluates, in this order: where everybody is now; by
-  // what the density of an owned fluid particle is stretched, 1/gamma; what is added to the rate of its
-  // density, where it was a time `back` ago; the force on it and on the meshes, with p/rho^2, and what
-  // FluidWall says of more; and that all are pushed.
-  void begin();
-  double stretch(int i);
-  double density_rate(int i, double back);
-  void push(int i, double p_over_rho2);
-  void push_more(int i, double p_over_rho2, double times);
-  void prolong(double times) { lasts = times; }
-  void end();
-  // what was pushed so far is handed over now, to take(owned vertex, force)
-  void hand_over(const std::function<void(int, const Vec3 &)> &take);
+  void begin() override;
+  bool renormalizes() const override { return true; }
+  double inverse_gamma(int i) override;
+  double density(int i, double of_particles) override { return of_particles * inverse_gamma(i); }
+  double density_rate(int i, double of_particles, double back) override;
+  void push(int i, double p_over_rho2) override;
+  void push_more(int i, double p_over_rho2, double times) override;
+  void defer(const Take &) override;
+  void prolong(double times) override { lasts = times; }
+  void end() override;
 
-  // of the last evaluation: the speed at which a particle within reach comes nearer, or 0
-  double approach(int i);
-  // is a mesh within reach?  All of them may move.
-  bool is_beside(int i) const { return first[i] >= 0; }
+  double approach(int i) override;
+  bool moves_beside(int i) override { return first[i] >= 0; }    // any mesh may move
+  bool has_vertices_beside(int i) override { return first[i] >= 0; }
 
-  // mass of the fluid that moves with an owned vertex, and its mean sound speed; to be asked for before
-  void want_wetting() { wetting_wanted = true; }
-  double fluid_mass(int i) const { return wetting[i][0]; }
-  double sound(int i) const { return wetting[i][0] > 0.0 ? wetting[i][1] / wetting[i][0] : 0.0; }
+  void want_wetting() override { wetting_wanted = true; }
+  Wetting wetting(int i) const override;
 
  private:
   std::string label;
@@ -141,7 +136,7 @@ class MeshBoundary : protected Pointers {
   std::vector<int> first;    // of an owned particle, -1: none
   bool wetting_wanted = false;
   double lasts = 1.0;    // how many times as long as the step what was pushed acts
-  std::vector<Vec3> wetting;    // by owned atom
+  std::vector<Vec3> fluid_mass;    // by owned atom: mass, and that times its sound speed
 
   template <class Do> void for_closest_points(int i, Do something);
   void push(int i, double p_over_rho2, double times, bool first_push);

@@ -4,11 +4,11 @@
 #include "error.h"
 #include "fix_cloth_contact.h"
 #include "fix_sph_integrate.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using namespace sphcloth;
 ------------------------------------------------------------------------- */
 
 ComputeSPHAtom::ComputeSPHAtom(LAMMPS *lmp_, int narg, char **arg) :
-    Compute(lmp_, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0), pair(nullptr),
-    stepper(nullptr), sheets(nullptr)
+    Compute(lmp_, narg, arg), label(fmt::format("compute {} sph/atom", id)), nmax(0),
+    fluid(nullptr), stepper(nullptr), sheets(nullptr)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   do columns.push_back(read_column(args));
@@ -59,8 +59,8 @@ void ComputeSPHAtom::init() { find_styles(); }
 
 void ComputeSPHAtom::find_styles()
 {
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair)
+  fluid = FluidState::find(force);
+  if (!fluid)
     error->all(FLERR, "{}: pair_style {} knows nothing of fluid: use 'pair_style sph/tait'", label,
                force->pair_style ? force->pair_style : "none");
   if (asks_for(Column::SIDE)) {
@@ -84,7 +84,7 @@ void ComputeSPHAtom::find_styles()
 
 void ComputeSPHAtom::check_evaluated() const
 {
-  int mine = pair->evaluated(), all = 0;
+  int mine = fluid->evaluated(), all = 0;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, world);
   if (!all)
     error->all(FLERR,
@@ -122,26 +122,28 @@ double ComputeSPHAtom::value(Column column, int i) const
 {
   const bool integrated = stepper && atom->mask[i] & stepper->groupbit;
   switch (column) {
-    case Column::NEIGHBORS: return pair->count_neighbors(i);
+    case Column::NEIGHBORS: return fluid->count_neighbors(i);
     case Column::DT: return integrated ? stepper->own_step(i) : 0.0;
     case Column::SIDE: return sheets->side_of(i);
     case Column::ACTIVE: return integrated && stepper->is_active(i);
     default: break;
   }
-  if (pair->is_fluid(atom->type[i])) return value_of_fluid(column, i);
-  return column == Column::VOLUME && pair->has_role(atom->type[i]) ? pair->amount_of(i) : 0.0;
+  if (fluid->is_fluid(atom->type[i])) return value_of_fluid(column, i);
+  return column == Column::VOLUME && fluid->has_role(atom->type[i]) ? fluid->mass_or_volume_of(i)
+                                                                    : 0.0;
 }
 
 double ComputeSPHAtom::value_of_fluid(Column column, int i) const
 {
-  const Tait &eos = pair->equation_of_state(atom->type[i]);
+  const Tait &eos = fluid->equation_of_state(atom->type[i]);
   const double rho = atom->rho[i];
   switch (column) {
     case Column::DENSITY: return rho;
-    case Column::PRESSURE: return pair->pressure_of(i) * force->mvv2e * force->nktv2p;
-    case Column::ENERGY: return pair->amount_of(i) * pair->stored_energy(eos, rho) * force->mvv2e;
+    case Column::PRESSURE: return fluid->pressure_of(i) * force->mvv2e * force->nktv2p;
+    case Column::ENERGY:
+      return fluid->mass_or_volume_of(i) * fluid->stored_energy(eos, rho) * force->mvv2e;
     case Column::SOUND: return eos.sound_speed(rho);
-    case Column::VOLUME: return pair->amount_of(i) / rho;
+    case Column::VOLUME: return fluid->mass_or_volume_of(i) / rho;
     default: return 0.0;
   }
 }

@@ -18,7 +18,7 @@ namespace LAMMPS_NS {
 
 class FixClothContact;
 class FixSPHIntegrate;
-class PairSPHTait;
+class FluidState;
 
 class ComputeSPHAtom : public Compute {
  public:
@@ -34,7 +34,7 @@ class ComputeSPHAtom : public Compute {
   std::string label;
   std::vector<Column> columns;    // in the user's order
   int nmax;
-  PairSPHTait *pair;
+  FluidState *fluid;
   FixSPHIntegrate *stepper;    // only where a column needs it
   FixClothContact *sheets;     // the same
 

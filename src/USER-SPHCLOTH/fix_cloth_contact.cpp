@@ -13,7 +13,7 @@
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
+#include "fluid/fluid_state.h"
 #include "update.h"
 
 #include <algorithm>
@@ -118,7 +118,7 @@ void FixClothContact::init()
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
-  auto *fluid = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
   if (!walls) return;
@@ -420,6 +420,9 @@ double FixClothContact::memory_usage()
 
 void *FixClothContact::extract(const char *name, int &)
 {
-  return std::strcmp(name, FluidBoundary::EXTRACT) == 0 ? static_cast<FluidBoundary *>(walls.get())
-                                                        : nullptr;
+  if (std::strcmp(name, FluidBoundary::EXTRACT) == 0)
+    return static_cast<FluidBoundary *>(walls.get());
+  if (std::strcmp(name, SideSource::EXTRACT) == 0 && has_sides())
+    return static_cast<SideSource *>(this);
+  return nullptr;
 }

@@ -15,6 +15,7 @@ FixStyle(cloth/contact,FixClothContact);
 #include "contact/obstacle.h"
 #include "contact/obstacle_coupling.h"
 #include "fluid/mesh_boundary.h"
+#include "fluid/side_source.h"
 #include "lammps_util/particle_columns.h"
 
 #include <array>
@@ -27,7 +28,7 @@ namespace LAMMPS_NS {
 class ArgReader;
 class FixPBDCloth;
 
-class FixClothContact : public Fix {
+class FixClothContact : public Fix, public SideSource {
  public:
   FixClothContact(class LAMMPS *, int, char **);
   ~FixClothContact() override;
@@ -57,11 +58,11 @@ class FixClothContact : public Fix {
   bool has_sides() const { return rules.sides; }
   int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
   // of all atoms, ghosts too, since the last list build
-  const sphcloth::Sides *sides() const { return side.data(); }
-  // what fills the kernel of fluid near the meshes; null with 'wall no'
-  void *extract(const char *, int &) override;    // the boundary that it is to fluid
+  const sphcloth::Sides *sides() const override { return side.data(); }
+  // the boundary that it is to fluid, and the sides on which fluid is
+  void *extract(const char *, int &) override;
   // the cutoff of pair_style sph/tait
-  void set_sight(double distance) { sight = distance; }
+  void set_sight(double distance) override { sight = distance; }
 
  private:
   std::string label;

@@ -9,12 +9,12 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -118,14 +118,14 @@ int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE; }
 
 void FixSPHEmit::init()
 {
-  const auto *pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair || !pair->is_fluid(itype))
+  const auto *fluid = FluidState::find(force);
+  if (!fluid || !fluid->is_fluid(itype))
     error->all(
         FLERR,
         "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
         label, itype, itype, itype);
   // the mass with which a lattice of this spacing is water at rest, by the density sum
-  const double at_rest = pair->equation_of_state(itype).rho0 / pair->lattice_sum(itype, spacing);
+  const double at_rest = fluid->equation_of_state(itype).rho0 / fluid->lattice_sum(itype, spacing);
   if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
     error->all(FLERR,

@@ -5,6 +5,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
 #include "integrate.h"
@@ -13,7 +14,6 @@
 #include "lammps_util/restart_record.h"
 #include "memory.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 #include "stepping/make_stepper.h"
 #include "update.h"
 
@@ -29,7 +29,7 @@ using namespace sphcloth;
 ------------------------------------------------------------------------- */
 
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), pair(nullptr),
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), fluid(nullptr),
     limits(lmp_, options), control(lmp_, options, label, groupbit), report(lmp_, options, groupbit),
     scheme(SteppingScheme::CONSTANT), run_style_drives(false)
 {
@@ -76,8 +76,8 @@ int FixSPHIntegrate::setmask() { return INITIAL_INTEGRATE | END_OF_STEP | POST_R
 
 void FixSPHIntegrate::init()
 {
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair)
+  fluid = FluidState::find(force);
+  if (!fluid)
     error->all(FLERR, "{}: pair_style {} knows no density: use 'pair_style sph/tait'", label,
                force->pair_style ? force->pair_style : "none");
   if (modify->get_fix_by_style("^sph/integrate$").size() > 1)
@@ -87,11 +87,11 @@ void FixSPHIntegrate::init()
   const auto *run_style = dynamic_cast<HasSteppingScheme *>(update->integrate);
   run_style_drives = run_style != nullptr;
   const SteppingScheme wanted = run_style ? run_style->scheme() : options.scheme;
-  options.check(wanted, control.times, pair->integrates_density(), label, error);
+  options.check(wanted, control.times, fluid->integrates_density(), label, error);
   use_scheme(wanted, BlockClock());
-  limits.init(pair, scheme);
-  control.init(pair, limits.shortest_sound_time());
-  stepper->init(pair);
+  limits.init(fluid, scheme);
+  control.init(fluid, limits.shortest_sound_time());
+  stepper->init(fluid);
   check_group();
 }
 
@@ -111,7 +111,7 @@ void FixSPHIntegrate::check_group()
 {
   int wrong = 0, any_wrong = 0;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !pair->is_fluid(atom->type[i])) wrong = atom->type[i];
+    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
   MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
   if (any_wrong)
     error->all(
@@ -133,7 +133,7 @@ void FixSPHIntegrate::setup(int)
 
 void FixSPHIntegrate::initial_integrate(int)
 {
-  pair->advance(update->dt);
+  fluid->advance(update->dt);
   stepper->move();
 }
 

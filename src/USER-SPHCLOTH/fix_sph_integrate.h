@@ -80,7 +80,7 @@ class FixSPHIntegrate : public Fix, public HasLongestStep {
   struct Record;    // in restart files
 
   std::string label;
-  PairSPHTait *pair;
+  FluidState *fluid;
   StepOptions options;
   UpdateRows rows;
   ParticleLimits limits;

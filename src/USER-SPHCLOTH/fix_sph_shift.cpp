@@ -1,5 +1,6 @@
-// Particle shifting, core/sph/shifting.h.  What is measured where the forces are, with ghosts in place, is
-// applied when the next step moves the particles: a restart between the two measures it again.
+// Particle shifting, core/sph/shifting.h.  What is measured where the forces are, with ghosts in
+// place, is applied when the next step moves the particles: a restart between the two measures it
+// again.
 
 #include "fix_sph_shift.h"
 
@@ -9,12 +10,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_wall_sph.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -29,8 +30,9 @@ using namespace sphcloth;
 ------------------------------------------------------------------------- */
 
 FixSPHShift::FixSPHShift(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/shift", id)), pair(nullptr), walls(nullptr),
-    speed(Speed::LARGEST), correct_velocity(false), cloth_bits(0), reference(0.0), largest(0.0)
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/shift", id)), fluid(nullptr),
+    walls(nullptr), speed(Speed::LARGEST), correct_velocity(false), cloth_bits(0), reference(0.0),
+    largest(0.0)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   read_options(args);
@@ -69,8 +71,8 @@ int FixSPHShift::setmask() { return POST_FORCE | INITIAL_INTEGRATE; }
 
 void FixSPHShift::init()
 {
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair)
+  fluid = FluidState::find(force);
+  if (!fluid)
     error->all(FLERR, "{}: pair_style {} has no neighbours to shift by: use 'pair_style sph/tait'",
                label, force->pair_style ? force->pair_style : "none");
   if (modify->get_fix_by_style("^sph/shift$").size() > 1)
@@ -83,7 +85,7 @@ void FixSPHShift::init()
 
   int wrong = 0, any_wrong = 0;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !pair->is_fluid(atom->type[i])) wrong = atom->type[i];
+    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
   MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
   if (any_wrong)
     error->all(FLERR, "{}: group {} holds type {}, a boundary type: give a group of fluid", label,
@@ -105,14 +107,14 @@ void FixSPHShift::post_force(int)
   own_speed.assign(n, 0.0);
   double fastest = 0.0;
 
-  with_kernel(pair->kernel(), [&](auto kernel) {
+  with_kernel(fluid->options.kernel, [&](auto kernel) {
     using K = decltype(kernel);
     std::vector<KernelScale> scale(n_types * n_types);
     for (int s = 1; s < n_types; s++)
       for (int t = 1; t < n_types; t++)
-        scale[s * n_types + t] = kernel_scale<K>(pair->support(s, t), domain->dimension);
+        scale[s * n_types + t] = kernel_scale<K>(fluid->support(s, t), domain->dimension);
     for (int i = 0; i < n; i++)
-      if (pair->is_fluid(atom->type[i])) measure<K>(i, scale);
+      if (fluid->is_fluid(atom->type[i])) measure<K>(i, scale);
   });
   comm->forward_comm(this);
 
@@ -135,7 +137,7 @@ template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScal
   for (int t = 1; t < n_types; t++) {
     const KernelScale &s = scale[type * n_types + t];
     const double at_spacing = K::shape(std::min(spacing * s.inv_support, 0.9));
-    const NeighborSpan near = pair->neighbors(i, t);
+    const NeighborSpan near = fluid->neighbors(i, t);
     for (int k = 0; k < near.n; k++) {
       const int j = near.of[k];
       const double *xj = atom->x[j];
@@ -154,9 +156,9 @@ template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScal
 FixSPHShift::Volume FixSPHShift::volume(int i) const
 {
   const int type = atom->type[i];
-  const double now = pair->volume(i);
-  if (!pair->is_fluid(type)) return {now, now};
-  return {now, now * atom->rho[i] / pair->equation_of_state(type).rho0};
+  const double now = fluid->volume(i);
+  if (!fluid->is_fluid(type)) return {now, now};
+  return {now, now * atom->rho[i] / fluid->equation_of_state(type).rho0};
 }
 
 // Contact with cloth follows a particle from where its velocity says that it came.
@@ -166,8 +168,8 @@ bool FixSPHShift::near_surface_or_cloth(int i) const
   if (open[i] != 0.0) return true;
   const double *x = atom->x[i];
   for (int t = 1; t <= atom->ntypes; t++) {
-    const NeighborSpan near = pair->neighbors(i, t);
-    const double support = pair->support(atom->type[i], t);
+    const NeighborSpan near = fluid->neighbors(i, t);
+    const double support = fluid->support(atom->type[i], t);
     for (int k = 0; k < near.n; k++) {
       const int j = near.of[k];
       if (open[j] == 0.0 && !(atom->mask[j] & cloth_bits)) continue;
@@ -211,7 +213,7 @@ void FixSPHShift::shift(int i)
 {
   const double spacing = spacing_of(volumes[i].at_rest, domain->dimension);
   const double u = speed == Speed::OWN ? own_speed[i] : reference;
-  const double scale = -coefficients.strength * pair->support(atom->type[i]) * u * update->dt;
+  const double scale = -coefficients.strength * fluid->support(atom->type[i]) * u * update->dt;
   std::array<double, 3> move = crowd[i].gradient;
   for (double &m : move) m *= scale;
   if (cut_to(move, coefficients.largest * spacing)) counts[CUT]++;

@@ -21,7 +21,7 @@ namespace LAMMPS_NS {
 
 class ArgReader;
 class FixWallSPH;
-class PairSPHTait;
+class FluidState;
 
 class FixSPHShift : public Fix {
  public:
@@ -48,7 +48,7 @@ class FixSPHShift : public Fix {
   };
 
   std::string label;
-  PairSPHTait *pair;
+  FluidState *fluid;
   FixWallSPH *walls;    // null without plane walls
   sphcloth::ShiftCoefficients coefficients;
   Speed speed;

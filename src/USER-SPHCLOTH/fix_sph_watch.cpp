@@ -9,6 +9,7 @@
 #include "fix_pbd_cloth.h"
 #include "fix_sph_drain.h"
 #include "fix_sph_emit.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
 #include "lammps_util/arg_reader.h"
@@ -16,7 +17,6 @@
 #include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "output.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ static constexpr int PLACE = 1, VELOCITY = 2, FORCE = 4, RHO = 8;
 
 FixSPHWatch::FixSPHWatch(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/watch", id)), interval(20), keep(1000),
-    pair(nullptr), begun(false), scale{0.0, 0.0}, checks(0.0), seen{}
+    fluid(nullptr), begun(false), scale{0.0, 0.0}, checks(0.0), seen{}
 {
   nevery = 1;
   restart_global = 1;
@@ -96,14 +96,14 @@ int FixSPHWatch::setmask() { return END_OF_STEP; }
 
 void FixSPHWatch::init()
 {
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
+  fluid = FluidState::find(force);
   if (is_on(DENSITY)) need_fluid();
   find_partners();
 }
 
 void FixSPHWatch::need_fluid()
 {
-  if (pair) return;
+  if (fluid) return;
   error->all(FLERR,
              "{}: density is {}, but pair_style {} knows no density: use 'pair_style sph/tait', or "
              "'density 0'",
@@ -222,9 +222,9 @@ double FixSPHWatch::speed(int i) const
 
 double FixSPHWatch::deviation(int i) const
 {
-  if (!pair->is_fluid(atom->type[i])) return 0.0;
-  const double relative = atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0;
-  return pair->integrates_density() ? std::fabs(relative) : relative;
+  if (!fluid->is_fluid(atom->type[i])) return 0.0;
+  const double relative = atom->rho[i] / fluid->equation_of_state(atom->type[i]).rho0 - 1.0;
+  return fluid->integrates_density() ? std::fabs(relative) : relative;
 }
 
 void FixSPHWatch::look_at_balance()
@@ -248,9 +248,9 @@ FixSPHWatch::Balance FixSPHWatch::balance() const
     mine[MASS_OF_ALL] += mass;
     mine[FLOW] += mass * v;
     mine[KINETIC] += 0.5 * mass * v * v;
-    if (is_on(ENERGY) && pair && pair->is_fluid(atom->type[i]))
+    if (is_on(ENERGY) && fluid && fluid->is_fluid(atom->type[i]))
       mine[STORED] +=
-          mass * pair->stored_energy(pair->equation_of_state(atom->type[i]), atom->rho[i]);
+          mass * fluid->stored_energy(fluid->equation_of_state(atom->type[i]), atom->rho[i]);
     for (int d = 0; d < 3; d++) mine[VECTOR + d] += mass * atom->v[i][d];
   }
   MPI_Allreduce(mine, all, N, MPI_DOUBLE, MPI_SUM, world);

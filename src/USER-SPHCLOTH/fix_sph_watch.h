@@ -23,7 +23,7 @@ class ArgReader;
 class FixPBDCloth;
 class FixSPHDrain;
 class FixSPHEmit;
-class PairSPHTait;
+class FluidState;
 
 class FixSPHWatch : public Fix {
  public:
@@ -62,7 +62,7 @@ class FixSPHWatch : public Fix {
   Values allowed;    // negative: the limit is off
   int keep;          // steps between restart files
   std::string file;
-  PairSPHTait *pair;
+  FluidState *fluid;
   std::vector<FixSPHEmit *> sources;
   std::vector<FixSPHDrain *> sinks;
   std::vector<FixPBDCloth *> cloths;

@@ -1,18 +1,18 @@
-// Plane walls as half-spaces of fluid at rest density, core/sph/plane_wall.h.  pair_style sph/tait calls
-// this fix while it evaluates, since densities must be complete before the equation of state.
+// Plane walls as half-spaces of fluid at rest density, core/sph/plane_wall.h.  pair_style sph/tait
+// calls this fix while it evaluates, since densities must be complete before the equation of state.
 
 #include "fix_wall_sph.h"
 
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "input.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 #include "variable.h"
 
@@ -37,7 +37,7 @@ static int face_of(const std::string &name)
 ------------------------------------------------------------------------- */
 
 FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), pair(nullptr), slip(false),
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), fluid(nullptr), slip(false),
     any_variable(false), any_moves(false), reflection(1.0), last_time(-1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
@@ -118,15 +118,15 @@ int FixWallSPH::setmask() { return POST_FORCE; }
 
 void FixWallSPH::init()
 {
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair)
+  fluid = FluidState::find(force);
+  if (!fluid)
     error->all(FLERR,
                "{}: pair_style {} has no density that a wall could add to: use 'pair_style "
                "sph/tait'",
                label, force->pair_style ? force->pair_style : "none");
   if (modify->get_fix_by_style("^wall/sph$").size() > 1)
     error->all(FLERR, "{}: there is another fix wall/sph: give all faces to one", label);
-  table = pair->wall_table();
+  table = fluid->wall_table();
   found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
@@ -187,7 +187,7 @@ void FixWallSPH::find_open_space()
 {
   double longest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++)
-    if (pair->is_fluid(t)) longest = std::max(longest, pair->support(t));
+    if (fluid->is_fluid(t)) longest = std::max(longest, fluid->support(t));
   open_low.fill(-std::numeric_limits<double>::max());
   open_high.fill(std::numeric_limits<double>::max());
   for (const Wall &wall : walls) {
@@ -247,7 +247,7 @@ bool FixWallSPH::measure(int i, double back)
   for (int d = 0; d < 3; d++) open = open && x[d] > open_low[d] && x[d] < open_high[d];
   if (open) return false;
 
-  const double support = pair->support(atom->type[i]);
+  const double support = fluid->support(atom->type[i]);
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); k++) {
     double distance = walls[k].distance(x);
@@ -267,7 +267,7 @@ bool FixWallSPH::measure(int i, double back)
 double FixWallSPH::density(int i, double of_particles)
 {
   if (!query(i)) return of_particles;
-  return of_particles + pair->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
+  return of_particles + fluid->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
 }
 
 double FixWallSPH::density_rate(int i, double of_particles, double back)
@@ -284,7 +284,7 @@ double FixWallSPH::density_rate(int i, double of_particles, double back)
 double FixWallSPH::slope(int i, std::size_t k, double share) const
 {
   const int type = atom->type[i];
-  return share * pair->equation_of_state(type).rho0 * near[k].slope / pair->support(type);
+  return share * fluid->equation_of_state(type).rho0 * near[k].slope / fluid->support(type);
 }
 
 // velocity of particle i away from wall k
@@ -314,8 +314,8 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 {
   if (!query(i)) return;
   const int type = atom->type[i];
-  const Tait &eos = pair->equation_of_state(type);
-  const double support = pair->support(type), nu = slip ? 0.0 : pair->laminar_viscosity(type);
+  const Tait &eos = fluid->equation_of_state(type);
+  const double support = fluid->support(type), nu = slip ? 0.0 : fluid->type(type).nu;
   const double mass = atom_mass(atom, i), to_force = mass / force->ftm2v;
   const double *x = atom->x[i], *v = atom->v[i];
 
@@ -349,7 +349,7 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 double FixWallSPH::approach(int i)
 {
   if (!query(i)) return 0.0;
-  const double support = pair->support(atom->type[i]);
+  const double support = fluid->support(atom->type[i]);
   double fastest = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++)
     if (walls[k].distance(atom->x[i]) < support) fastest = std::max(fastest, -departure(i, k));
@@ -360,14 +360,14 @@ bool FixWallSPH::moves_beside(int i)
 {
   if (!any_moves || !query(i)) return false;
   return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
-    return wall.moves() && wall.distance(atom->x[i]) < pair->support(atom->type[i]);
+    return wall.moves() && wall.distance(atom->x[i]) < fluid->support(atom->type[i]);
   });
 }
 
 void FixWallSPH::add_to(ConcentrationGradient &crowd, int i)
 {
   if (!query(i)) return;
-  const double support = pair->support(atom->type[i]);
+  const double support = fluid->support(atom->type[i]);
   const int dim = domain->dimension;
   crowd.cover += joint_lambda(near);
   for (std::size_t k = 0; k < walls.size(); k++) {

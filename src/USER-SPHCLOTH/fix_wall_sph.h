@@ -23,7 +23,7 @@ FixStyle(wall/sph,FixWallSPH);
 namespace LAMMPS_NS {
 
 class ArgReader;
-class PairSPHTait;
+class FluidState;
 
 class FixWallSPH : public Fix, public FluidBoundary {
  public:
@@ -73,7 +73,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   };
 
   std::string label;
-  PairSPHTait *pair;
+  FluidState *fluid;
   std::vector<Wall> walls;
   bool slip, any_variable, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own

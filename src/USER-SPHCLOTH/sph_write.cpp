@@ -4,9 +4,9 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <cerrno>
@@ -26,8 +26,8 @@ void SPHWrite::command(int narg, char **arg)
 {
   if (!domain->box_exist)
     error->all(FLERR, "{}: there is no box yet: use create_box or read_data before", STYLE);
-  pair = dynamic_cast<PairSPHTait *>(force->pair_match("sph/tait", 1));
-  if (!pair)
+  fluid = FluidState::find(force);
+  if (!fluid)
     error->all(FLERR, "{}: pair_style {} has no kernel: use 'pair_style sph/tait'", STYLE,
                force->pair_style ? force->pair_style : "none");
 
@@ -44,18 +44,18 @@ void SPHWrite::write_kernel(ArgReader &args)
   const int n = args.integer("number of rows", 2, MOST_ROWS);
   const std::string file = args.word("file");
   args.end();
-  if (!pair->interact(i, j))
+  if (!(fluid->reach(i, j) > 0.0))
     error->all(FLERR,
                "{}: types {} and {} are boundaries that never look at each other: give at least "
                "one fluid type",
                STYLE, i, j);
 
-  const double support = pair->support(i, j);
+  const double support = fluid->support(i, j);
   std::string table = fmt::format("# kernel {} of types {} and {}, support {}, dimension {}, "
                                   "units {}\n# r W dW/dr\n",
-                                  kernel_word(pair->kernel()), i, j, support, domain->dimension,
-                                  update->unit_style);
-  with_kernel(pair->kernel(), [&](auto kernel) {
+                                  kernel_word(fluid->options.kernel), i, j, support,
+                                  domain->dimension, update->unit_style);
+  with_kernel(fluid->options.kernel, [&](auto kernel) {
     using K = decltype(kernel);
     const KernelScale scale = kernel_scale<K>(support, domain->dimension);
     for (int k = 0; k < n; k++) {
@@ -77,19 +77,19 @@ void SPHWrite::write_state(ArgReader &args)
   if (low >= high)
     error->all(FLERR, "{}: density {} to {} is no range: give the lower one first", STYLE, low,
                high);
-  if (!pair->is_fluid(i))
+  if (!fluid->is_fluid(i))
     error->all(FLERR, "{}: type {} is a boundary and has no equation of state: give a fluid type",
                STYLE, i);
 
-  const Tait &eos = pair->equation_of_state(i);
+  const Tait &eos = fluid->equation_of_state(i);
   std::string table = fmt::format("# equation of state of type {}, rest density {}, units {}\n"
                                   "# density pressure sound energy/mass\n",
                                   i, eos.rho0, update->unit_style);
   for (int k = 0; k < n; k++) {
     const double rho = low + (high - low) * k / (n - 1.0);
     table += fmt::format("{:.15g} {:.15g} {:.15g} {:.15g}\n", rho,
-                         pair->acting_pressure(eos, rho) * force->mvv2e * force->nktv2p,
-                         eos.sound_speed(rho), pair->stored_energy(eos, rho) * force->mvv2e);
+                         fluid->acting_pressure(eos, rho) * force->mvv2e * force->nktv2p,
+                         eos.sound_speed(rho), fluid->stored_energy(eos, rho) * force->mvv2e);
   }
   append(file, table);
 }
@@ -97,7 +97,7 @@ void SPHWrite::write_state(ArgReader &args)
 int SPHWrite::read_type(ArgReader &args, const std::string &what) const
 {
   const int itype = args.integer(what, 1, atom->ntypes);
-  if (!pair->has_role(itype))
+  if (!fluid->has_role(itype))
     error->all(FLERR, "{}: nothing was said of type {}: use 'pair_coeff {} {} fluid ...' before",
                STYLE, itype, itype, itype);
   return itype;

@@ -16,15 +16,15 @@ CommandStyle(sph_write,SPHWrite);
 namespace LAMMPS_NS {
 
 class ArgReader;
-class PairSPHTait;
+class FluidState;
 
 class SPHWrite : public Command {
  public:
-  SPHWrite(class LAMMPS *lmp_) : Command(lmp_), pair(nullptr) {}
+  SPHWrite(class LAMMPS *lmp_) : Command(lmp_), fluid(nullptr) {}
   void command(int, char **) override;
 
  private:
-  PairSPHTait *pair;
+  FluidState *fluid;
 
   void write_kernel(ArgReader &);
   void write_state(ArgReader &);

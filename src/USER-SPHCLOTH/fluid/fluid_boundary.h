@@ -1,6 +1,6 @@
-// What completes the kernel of fluid particles beside other particles: the planes of fix wall/sph and
-// the meshes of fix cloth/contact.  pair_style sph/tait calls these functions in this order while it
-// evaluates.
+// What completes the kernel of fluid particles beside other particles: the planes of fix wall/sph
+// and the meshes of fix cloth/contact.  pair_style sph/tait calls these functions in this order
+// while it evaluates.
 
 #ifndef SPHCLOTH_FLUID_FLUID_BOUNDARY_H
 #define SPHCLOTH_FLUID_FLUID_BOUNDARY_H
@@ -14,8 +14,8 @@ namespace LAMMPS_NS {
 
 class Modify;
 
-// Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of the
-// fluid that moves with it and the sound speed of that fluid; both 0 if it is dry
+// Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of
+// the fluid that moves with it and the sound speed of that fluid; both 0 if it is dry
 
 struct Wetting {
   double fluid_mass = 0.0, sound = 0.0;
@@ -43,11 +43,12 @@ class FluidBoundary {
   // Once more, for a particle with a time step of its own: the force of another p/rho^2 and `times`
   // the rest.  What was pushed before holds for energy, virial and rate.
   virtual void push_more(int i, double p_over_rho2, double times) = 0;
-  // What was pushed so far is not among the forces of the coming step: take(owned vertex, force) gets it,
-  // if the boundary has vertices.
+  // What was pushed so far is not among the forces of the coming step: take(owned vertex, force)
+  // gets it, if the boundary has vertices.
   using Take = std::function<void(int, const Eigen::Vector3d &)>;
   virtual void defer(const Take &take) = 0;
-  // All that was pushed acts so many times as long.  Forces on fluid particles are scaled elsewhere.
+  // All that was pushed acts so many times as long.  Forces on fluid particles are scaled
+  // elsewhere.
   virtual void prolong(double times) = 0;
 
   // all particles have been pushed

@@ -3,11 +3,11 @@
 #include "atom.h"
 #include "core/contact/point_triangle.h"
 #include "error.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "neighbor.h"
-#include "pair_sph_tait.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ void BoundaryMesh::find_places()
   for (std::size_t s = 0; s < places.size(); s++) places[s] = set->place(static_cast<int>(s));
 }
 
-// Until the next build particle and triangle come nearer by the skin at most, or go away by it.  Who is
-// beyond the border sees the fluid on both sides until then, and nothing is filled.
+// Until the next build particle and triangle come nearer by the skin at most, or go away by it.
+// Who is beyond the border sees the fluid on both sides until then, and nothing is filled.
 
 void BoundaryMesh::look(double list_skin, const std::function<double(int)> &reach)
 {
@@ -111,8 +111,8 @@ void BoundaryMesh::look(double list_skin, const std::function<double(int)> &reac
   }
 }
 
-// Of triangles with the distance of their boxes those that are within reach and may become the nearest,
-// sorted by their own distance.  The one with the nearest box tells most about the others.
+// Of triangles with the distance of their boxes those that are within reach and may become the
+// nearest, sorted by their own distance.  The one with the nearest box tells most about the others.
 
 void BoundaryMesh::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
 {
@@ -182,7 +182,8 @@ void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &clo
   }
 }
 
-// Of the space behind the plane only what the sheet hides is filled: what is beyond its border is seen.
+// Of the space behind the plane only what the sheet hides is filled: what is beyond its border is
+// seen.
 
 void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoint &closest) const
 {
@@ -223,23 +224,23 @@ void BoundaryMesh::sum_up(std::vector<Vec3> &amounts,
    all meshes
 ------------------------------------------------------------------------- */
 
-void MeshBoundary::init(PairSPHTait *fluid)
+void MeshBoundary::init(FluidState *of_pair_style)
 {
-  pair = fluid;
-  if (!pair)
+  fluid = of_pair_style;
+  if (!fluid)
     error->all(
         FLERR,
         "{}: 'wall' fills the kernel of fluid, and there is none: use 'pair_style sph/tait', "
         "or 'wall no'",
         label);
-  table = pair->wall_table();
+  table = fluid->wall_table();
   sheets.clear();
 }
 
 void MeshBoundary::add(const ContactMesh *mesh, TriangleSet *set)
 {
   for (int i = 0; i < atom->nlocal; i++)
-    if (mesh->has_vertex(i) && pair->is_boundary(atom->type[i]))
+    if (mesh->has_vertex(i) && fluid->is_boundary(atom->type[i]))
       rank_error(lmp, FLERR,
                  "{}: vertex {} is of type {}, a boundary type, and would press twice with 'wall': "
                  "use 'pair_coeff {} {} none', or 'wall no'",
@@ -251,17 +252,17 @@ double MeshBoundary::reach() const
 {
   double longest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++)
-    if (pair->is_fluid(t)) longest = std::max(longest, pair->support(t));
+    if (fluid->is_fluid(t)) longest = std::max(longest, fluid->support(t));
   return longest + neighbor->skin;
 }
 
-double MeshBoundary::support(int i) const { return pair->support(atom->type[i]); }
+double MeshBoundary::support(int i) const { return fluid->support(atom->type[i]); }
 
 void MeshBoundary::look()
 {
   for (BoundaryMesh &sheet : sheets)
     sheet.look(neighbor->skin, [this](int i) {
-      return atom->mask[i] & groupbit && pair->is_fluid(atom->type[i]) ? support(i) : 0.0;
+      return atom->mask[i] & groupbit && fluid->is_fluid(atom->type[i]) ? support(i) : 0.0;
     });
 }
 
@@ -339,7 +340,7 @@ Eigen::Vector3d MeshBoundary::velocity_from(const ClosestPoint &closest) const
 
 // Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.
 
-void MeshBoundary::push(int i, double p_over_rho2) 
+void MeshBoundary::push(int i, double p_over_rho2)
 {
   push(i, p_over_rho2 / inverse_gamma(i), 1.0, true);
 }
@@ -352,8 +353,8 @@ void MeshBoundary::push_more(int i, double p_over_rho2, double times)
 void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push)
 {
   const int type = atom->type[i];
-  const Tait &eos = pair->equation_of_state(type);
-  const double mass = atom_mass(atom, i), nu = pair->laminar_viscosity(type);
+  const Tait &eos = fluid->equation_of_state(type);
+  const double mass = atom_mass(atom, i), nu = fluid->type(type).nu;
   for_closest_points(i, [&](const ClosestPoint &closest) {
     const Vec3 velocity = velocity_from(closest);
     const double away = velocity.dot(closest.normal);
@@ -366,7 +367,7 @@ void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push
     sheets[closest.sheet].give(closest, -force_on);
     if (!first_push) return;
     atom->drho[i] += rise(closest).dot(velocity);
-    pair->add_virial(i, closest.distance * closest.normal, force_on);
+    fluid->add_virial(i, closest.distance * closest.normal, force_on);
     if (wetting_wanted) {
       const double moves = 2.0 * mass * covered(closest);
       sheets[closest.sheet].wet(closest, Vec3(moves, moves * eos.sound_speed(), 0.0));

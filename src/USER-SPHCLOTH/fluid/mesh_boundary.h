@@ -1,6 +1,7 @@
-// A mesh as a wall to the fluid beside it: what the kernel of a particle misses behind the nearest point
-// of the mesh is filled as behind a plane there, core/sph/plane_wall.h.  The mesh may be coarser than the
-// fluid: what a particle pushes is spread over the triangle by the weights of that point.
+// A mesh as a wall to the fluid beside it: what the kernel of a particle misses behind the nearest
+// point of the mesh is filled as behind a plane there, core/sph/plane_wall.h.  The mesh may be
+// coarser than the fluid: what a particle pushes is spread over the triangle by the weights of that
+// point.
 
 #ifndef SPHCLOTH_FLUID_MESH_BOUNDARY_H
 #define SPHCLOTH_FLUID_MESH_BOUNDARY_H
@@ -17,7 +18,7 @@
 
 namespace LAMMPS_NS {
 
-class PairSPHTait;
+class FluidState;
 
 // the point of a mesh that is nearest to a particle
 
@@ -39,8 +40,8 @@ class BoundaryMesh : protected Pointers {
 
   BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
 
-  // After each list build: whom each particle may be nearest to until the next one.  reach(i): of the
-  // kernel of an owned particle, 0 for one that does not feel this wall.
+  // After each list build: whom each particle may be nearest to until the next one.  reach(i): of
+  // the kernel of an owned particle, 0 for one that does not feel this wall.
   void look(double skin, const std::function<double(int)> &reach);
 
   // where particles stand now, those within reach, added to what is there
@@ -89,9 +90,9 @@ class BoundaryMesh : protected Pointers {
 };
 
 // All meshes of a scene together.  Where they cover a share lambda of the kernel of a particle, its
-// density is the sum over particles over gamma = 1 - lambda, and forces are the gradient of the energy
-// with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where several meshes
-// are near, each counts as far as it does not lie behind nearer ones.
+// density is the sum over particles over gamma = 1 - lambda, and forces are the gradient of the
+// energy with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where
+// several meshes are near, each counts as far as it does not lie behind nearer ones.
 
 class MeshBoundary : protected Pointers, public FluidBoundary {
  public:
@@ -103,7 +104,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   }
 
   // anew for each run, with the meshes that are there
-  void init(PairSPHTait *);
+  void init(FluidState *);
   void add(const ContactMesh *, TriangleSet *);
   double reach() const;    // as far as fluid feels a mesh until the next list build
   void look();    // after each list build
@@ -129,7 +130,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
  private:
   std::string label;
   const int groupbit;
-  PairSPHTait *pair = nullptr;
+  FluidState *fluid = nullptr;
   sphcloth::WallTable table;
   std::vector<BoundaryMesh> sheets;
   std::vector<ClosestPoint> closest_points;    // of one particle together, the nearest first

@@ -1,4 +1,4 @@
-// pair_coeff of pair_style sph/tait: reading, mixing, restart.
+// pair_style sph/tait and its pair_coeff: reading, mixing, restart.
 
 #include "fluid/sph_materials.h"
 
@@ -15,6 +15,7 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
+static const std::string STYLE = "pair_style sph/tait";
 static const std::string COEFF = "pair_coeff (sph/tait)";
 
 static const std::vector<std::string> PRESSURES = {"own", "mirror", "extrapolate"};
@@ -27,9 +28,41 @@ void SPHMaterials::allocate()
   unsettle();
 }
 
-const SPHMaterials::PairData &SPHMaterials::said(int i, int j) const
+const SPHMaterials::PairData &SPHMaterials::given(int i, int j) const
 {
   return pairs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
+}
+
+/* ----------------------------------------------------------------------
+   pair_style sph/tait H keyword value ...
+------------------------------------------------------------------------- */
+
+void SPHMaterials::read_options(int narg, char **arg)
+{
+  ArgReader args(lmp, STYLE, narg, arg);
+  unsettle();
+  options = Options();
+  options.support = args.positive("support radius H");
+  while (args.more()) {
+    const std::string keyword = args.word("keyword");
+    if (keyword == "kernel") {
+      std::vector<std::string> names;
+      for (KernelName k : ALL_KERNELS) names.push_back(kernel_word(k));
+      options.kernel = ALL_KERNELS[args.choice(keyword, names)];
+    } else if (keyword == "tension")
+      options.tension = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "precision")
+      options.precision = args.choice(keyword, {"double", "mixed"}) ? Precision::MIXED
+                                                                    : Precision::DOUBLE;
+    else if (keyword == "density")
+      options.continuity = args.choice(keyword, {"summation", "continuity"});
+    else if (keyword == "delta")
+      options.delta = args.at_least(keyword, 0.0);
+    else if (keyword == "reinit")
+      options.reinit = args.integer(keyword, 0, 1000000000);
+    else
+      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit");
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -163,16 +196,16 @@ SPHMaterials::PairData SPHMaterials::read_pair(ArgReader &args) const
    the mass of a lattice at rest
 ------------------------------------------------------------------------- */
 
-double SPHMaterials::lattice_sum(int i, double spacing, KernelName kernel) const
+double SPHMaterials::lattice_sum(int i, double spacing) const
 {
-  return with_kernel(kernel, [&](auto k) {
+  return with_kernel(options.kernel, [&](auto k) {
     return sphcloth::lattice_sum<decltype(k)>(support(i, i), spacing, domain->dimension);
   });
 }
 
 // A mass that was set here follows a new kernel, support or spacing; one of the user must agree.
 
-void SPHMaterials::set_lattice_masses(KernelName kernel)
+void SPHMaterials::set_lattice_masses()
 {
   constexpr double TOLERANCE = 1e-3, MAX_NEIGHBORS_ALONG_AXIS = 50.0;
   for (std::size_t k = 1; k < types.size(); k++) {
@@ -185,7 +218,7 @@ void SPHMaterials::set_lattice_masses(KernelName kernel)
                  "{}: spacing of type {} is '{}' with a support of {}: give the distance between "
                  "neighbors on the lattice, from {} to {}",
                  COEFF, i, t.spacing, radius, radius / MAX_NEIGHBORS_ALONG_AXIS, radius);
-    const double mass = t.eos.rho0 / lattice_sum(i, t.spacing, kernel);
+    const double mass = t.eos.rho0 / lattice_sum(i, t.spacing);
     if (atom->rmass)
       error->all(FLERR,
                  "{}: spacing of type {} is '{}', but every particle has a mass of its own here: "
@@ -208,8 +241,8 @@ void SPHMaterials::set_lattice_masses(KernelName kernel)
 
 double SPHMaterials::find_support(int i, int j) const
 {
-  if (said(i, j).support > 0.0) return said(i, j).support;
-  if (i == j) return default_support;
+  if (given(i, j).support > 0.0) return given(i, j).support;
+  if (i == j) return options.support;
   if (is_fluid(i) == is_fluid(j)) return 0.5 * (support(i, i) + support(j, j));
   return is_fluid(i) ? support(i, i) : support(j, j);
 }
@@ -246,19 +279,19 @@ void SPHMaterials::unsettle()
 
 double SPHMaterials::nu(int i, int j) const
 {
-  const double own = said(i, j).nu;
+  const double own = given(i, j).nu;
   return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).nu + fluid_of(j, i).nu);
 }
 
 double SPHMaterials::alpha(int i, int j) const
 {
-  const double own = said(i, j).alpha;
+  const double own = given(i, j).alpha;
   return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).alpha + fluid_of(j, i).alpha);
 }
 
-PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
+PairTerms SPHMaterials::mix(int i, int j) const
 {
-  const PairData &own = said(i, j);
+  const PairData &own = given(i, j);
   const TypeData &a = fluid_of(i, j), &b = fluid_of(j, i);
   if (own.stiffness > 0.0 && types[i].role == types[j].role)
     error->all(FLERR,
@@ -270,7 +303,7 @@ PairTerms SPHMaterials::mix(int i, int j, KernelName kernel) const
   const double radius = support(i, j), smoothing = 0.5 * radius;
   const double sound = 0.5 * (a.eos.sound_speed() + b.eos.sound_speed());
   t.kernel = with_kernel(
-      kernel, [&](auto k) { return kernel_scale<decltype(k)>(radius, domain->dimension); });
+      options.kernel, [&](auto k) { return kernel_scale<decltype(k)>(radius, domain->dimension); });
   t.nu = nu(i, j);
   t.monaghan = alpha(i, j) * sound * smoothing;
   t.soft = 0.01 * smoothing * smoothing;
@@ -289,9 +322,43 @@ double SPHMaterials::reach(int i, int j) const
   return support(i, j);
 }
 
+double SPHMaterials::acting_pressure(const Tait &eos, double rho) const
+{
+  const double p = eos.pressure(rho);
+  return options.tension ? p : std::max(p, 0.0);
+}
+
+double SPHMaterials::stored_energy(const Tait &eos, double rho) const
+{
+  return rho < eos.rho0 && !options.tension ? 0.0 : eos.energy(rho);
+}
+
+WallTable SPHMaterials::wall_table() const
+{
+  return with_kernel(options.kernel, [&](auto kernel) {
+    return sphcloth::wall_table<decltype(kernel)>(domain->dimension);
+  });
+}
+
 /* ----------------------------------------------------------------------
    restart and data files
 ------------------------------------------------------------------------- */
+
+void SPHMaterials::write_options(FILE *fp) const { fwrite(&options, sizeof(Options), 1, fp); }
+
+void SPHMaterials::read_options(FILE *fp)
+{
+  if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
+  MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
+  if (std::find(std::begin(ALL_KERNELS), std::end(ALL_KERNELS), options.kernel) ==
+          std::end(ALL_KERNELS) ||
+      !(options.support > 0.0))
+    error->all(FLERR,
+               "{}: its settings in the restart file are damaged, or of another release of "
+               "sphcloth: take another file",
+               STYLE);
+  unsettle();
+}
 
 void SPHMaterials::write_restart(FILE *fp) const
 {
@@ -319,7 +386,7 @@ std::string SPHMaterials::words(int i, int j) const
     return value > 0.0 ? fmt::format(" {} {}", keyword, value) : "";
   };
   const TypeData &t = types[i];
-  const PairData &own = said(i, j);
+  const PairData &own = given(i, j);
   if (i != j)
     return fmt::format("support {} nu {} alpha {}", support(i, j), nu(i, j), alpha(i, j)) +
         only_if(own.stiffness, "k");

@@ -1,4 +1,5 @@
-// What the user said of the types of pair_style sph/tait, and what follows from it for a pair.
+// Options of pair_style sph/tait and coefficients of its types, and what follows from them for a
+// pair.
 
 #ifndef SPHCLOTH_FLUID_SPH_MATERIALS_H
 #define SPHCLOTH_FLUID_SPH_MATERIALS_H
@@ -6,6 +7,7 @@
 #include "pointers.h"
 
 #include "core/sph/fluid.h"
+#include "core/sph/plane_wall.h"
 
 #include <string>
 #include <vector>
@@ -17,6 +19,19 @@ class ArgReader;
 class SPHMaterials : protected Pointers {
  public:
   SPHMaterials(class LAMMPS *lmp_) : Pointers(lmp_) {}
+
+  struct Options {    // of pair_style, plain for the restart file
+    sphcloth::KernelName kernel = sphcloth::KernelName::WENDLAND_C2;
+    sphcloth::Precision precision = sphcloth::Precision::DOUBLE;
+    double support = 0.0;
+    int tension = 0;       // 1: negative pressure acts, 0: it counts as zero
+    int continuity = 0;    // 1: density from its rate, 0: by summation
+    double delta = 0.1;    // diffusion of the density in the rate
+    int reinit = 0;        // steps between re-initializations of that density, 0: never
+  } options;
+  void read_options(int narg, char **arg);
+  bool integrates_density() const { return options.continuity; }
+  bool diffuses() const { return options.continuity && options.delta > 0.0; }
 
   // of a boundary: none of its own; as much as each fluid particle; the mean of the fluid around it
   enum class Pressure : int { OWN, MIRROR, EXTRAPOLATE };
@@ -31,7 +46,7 @@ class SPHMaterials : protected Pointers {
     double lattice_mass = 0.0;    // and that mass, once it is set
   };
 
-  // forgets everything
+  // no type has a role
   void allocate();
 
   // pair_coeff I I fluid|boundary|none ... or pair_coeff I J ...; marks what is set
@@ -40,39 +55,48 @@ class SPHMaterials : protected Pointers {
   const TypeData &type(int i) const { return types[i]; }
   bool is_fluid(int i) const { return types[i].role == sphcloth::Role::FLUID; }
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
+  const sphcloth::Tait &equation_of_state(int i) const { return types[i].eos; }
+  // is the volume of its particles that which they share among themselves?
+  bool is_measured(int i) const { return is_boundary(i) && !(types[i].volume > 0.0); }
   bool extrapolates(int i) const
   {
     return is_boundary(i) && types[i].pressure == Pressure::EXTRAPOLATE;
   }
+  double support(int i) const { return support(i, i); }
   double support(int i, int j) const
   {
     return supports.empty() ? find_support(i, j) : supports[i * types.size() + j];
   }
   // laminar and artificial together
   double viscosity(int i) const { return viscosities.empty() ? find_viscosity(i) : viscosities[i]; }
-  // keeps both at hand, until something is said anew
+  // caches both until the next read()
   void settle();
   void unsettle();
   // number density of a square or cubic lattice by summation (1)
-  double lattice_sum(int i, double spacing, sphcloth::KernelName) const;
+  double lattice_sum(int i, double spacing) const;
   // gives the types with a spacing the mass with which such a lattice has the rest density
-  void set_lattice_masses(sphcloth::KernelName);
+  void set_lattice_masses();
+  // what acts and what is stored, per mass, at a density: nothing below rest without tension
+  double acting_pressure(const sphcloth::Tait &, double rho) const;
+  double stored_energy(const sphcloth::Tait &, double rho) const;
+  // what a plane wall adds to the density
+  sphcloth::WallTable wall_table() const;
   double nu(int i, int j) const;
   double alpha(int i, int j) const;
-  // one pair, with the kernel's scale
-  sphcloth::PairTerms mix(int i, int j, sphcloth::KernelName) const;
+  // the terms of a pair of types, with the kernel's scale
+  sphcloth::PairTerms mix(int i, int j) const;
   // up to where i lists j, without the skin; 0: never
   double reach(int i, int j) const;
 
+  void write_options(FILE *) const;
+  void read_options(FILE *);
   void write_restart(FILE *) const;
   void read_restart(FILE *);
   // the words of pair_coeff I I, or of I J with what follows from mixing
   std::string words(int i, int j) const;
 
-  double default_support = 0.0;
-
  private:
-  struct PairData {    // < 0: not said
+  struct PairData {    // < 0: not given
     double support = -1.0, nu = -1.0, alpha = -1.0, stiffness = -1.0;
   };
 
@@ -83,7 +107,7 @@ class SPHMaterials : protected Pointers {
 
   double find_support(int i, int j) const;
   double find_viscosity(int i) const;
-  const PairData &said(int i, int j) const;
+  const PairData &given(int i, int j) const;
   // the fluid of a pair: its own, or the partner's of a boundary
   const TypeData &fluid_of(int i, int j) const { return types[is_fluid(i) ? i : j]; }
   TypeData read_fluid(ArgReader &, PairData &) const;

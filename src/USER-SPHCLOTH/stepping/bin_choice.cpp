@@ -4,9 +4,9 @@
 
 #include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
+#include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
-#include "pair_sph_tait.h"
 #include "stepping/step_report.h"
 #include "update.h"
 
@@ -28,13 +28,14 @@ static constexpr int UPDATES_PER_VERTEX = 2;
 static constexpr double GAIN_TO_GO_ON = 0.8;
 
 BinChoice::BinChoice(LAMMPS *lmp_, const SteppingParts &parts_, BlockState &state_) :
-    Pointers(lmp_), parts(parts_), state(state_), pair(nullptr), max_difference(1), finest_vertex(0)
+    Pointers(lmp_), parts(parts_), state(state_), fluid(nullptr), max_difference(1),
+    finest_vertex(0)
 {
 }
 
-void BinChoice::init(PairSPHTait *style)
+void BinChoice::init(FluidState *style)
 {
-  pair = style;
+  fluid = style;
   vertices.n = -1;
   max_difference = parts.options.block.max_bin_difference();
   const int n = atom->ntypes + 1;
@@ -50,8 +51,9 @@ void BinChoice::init(PairSPHTait *style)
 
 int BinChoice::find_max_difference(int type, int neighbor_type) const
 {
-  if (!pair->is_fluid(type) || !pair->is_fluid(neighbor_type)) return max_difference;
-  const double octaves = std::round(std::log2(pair->support(type) / pair->support(neighbor_type)));
+  if (!fluid->is_fluid(type) || !fluid->is_fluid(neighbor_type)) return max_difference;
+  const double octaves =
+      std::round(std::log2(fluid->support(type) / fluid->support(neighbor_type)));
   return octaves > 0.0 ? std::clamp(2 - static_cast<int>(octaves), 0, max_difference)
                        : max_difference;
 }
@@ -64,7 +66,7 @@ void BinChoice::choose()
   if (!clock.begun() || clock.line.ended())
     begin_base_step();
   else {
-    want_steps(pair->active_particles(), true);
+    want_steps(fluid->active_particles(), true);
     find_bins();
   }
   if (!clock.uniform) limit_differences();
@@ -135,13 +137,13 @@ const BinChoice::Vertices &BinChoice::find_vertices()
 void BinChoice::begin_base_step()
 {
   BlockClock &clock = state.clock;
-  const std::vector<int> &active = pair->active_particles();
+  const std::vector<int> &active = fluid->active_particles();
   StepLimit tightest = want_steps(active, false);
   BaseStep base = find_base_step(tightest);
   if (!base.uniform) {
     in_flight.clear();
     for (const int i : active)
-      if (pair->p_over_rho2()[i] == 0.0) in_flight.push_back(i);
+      if (fluid->p_over_rho2()[i] == 0.0) in_flight.push_back(i);
     const StepLimit among_neighbors = want_steps(in_flight, true);
     tightest.tighten(among_neighbors.dt, among_neighbors.by);
     base = find_base_step(tightest);
@@ -185,7 +187,7 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
     return base;
   }
   WantedSteps here, anywhere;
-  for (const int i : pair->active_particles()) here.add(wanted[i], shortest);
+  for (const int i : fluid->active_particles()) here.add(wanted[i], shortest);
   here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // whatever they want
   MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
   base.length = anywhere.base_step_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
@@ -197,7 +199,7 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
 
 bool BinChoice::may_gain(double shortest, double gain)
 {
-  const std::vector<int> &active = pair->active_particles();
+  const std::vector<int> &active = fluid->active_particles();
   const double of_vertices = UPDATES_PER_VERTEX * find_vertices().n;
   double exact = of_vertices;    // updates while a uniform step has `equal` of them
   for (const int i : active) exact += shortest / wanted[i];
@@ -232,7 +234,7 @@ void BinChoice::find_bins()
   const double *by = columns[Columns::BY], *event = columns[Columns::EVENT];
   const double *its_reach = columns[Columns::REACH];
   double *its_bin = columns[Columns::BIN], *before = columns[Columns::BIN_BEFORE];
-  for (const int i : pair->active_particles()) {
+  for (const int i : fluid->active_particles()) {
     before[i] = event[i] == Columns::NEW ? StepKey::FIRST
         : event[i] == Columns::WOKEN     ? StepKey::BROKEN
                                          : its_bin[i];
@@ -266,22 +268,22 @@ void BinChoice::limit_differences()
   std::vector<int> &bin = state.bin;
   double *its_bin = state.columns[Columns::BIN];
   for (const int i : state.boundaries) bin[i] = vertex_bin(i);
-  for (const int i : pair->active_particles()) {
+  for (const int i : fluid->active_particles()) {
     bin[i] = static_cast<int>(its_bin[i]);
-    if (pair->is_beside_mesh(i)) its_bin[i] = bin[i] = std::max(bin[i], finest_vertex);
+    if (fluid->is_beside_mesh(i)) its_bin[i] = bin[i] = std::max(bin[i], finest_vertex);
   }
   state.forward_bins();
-  if (state.clock.all_synchronized()) pair->order().measure_block_ranges(bin.data());
-  for (const int i : pair->active_particles())
+  if (state.clock.all_synchronized()) fluid->order().measure_block_ranges(bin.data());
+  for (const int i : fluid->active_particles())
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
-  for (const int i : pair->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
+  for (const int i : fluid->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
 }
 
 // for a neighbor, or for a particle a little outside the support?
 
 bool BinChoice::is_too_coarse(int i) const
 {
-  DualLists &lists = pair->order();
+  DualLists &lists = fluid->order();
   const int slot = lists.slot(i), own = atom->type[i];
   for (int t = 1; t <= atom->ntypes; t++)
     if (lists.any_above(state.bin[i] + allowed_difference(own, t), slot, t, state.bin.data(),
@@ -296,9 +298,9 @@ int BinChoice::bin_beside(int i) const
   int own = bin[i];
   for (int t = 1; t <= atom->ntypes; t++) {
     const int allowed = allowed_difference(atom->type[i], t);
-    const NeighborSpan near = pair->neighbors(i, t);
+    const NeighborSpan near = fluid->neighbors(i, t);
     for (int k = 0; k < near.n; k++)
-      if (const int j = near.of[k]; bin[j] - allowed > own && pair->inside_support(i, j))
+      if (const int j = near.of[k]; bin[j] - allowed > own && fluid->inside_support(i, j))
         own = bin[j] - allowed;
   }
   return own;
@@ -309,7 +311,7 @@ int BinChoice::bin_beside(int i) const
 int BinChoice::vertex_bin(int i) const
 {
   const double dt = parts.rows[i][UpdateRows::OWN_STEP];
-  if (pair->is_fluid(atom->type[i]) || !(dt > 0.0)) return 0;
+  if (fluid->is_fluid(atom->type[i]) || !(dt > 0.0)) return 0;
   return state.clock.line.bin_of(dt) + max_difference;
 }
 
@@ -317,11 +319,11 @@ void BinChoice::begin_steps()
 {
   const double now = physical_time(update);
   BlockColumns &columns = state.columns;
-  const double *p_over_rho2 = pair->p_over_rho2(), *its_bin = columns[Columns::BIN];
+  const double *p_over_rho2 = fluid->p_over_rho2(), *its_bin = columns[Columns::BIN];
   const double half_of_all = 0.5 * state.clock.smallest_ticks();
   double *last = columns[Columns::P_OVER_RHO2], *reach = columns[Columns::REACH];
   double *event = columns[Columns::EVENT];
-  for (const int i : pair->active_particles()) {
+  for (const int i : fluid->active_particles()) {
     if (state.clock.uniform) {
       reach[i] = half_of_all;
       event[i] = Columns::NONE;

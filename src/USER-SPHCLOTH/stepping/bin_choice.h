@@ -19,7 +19,7 @@ class BinChoice : protected Pointers {
  public:
   BinChoice(LAMMPS *, const SteppingParts &, BlockState &);
 
-  void init(PairSPHTait *);
+  void init(FluidState *);
   // for particles whose step begins
   void choose();
   // of the vertices of this rank, which move in every smallest step
@@ -39,7 +39,7 @@ class BinChoice : protected Pointers {
 
   const SteppingParts parts;
   BlockState &state;
-  PairSPHTait *pair;
+  FluidState *fluid;
   int max_difference;    // of the time bins of neighbors
   std::vector<int> max_difference_of;    // the same of a pair of types, [(ntypes+1)^2]
   int finest_vertex;    // time bin of the shortest step of a vertex

@@ -4,8 +4,8 @@
 
 #include "atom.h"
 #include "core/util/bytes.h"
+#include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void BlockImpulses::note_total()
 
 void BlockImpulses::copy_forces(std::vector<double> &to) const
 {
-  const std::vector<int> &active = state.pair->active_particles();
+  const std::vector<int> &active = state.fluid->active_particles();
   const std::size_t n = atom->nlocal;
   if (2 * active.size() > n) {
     std::copy_n(atom->f[0], 3 * n, to.begin());
@@ -48,7 +48,7 @@ void BlockImpulses::note_external_forces()
   if (!needs_external()) return;
   double *external[3];
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
-  for (const int i : state.pair->active_particles())
+  for (const int i : state.fluid->active_particles())
     for (int d = 0; d < 3; d++) external[d][i] = atom->f[i][d] - total[3 * i + d];
 }
 
@@ -65,12 +65,12 @@ void BlockImpulses::apply()
 void BlockImpulses::apply_uniform()
 {
   state.forget_inactive();
-  state.pair->push_boundaries();
+  state.fluid->push_boundaries();
   const double times = state.clock.uniform_span;
   if (times == 1.0) return;
   for (int i = 0; i < atom->nlocal; i++)
     for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
-  state.pair->prolong_walls(times);
+  state.fluid->prolong_walls(times);
 }
 
 // A particle whose neighbors all take its step, and took the same before, has the force itself for
@@ -80,24 +80,24 @@ void BlockImpulses::apply_by_bin()
 {
   find_spans();
   state.forward_impulses();
-  if (state.clock.all_synchronized()) state.pair->order().measure_block_ranges(state.key.data());
+  if (state.clock.all_synchronized()) state.fluid->order().measure_block_ranges(state.key.data());
   state.clear_ghost_marks();
   state.marked.clear();
   slots.clear();
-  for (const int i : state.pair->active_particles()) {
+  for (const int i : state.fluid->active_particles()) {
     if (state.is_asleep(i))    // since now
       std::fill_n(atom->f[i], 3, 0.0);
     else if (neighbors_share_step(i))
       add_pair_force(i, state.span[i] - 1.0);
     else {
       add_pair_force(i, -1.0);
-      slots.push_back(state.pair->order().slot(i));
+      slots.push_back(state.fluid->order().slot(i));
     }
   }
   if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
   state.reverse_marks();
   wake_marked();
-  state.pair->give_impulses(slots, state.impulse.data(), state.span.data());
+  state.fluid->give_impulses(slots, state.impulse.data(), state.span.data());
 }
 
 // For how long does the energy of each particle act?  What an impulse before gave too much is taken
@@ -106,10 +106,10 @@ void BlockImpulses::apply_by_bin()
 void BlockImpulses::find_spans()
 {
   const double smallest = state.clock.smallest_ticks();
-  const double *p_over_rho2 = state.pair->p_over_rho2();
+  const double *p_over_rho2 = state.fluid->p_over_rho2();
   const BlockColumns &columns = state.columns;
   state.select_impelled();
-  for (const int i : state.pair->active_particles()) {
+  for (const int i : state.fluid->active_particles()) {
     if (state.is_asleep(i)) {
       state.set_inactive(i);
       continue;
@@ -129,9 +129,9 @@ void BlockImpulses::add_pair_force(int i, double times)
 {
   if (times != 0.0)
     for (int d = 0; d < 3; d++) atom->f[i][d] += times * pair_forces[3 * i + d];
-  const double p_over_rho2 = state.pair->p_over_rho2()[i];
+  const double p_over_rho2 = state.fluid->p_over_rho2()[i];
   if (state.span[i] != 1.0 || state.impulse[i] != p_over_rho2)
-    state.pair->push_walls_more(i, state.impulse[i] - p_over_rho2, state.span[i] - 1.0);
+    state.fluid->push_walls_more(i, state.impulse[i] - p_over_rho2, state.span[i] - 1.0);
 }
 
 // Do the particle and its neighbors have impulses for the same time?  Neighbors that have none are
@@ -139,7 +139,7 @@ void BlockImpulses::add_pair_force(int i, double times)
 
 bool BlockImpulses::neighbors_share_step(int i)
 {
-  DualLists &lists = state.pair->order();
+  DualLists &lists = state.fluid->order();
   const int slot = lists.slot(i), own = state.key[i];
   bool share = StepKey::before(own) != StepKey::BROKEN;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -156,7 +156,7 @@ bool BlockImpulses::neighbors_share_step(int i)
 bool BlockImpulses::examine(int i, int type, const NeighborSpan &others)
 {
   const std::vector<int> &key = state.key;
-  if (state.clock.all_synchronized() && !sleeping.enabled() && state.pair->is_fluid(type))
+  if (state.clock.all_synchronized() && !sleeping.enabled() && state.fluid->is_fluid(type))
     return false;
   const int allowed = state.options.max_bin_difference();
   bool share = true;
@@ -173,7 +173,7 @@ bool BlockImpulses::examine(int i, int type, const NeighborSpan &others)
     share = false;
     if (StepKey::before(key[j]) != StepKey::INACTIVE) continue;
     const bool slow = StepKey::bin(key[i]) - StepKey::bin(key[j]) > allowed;
-    const bool wakes = state.options.waking && slow && state.pair->inside_support(i, j);
+    const bool wakes = state.options.waking && slow && state.fluid->inside_support(i, j);
     state.mark_atom(j, BlockState::FEELS_IMPULSE | (wakes ? BlockState::WAKE : 0));
   }
   return share;
@@ -181,7 +181,7 @@ bool BlockImpulses::examine(int i, int type, const NeighborSpan &others)
 
 void BlockImpulses::disturb_sleeping(int i, int j)
 {
-  if (!state.options.waking || !state.pair->inside_support(i, j)) return;
+  if (!state.options.waking || !state.fluid->inside_support(i, j)) return;
   state.mark_atom(j, sleeping.is_slow(i) ? BlockState::FEELS_IMPULSE : BlockState::WAKE);
 }
 
@@ -190,7 +190,7 @@ void BlockImpulses::wake_marked()
   const double now = physical_time(update);
   for (const int i : state.marked) {
     const bool asleep = StepKey::before(state.key[i]) == StepKey::SLEEPING;
-    if (!asleep) slots.push_back(state.pair->order().slot(i));
+    if (!asleep) slots.push_back(state.fluid->order().slot(i));
     if (state.mark[i] & BlockState::WAKE || (asleep && sleeping.has_slept_long(i, now)))
       sleeping.wake(i);
     state.mark[i] = BlockState::NOT_MARKED;

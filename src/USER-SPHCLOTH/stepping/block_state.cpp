@@ -5,8 +5,8 @@
 #include "atom.h"
 #include "comm.h"
 #include "core/util/bytes.h"
+#include "fluid/fluid_state.h"
 #include "neighbor.h"
-#include "pair_sph_tait.h"
 
 #include <algorithm>
 
@@ -16,14 +16,14 @@ using namespace sphcloth;
 using Columns = BlockColumns;
 
 BlockState::BlockState(LAMMPS *lmp_, Fix *fix_, const BlockOptions &options_) :
-    Pointers(lmp_), fix(fix_), options(options_), pair(nullptr), coarsest(0), stage(BINS),
+    Pointers(lmp_), fix(fix_), options(options_), fluid(nullptr), coarsest(0), stage(BINS),
     inactive_known(false)
 {
 }
 
-void BlockState::init(PairSPHTait *style)
+void BlockState::init(FluidState *style)
 {
-  pair = style;
+  fluid = style;
   inactive_known = false;
 }
 
@@ -79,7 +79,7 @@ void BlockState::refresh_inactive()
   impelled.clear();
   for (int i = 0; i < atom->nlocal; i++) {
     mark[i] = NOT_MARKED;
-    if (pair->is_fluid(atom->type[i]))
+    if (fluid->is_fluid(atom->type[i]))
       bin[i] = columns.bin(i);
     else
       boundaries.push_back(i);
@@ -92,7 +92,7 @@ void BlockState::select_impelled()
   refresh_inactive();
   for (const int i : impelled) set_inactive(i);
   for (const int i : boundaries) set_inactive(i);
-  impelled = pair->active_particles();
+  impelled = fluid->active_particles();
 }
 
 // An inactive particle has no impulse, but the pressure of a boundary, or of a sleeping particle,
@@ -100,11 +100,11 @@ void BlockState::select_impelled()
 
 void BlockState::set_inactive(int i)
 {
-  const bool fluid = pair->is_fluid(atom->type[i]), asleep = fluid && is_asleep(i);
+  const bool is_fluid = fluid->is_fluid(atom->type[i]), asleep = is_fluid && is_asleep(i);
   span[i] = asleep ? -1.0 : 0.0;
-  impulse[i] = fluid && !asleep ? 0.0 : pair->p_over_rho2()[i];
+  impulse[i] = is_fluid && !asleep ? 0.0 : fluid->p_over_rho2()[i];
   key[i] = asleep ? StepKey::of(0, StepKey::SLEEPING)
-      : fluid     ? StepKey::of(columns.bin(i), StepKey::INACTIVE)
+      : is_fluid  ? StepKey::of(columns.bin(i), StepKey::INACTIVE)
                   : StepKey::BOUNDARY;
 }
 

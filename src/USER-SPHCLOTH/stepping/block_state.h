@@ -16,7 +16,7 @@
 
 namespace LAMMPS_NS {
 
-class PairSPHTait;
+class FluidState;
 
 // Where time is; plain, as it stands in restart files
 
@@ -85,7 +85,7 @@ class BlockState : protected Pointers {
  public:
   Fix *const fix;    // whose group is integrated, and which communicates
   const BlockOptions &options;
-  PairSPHTait *pair;
+  FluidState *fluid;
   BlockColumns columns;
   BlockClock clock;
   int coarsest;    // time bin of the longest step that may begin now
@@ -103,7 +103,7 @@ class BlockState : protected Pointers {
 
   BlockState(LAMMPS *, Fix *, const BlockOptions &);
 
-  void init(PairSPHTait *);
+  void init(FluidState *);
   bool is_asleep(int i) const { return columns.is_asleep(i); }
   double half_step(int i) const;    // in ticks
 

@@ -3,8 +3,8 @@
 #include "stepping/block_steps.h"
 
 #include "atom.h"
+#include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
-#include "pair_sph_tait.h"
 #include "stepping/kick_drift.h"
 #include "stepping/step_report.h"
 #include "update.h"
@@ -27,12 +27,12 @@ BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClo
   for (int i = 0; i < atom->nlocal; i++) state.add_particle(i);
 }
 
-void BlockSteps::init(PairSPHTait *style)
+void BlockSteps::init(FluidState *style)
 {
   Stepper::init(style);
   state.init(style);
   bins.init(style);
-  pair->set_step_hooks(this);
+  fluid->set_step_hooks(this);
 }
 
 /* ----------------------------------------------------------------------
@@ -64,7 +64,7 @@ void BlockSteps::select_active()
   const double *bin = state.columns[Columns::BIN], *event = state.columns[Columns::EVENT];
   int n_active = 0, n = 0;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!pair->is_fluid(atom->type[i])) continue;
+    if (!fluid->is_fluid(atom->type[i])) continue;
     const bool active = bin[i] >= state.coarsest || event[i] != Columns::NONE;
     parts.rows[i][UpdateRows::ACTIVE] = active;
     n_active += active;
@@ -119,7 +119,7 @@ void BlockSteps::find_intervals(std::vector<double> &of_type) const
   std::vector<double> updates(of_type.size(), 0.0), particles = updates;
   for (int i = 0; i < atom->nlocal; i++) {
     const int type = atom->type[i];
-    if (!pair->is_fluid(type) || state.is_asleep(i)) continue;
+    if (!fluid->is_fluid(type) || state.is_asleep(i)) continue;
     updates[type] += std::ldexp(1.0, state.columns.bin(i) - state.clock.deepest);
     particles[type] += 1.0;
   }
@@ -130,7 +130,7 @@ void BlockSteps::find_intervals(std::vector<double> &of_type) const
 int BlockSteps::count_sleeping() const
 {
   int n = 0;
-  for (int i = 0; i < atom->nlocal; i++) n += pair->is_fluid(atom->type[i]) && state.is_asleep(i);
+  for (int i = 0; i < atom->nlocal; i++) n += fluid->is_fluid(atom->type[i]) && state.is_asleep(i);
   return n;
 }
 

@@ -30,7 +30,7 @@ class BlockSteps : public Stepper, public StepHooks {
   BlockSteps(LAMMPS *, const SteppingParts &, const BlockClock &);
 
   // what fix sph/integrate calls
-  void init(PairSPHTait *) override;
+  void init(FluidState *) override;
   void move() override;
   void end_step() override;
   void choose_step() override;

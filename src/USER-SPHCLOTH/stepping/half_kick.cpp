@@ -5,7 +5,7 @@
 #include "atom.h"
 #include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
-#include "pair_sph_tait.h"
+#include "fluid/fluid_state.h"
 
 #include <algorithm>
 
@@ -42,27 +42,27 @@ void HalfKick::find_spans()
   const double until = static_cast<double>(state.clock.line.now) - 0.5 * smallest;
   double *reach = state.columns[Columns::REACH];
   state.select_impelled();
-  for (const int i : state.pair->active_particles()) {
+  for (const int i : state.fluid->active_particles()) {
     const bool integrated = atom->mask[i] & state.fix->groupbit;
     const bool is_new = state.columns[Columns::EVENT][i] == Columns::NEW;
     const double behind = integrated && !is_new ? until - reach[i] : 0.0;
     state.span[i] = std::max(0.0, behind) / smallest;
-    state.impulse[i] = state.span[i] * state.pair->p_over_rho2()[i];
+    state.impulse[i] = state.span[i] * state.fluid->p_over_rho2()[i];
     if (behind > 0.0) reach[i] = until;
   }
 }
 
 void HalfKick::sum_impulses()
 {
-  PairSPHTait *pair = state.pair;
+  FluidState *fluid = state.fluid;
   slots.clear();
-  for (const int i : pair->active_particles()) {
-    if (state.span[i] > 0.0) pair->push_walls_more(i, state.impulse[i], state.span[i]);
-    slots.push_back(pair->order().slot(i));
+  for (const int i : fluid->active_particles()) {
+    if (state.span[i] > 0.0) fluid->push_walls_more(i, state.impulse[i], state.span[i]);
+    slots.push_back(fluid->order().slot(i));
   }
   for (const int i : state.boundaries)
-    if (pair->is_boundary(atom->type[i])) slots.push_back(pair->order().slot(i));
-  pair->give_impulses(slots, state.impulse.data(), state.span.data());
+    if (fluid->is_boundary(atom->type[i])) slots.push_back(fluid->order().slot(i));
+  fluid->give_impulses(slots, state.impulse.data(), state.span.data());
 }
 
 void HalfKick::kick()
@@ -70,7 +70,7 @@ void HalfKick::kick()
   const double step = state.clock.smallest_step();
   std::vector<double> &kicks = state.kicks;
   std::fill_n(kicks.begin(), 3 * atom->nlocal, 0.0);
-  for (const int i : state.pair->active_particles()) {
+  for (const int i : state.fluid->active_particles()) {
     if (!(atom->mask[i] & state.fix->groupbit)) continue;
     for (int d = 0; d < 3; d++) {
       kicks[3 * i + d] = step * limits.acceleration(i, atom->f[i][d]);
@@ -81,7 +81,7 @@ void HalfKick::kick()
   BlockColumns &columns = state.columns;
   for (const int i : state.boundaries)
     for (int d = 0; d < 3; d++) columns.deferred_impulse(d)[i] = step * atom->f[i][d];
-  state.pair->hand_over_pushes([&](int i, const Eigen::Vector3d &push) {
+  state.fluid->hand_over_pushes([&](int i, const Eigen::Vector3d &push) {
     for (int d = 0; d < 3; d++) columns.deferred_impulse(d)[i] += step * push[d];
   });
 }

@@ -2,10 +2,10 @@
 
 #include "stepping/particle_limits.h"
 
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
-#include "pair_sph_tait.h"
 
 #include <cmath>
 #include <limits>
@@ -13,42 +13,42 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void ParticleLimits::init(PairSPHTait *style, SteppingScheme scheme)
+void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
 {
-  pair = style;
+  fluid = style;
   asks_neighbors = scheme != SteppingScheme::GLOBAL;
   interpolates_density = scheme == SteppingScheme::INDIVIDUAL;
   types.assign(atom->ntypes + 1, FluidType());
   for (int t = 1; t <= atom->ntypes; t++) {
     FluidType &its = types[t];
-    its.support = pair->support(t);
-    if (!pair->is_fluid(t)) continue;
-    its.eos = pair->equation_of_state(t);
+    its.support = fluid->support(t);
+    if (!fluid->is_fluid(t)) continue;
+    its.eos = fluid->equation_of_state(t);
     its.sound = its.eos.sound_speed();
-    its.viscosity = pair->viscosity(t);
+    its.viscosity = fluid->viscosity(t);
   }
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back({fix, dynamic_cast<LimitedVertices *>(fix)});
 
   if (scheme == SteppingScheme::CONSTANT) return;
-  pair->want_density_rate();
-  if (options.lambda.relative > 0.0) pair->want_approach();
-  if (!cloths.empty()) pair->want_wetting();
+  fluid->want_density_rate();
+  if (options.lambda.relative > 0.0) fluid->want_approach();
+  if (!cloths.empty()) fluid->want_wetting();
 }
 
 double ParticleLimits::shortest_sound_time() const
 {
   double shortest = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
-    if (pair->is_fluid(t)) shortest = std::min(shortest, 0.5 * types[t].support / types[t].sound);
+    if (fluid->is_fluid(t)) shortest = std::min(shortest, 0.5 * types[t].support / types[t].sound);
   return shortest;
 }
 
 double ParticleLimits::sound_time(int i) const
 {
-  const FluidType &fluid = types[atom->type[i]];
-  return fluid.support / fluid.sound;
+  const FluidType &type = types[atom->type[i]];
+  return type.support / type.sound;
 }
 
 double ParticleLimits::acceleration(int i, double by_force) const
@@ -92,13 +92,13 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
 {
   StepState s{};
   set_motion(i, f, s);
-  const FluidType &fluid = types[atom->type[i]];
+  const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
-  s.nu = fluid.viscosity;
-  s.sound = fluid.sound * fluid.eos.stiffening(s.rho);
-  if (options.lambda.relative > 0.0) s.approach = pair->approach_speed(i);
-  const bool in_flight = pair->p_over_rho2()[i] == 0.0;
-  if (in_flight) s.until_pressed = until_pressed(i, fluid.eos.rho0 - s.rho, s.sound);
+  s.nu = type.viscosity;
+  s.sound = type.sound * type.eos.stiffening(s.rho);
+  if (options.lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
+  const bool in_flight = fluid->p_over_rho2()[i] == 0.0;
+  if (in_flight) s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!in_flight || interpolates_density) s.drho = atom->drho[i];
   return s;
@@ -115,7 +115,7 @@ double ParticleLimits::until_pressed(int i, double gap, double sound) const
   const double by_sound = options.lambda.acoustic * smoothing / sound;
   if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
   const double ratio = atom->rho[i] / smoothing;
-  return time_to_cross(gap, atom->drho[i], pair->p_over_rho2_beside(i) * ratio * ratio);
+  return time_to_cross(gap, atom->drho[i], fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 
 /* ----------------------------------------------------------------------
@@ -135,7 +135,7 @@ StepState ParticleLimits::vertex_state(int i) const
 {
   StepState s{};
   const double mass = set_motion(i, atom->f[i], s);
-  const PairSPHTait::Wetting wet = pair->wetting(i);
+  const Wetting wet = fluid->wetting(i);
   s.sound = wet.sound * std::sqrt(std::max(1.0, wet.fluid_mass / mass));
   return s;
 }

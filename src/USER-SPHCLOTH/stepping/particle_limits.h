@@ -18,16 +18,16 @@
 
 namespace LAMMPS_NS {
 
-class PairSPHTait;
+class FluidState;
 
 class ParticleLimits : protected Pointers {
  public:
   ParticleLimits(LAMMPS *lmp_, const StepOptions &options_) :
-      Pointers(lmp_), options(options_), pair(nullptr)
+      Pointers(lmp_), options(options_), fluid(nullptr)
   {
   }
 
-  void init(PairSPHTait *, SteppingScheme);
+  void init(FluidState *, SteppingScheme);
 
   // Fluid particles without pressure are in free flight, which ends where neighbors under pressure
   // press on them.  Where a step is no longer than that of these neighbors they need not be asked.
@@ -82,7 +82,7 @@ class ParticleLimits : protected Pointers {
   };
 
   const StepOptions &options;
-  PairSPHTait *pair;
+  FluidState *fluid;
   std::vector<FluidType> types;
   std::vector<Cloth> cloths;
   bool asks_neighbors = true;

@@ -5,8 +5,8 @@
 #include "atom.h"
 #include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
+#include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
-#include "pair_sph_tait.h"
 #include "update.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ static constexpr double SLOW_BEFORE_SLEEP = 20.0, SLEEP_BESIDE_ACTIVE = 100.0;
 template <class Act> void SleepingWater::for_neighbors(int i, Act act)
 {
   for (int t = 1; t <= atom->ntypes; t++) {
-    const NeighborSpan near = state.pair->neighbors(i, t);
+    const NeighborSpan near = state.fluid->neighbors(i, t);
     for (int k = 0; k < near.n; k++) act(near.of[k]);
   }
 }
@@ -41,18 +41,18 @@ bool SleepingWater::is_at_rest(int i)
   const double now = physical_time(update);
   double &since = state.columns[Columns::SLOW_SINCE][i];
   if (!is_slow(i)) since = now;
-  if (now - since < SLOW_BEFORE_SLEEP * limits.sound_time(i) || state.pair->feels_moving_wall(i))
+  if (now - since < SLOW_BEFORE_SLEEP * limits.sound_time(i) || state.fluid->feels_moving_wall(i))
     return false;
   bool others = true;
   for_neighbors(
-      i, [&](int j) { others = others && (is_slow(j) || !state.pair->inside_support(i, j)); });
+      i, [&](int j) { others = others && (is_slow(j) || !state.fluid->inside_support(i, j)); });
   return others;
 }
 
 void SleepingWater::fall_asleep()
 {
   resting.clear();
-  for (const int i : state.pair->active_particles())
+  for (const int i : state.fluid->active_particles())
     if (is_at_rest(i)) resting.push_back(i);
   for (const int i : resting) {
     state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
@@ -68,13 +68,13 @@ void SleepingWater::wake_disturbed()
 {
   if (!enabled()) return;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!state.pair->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
+    if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
     double change_sq = 0.0;
     for (int d = 0; d < 3; d++) {
       const double change = atom->f[i][d] - state.columns.external_force(d)[i];
       change_sq += change * change;
     }
-    if (!is_slow(i) || gains_speed(i, change_sq) || state.pair->feels_moving_wall(i)) wake(i);
+    if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) wake(i);
   }
 }
 
@@ -92,7 +92,7 @@ void SleepingWater::mark_beside_moving_boundaries()
   for (const int i : state.boundaries)
     if (!is_slow(i))
       for_neighbors(i, [&](int j) {
-        if (StepKey::before(state.key[j]) == StepKey::SLEEPING && state.pair->inside_support(i, j))
+        if (StepKey::before(state.key[j]) == StepKey::SLEEPING && state.fluid->inside_support(i, j))
           state.mark_atom(j, BlockState::WAKE);
       });
 }

@@ -5,11 +5,12 @@
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "integrate.h"
 #include "modify.h"
 #include "output.h"
-#include "pair_sph_tait.h"
+#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -21,13 +22,13 @@ using namespace sphcloth;
 StepControl::StepControl(LAMMPS *lmp_, const StepOptions &options_, std::string label_,
                          int groupbit_) :
     Pointers(lmp_), times(lmp_), options(options_), label(std::move(label_)), groupbit(groupbit_),
-    pair(nullptr), previous(0.0), largest_before(0.0), limit(Limit::NONE)
+    fluid(nullptr), previous(0.0), largest_before(0.0), limit(Limit::NONE)
 {
 }
 
-void StepControl::init(PairSPHTait *style, double shortest_sound_time)
+void StepControl::init(FluidState *style, double shortest_sound_time)
 {
-  pair = style;
+  fluid = style;
   control.eta = options.eta;
   control.sound_time = shortest_sound_time;
 }
@@ -108,7 +109,8 @@ double StepControl::largest_compression() const
   double largest = 0.0;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit)
-      largest = std::max(largest, atom->rho[i] / pair->equation_of_state(atom->type[i]).rho0 - 1.0);
+      largest =
+          std::max(largest, atom->rho[i] / fluid->equation_of_state(atom->type[i]).rho0 - 1.0);
   return largest;
 }
 
@@ -117,7 +119,7 @@ Compression StepControl::compression_of_ranks() const
   double largest = largest_compression(), mine[2] = {0.0, 0.0}, all[2];
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit) {
-      const double rho0 = pair->equation_of_state(atom->type[i]).rho0;
+      const double rho0 = fluid->equation_of_state(atom->type[i]).rho0;
       mine[0] += std::max(0.0, atom->rho[i] / rho0 - 1.0);
       mine[1] += 1.0;
     }

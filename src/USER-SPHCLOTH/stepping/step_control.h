@@ -14,7 +14,7 @@
 
 namespace LAMMPS_NS {
 
-class PairSPHTait;
+class FluidState;
 
 class StepControl : protected Pointers {
  public:
@@ -23,7 +23,7 @@ class StepControl : protected Pointers {
   // label of the fix for errors, group of the fluid that it integrates
   StepControl(LAMMPS *, const StepOptions &, std::string label, int groupbit);
 
-  void init(PairSPHTait *, double shortest_sound_time);
+  void init(FluidState *, double shortest_sound_time);
 
   // collective: the next step from the tightest limit of this rank
   void choose(const sphcloth::StepLimit &mine);
@@ -54,7 +54,7 @@ class StepControl : protected Pointers {
   const StepOptions &options;
   std::string label;
   int groupbit;
-  PairSPHTait *pair;
+  FluidState *fluid;
   sphcloth::FluctuationControl control;
   double previous, largest_before;
   sphcloth::Compression compression;    // when the step that comes next was chosen

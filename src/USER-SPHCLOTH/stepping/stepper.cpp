@@ -2,23 +2,23 @@
 
 #include "stepping/stepper.h"
 
-#include "pair_sph_tait.h"
+#include "fluid/fluid_state.h"
 
 using namespace LAMMPS_NS;
 
-void Stepper::init(PairSPHTait *style)
+void Stepper::init(FluidState *style)
 {
-  pair = style;
+  fluid = style;
   tell_active(false);
 }
 
 void Stepper::grow(int nmax)
 {
   columns().grow(nmax);
-  if (pair) tell_active(false);
+  if (fluid) tell_active(false);
 }
 
 void Stepper::tell_active(bool all)
 {
-  pair->set_active(all ? nullptr : parts.rows.row, UpdateRows::ACTIVE, interpolates_density());
+  fluid->set_active(all ? nullptr : parts.rows.row, UpdateRows::ACTIVE, interpolates_density());
 }

@@ -17,7 +17,7 @@
 namespace LAMMPS_NS {
 
 struct BlockClock;
-class PairSPHTait;
+class FluidState;
 class StepReport;
 
 // What every scheme keeps of each atom, a row each: the per-atom array of the fix
@@ -40,12 +40,12 @@ struct SteppingParts {
 
 class Stepper : protected Pointers {
  public:
-  Stepper(LAMMPS *lmp_, const SteppingParts &parts_) : Pointers(lmp_), parts(parts_), pair(nullptr)
+  Stepper(LAMMPS *lmp_, const SteppingParts &parts_) : Pointers(lmp_), parts(parts_), fluid(nullptr)
   {
   }
 
   // before each run
-  virtual void init(PairSPHTait *);
+  virtual void init(FluidState *);
   // lines 30 to 33 of Algorithm 1, then tells the pair style which particles are updated
   virtual void move() = 0;
   // forces are known, of all styles
@@ -70,7 +70,7 @@ class Stepper : protected Pointers {
 
  protected:
   const SteppingParts parts;
-  PairSPHTait *pair;
+  FluidState *fluid;
 
   // densities of inactive particles, and so their pressures, change between updates
   virtual bool interpolates_density() const { return false; }

@@ -48,7 +48,7 @@ struct PairTerms {
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
-  Outputs also = Outputs::NOTHING;
+  Outputs outputs = Outputs::NOTHING;
   std::vector<Role> role;          // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
@@ -61,7 +61,7 @@ struct Particles {
   int n_owned = 0, n_all = 0;
   const int *type = nullptr;
   const double *x = nullptr, *v = nullptr;
-  const double *amount = nullptr;    // fluid: mass m; boundary: volume V_b
+  const double *mass_or_volume = nullptr;    // fluid: mass m; boundary: volume V_b
   const double *pressure = nullptr;    // p / rho^2
   double *rho = nullptr;
   double *f = nullptr, *drho = nullptr;    // what forces() adds to

@@ -214,7 +214,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::record_all(const Particles &p)
 {
   for (int i = 0; i < p.n_all; i++) {
     const bool fluid = is_fluid(p.type[i]);
-    sites[i].own = static_cast<Real>(fluid ? p.rho[i] : p.amount[i]);
+    sites[i].own = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
     motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
                   static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.pressure[i])};
   }
@@ -267,7 +267,7 @@ SPHCLOTH_INLINE typename FluidLoops<K, P>::Masses
 FluidLoops<K, P>::masses(const Particles &p, const NeighborSpan &near, int type)
 {
   if (model.mass[type] > 0.0) return {&equal_mass[type * LANES], 0};
-  for (int k = 0; k < near.n; k++) unequal_mass[k] = p.amount[near.of[k]];
+  for (int k = 0; k < near.n; k++) unequal_mass[k] = p.mass_or_volume[near.of[k]];
   return {unequal_mass.data(), 1};
 }
 
@@ -321,7 +321,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_up(const Particles &p, bool sum
       const int i = lists.at(slot);
       lists.refresh(slot);
       if (!sum || !fluid) continue;
-      double rho = p.amount[i] * at_self;
+      double rho = p.mass_or_volume[i] * at_self;
       for (int other = 1; other <= n_types; other++) {
         const NeighborSpan near = lists(slot, other);
         if (near.n == 0) continue;
@@ -594,7 +594,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
                                              const Acceleration &a) const
 {
   // the volume that the fluid has seen, to the last bit
-  const double amount = fluid ? p.amount[i] : static_cast<double>(sites[i].own);
+  const double amount = fluid ? p.mass_or_volume[i] : static_cast<double>(sites[i].own);
   const double scale = amount * p.force_unit;
   p.f[3 * i] += scale * a.x;
   p.f[3 * i + 1] += scale * a.y;
@@ -604,7 +604,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
 
 template <class K, class P> void FluidLoops<K, P>::forces(const Particles &p, Target whom)
 {
-  switch (model.also) {
+  switch (model.outputs) {
     case Outputs::NOTHING: return forces_and<Outputs::NOTHING>(p, whom);
     case Outputs::RATE: return forces_and<Outputs::RATE>(p, whom);
     case Outputs::RATE_AND_APPROACH: return forces_and<Outputs::RATE_AND_APPROACH>(p, whom);
@@ -787,13 +787,13 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
     for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
       const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
-      double mass = p.amount[i] * at_self, volume = mass / p.rho[i];
+      double mass = p.mass_or_volume[i] * at_self, volume = mass / p.rho[i];
       for (int other = 1; other <= model.n_types; other++) {
         const NeighborSpan found = lists(slot, other);
         const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
-          const double w = p.amount[j] * weight(p, i, j, of_pair.kernel);
+          const double w = p.mass_or_volume[j] * weight(p, i, j, of_pair.kernel);
           mass += is_fluid(other) ? w : of_pair.rho0 * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }

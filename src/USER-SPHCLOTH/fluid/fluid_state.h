@@ -1,0 +1,146 @@
+// The fluid of pair_style sph/tait on one rank: arrays, lists and the active particles, written by
+// the pair style while it evaluates, and what fixes, computes and stepping schemes ask of the last
+// evaluation.
+
+#ifndef SPHCLOTH_FLUID_FLUID_STATE_H
+#define SPHCLOTH_FLUID_FLUID_STATE_H
+
+#include "atom.h"
+#include "fluid/fluid_boundary.h"
+#include "fluid/sph_materials.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class Force;
+class Pair;
+class SideSource;
+class StepHooks;
+
+class FluidState : public SPHMaterials {
+ public:
+  // name of extract() of the pair style
+  static constexpr const char *EXTRACT = "fluid_state";
+
+  FluidState(class LAMMPS *lmp_, Pair *pair_) : SPHMaterials(lmp_), pair(pair_) {}
+  // of the pair style in use; null if it is not sph/tait
+  static FluidState *find(Force *);
+
+  // has pair_coeff given the type a role?
+  bool has_role(int itype) const;
+  // are the owned atoms those of the last evaluation?  All that follows needs it.
+  bool evaluated() const;
+
+  // Of owned atoms, or of all atoms where it says so
+
+  // mass of fluid, volume of a boundary particle
+  double mass_or_volume_of(int i) const { return mass_or_volume[i]; }
+  // of all atoms
+  double volume(int i) const
+  {
+    return is_fluid(atom->type[i]) ? mass_or_volume[i] / atom->rho[i] : mass_or_volume[i];
+  }
+  double pressure_of(int i) const;
+  // pressure over density squared, of all atoms
+  const double *p_over_rho2() const { return pressure.data(); }
+  // its maximum among the neighbors inside the support, at least 0
+  double p_over_rho2_beside(int i);
+
+  // Neighbors inside the support, and some a little outside: how many of these depends on the
+  // ranks.
+  sphcloth::NeighborSpan neighbors(int i, int type) { return core->neighbors(i, type); }
+  bool inside_support(int i, int j) const;
+  // of all types that interact with it, inside the support
+  int count_neighbors(int i);
+  sphcloth::DualLists &order() { return core->order(); }
+
+  // Outputs that are to be wanted in init(): d rho/dt in atom->drho; the maximum speed at which a
+  // neighbor or a boundary and an owned fluid particle approached when it was active last; the
+  // fluid that moves with a vertex or a boundary particle
+  void want_density_rate();
+  void want_approach() { core->model.outputs = sphcloth::Outputs::RATE_AND_APPROACH; }
+  void want_wetting() const;
+  double approach_speed(int i);
+  Wetting wetting(int i);
+
+  bool feels_moving_wall(int i) const;
+  bool is_beside_mesh(int i) const;
+  // of a force on owned atom i; `from` points to i from where its partner is
+  void add_virial(int i, const Eigen::Vector3d &from, const Eigen::Vector3d &force_on_it);
+
+  // Column of a per-atom array that is 0 for a particle whose density and forces need no update;
+  // without an array all are active.  Densities of inactive particles may be interpolated by a fix;
+  // their pressures then follow.
+  void set_active(double **array, int column, bool interpolated = false);
+  // owned fluid particles that are updated in this evaluation, with step hooks only
+  const std::vector<int> &active_particles() const { return active_fluid; }
+  // time that has passed since the last evaluation, for a density that follows its rate
+  void advance(double dt) { elapsed += dt; }
+
+  // Time steps of individual particles, anew for each run.  Null: forces act for the step of all.
+  void set_step_hooks(StepHooks *of_scheme) { hooks = of_scheme; }
+  // What the hooks call once the forces on the active fluid are known: FluidBoundary::push_more(),
+  // prolong() and defer() of all boundaries; the forces on boundary particles, if all steps are
+  // equal; otherwise the impulses of Fluid::record_impulses() on these owned particles.
+  void push_walls_more(int i, double p_over_rho2, double times);
+  void prolong_walls(double times);
+  void hand_over_pushes(const FluidBoundary::Take &take);
+  void push_boundaries() { core->forces(particles(), sphcloth::Target::BOUNDARIES); }
+  void give_impulses(const std::vector<int> &slots, const double *pressure_time,
+                     const double *span);
+
+ private:
+  friend class PairSPHTait;
+
+  Pair *const pair;
+  std::unique_ptr<sphcloth::Fluid> core;
+  std::vector<FluidBoundary *> boundaries;
+  SideSource *sides = nullptr;    // fluid on two of them does not interact; null without sheets
+  StepHooks *hooks = nullptr;
+  bool is_evaluated = false;
+  std::uint64_t evaluated_order = 0;    // of the owned atoms in the arrays
+
+  double **active = nullptr;
+  int active_column = 0;
+  bool pressures_follow = false;
+  double elapsed = 0.0;
+  std::vector<int> active_fluid;    // in the order of the lists
+
+  std::vector<double> mass_or_volume, pressure;    // of all atoms; p/rho^2
+  std::vector<double> rate;
+  std::vector<double> approach;    // empty unless wanted
+  std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
+
+  // for the pair style, in the order of an evaluation
+
+  void forget();    // other settings: lists, kernel and materials
+  void begin_run();
+  void find_sides();
+  void begin_lists();    // new atoms: masses, and arrays as large
+  // new ones if the motion is given
+  void update_lists(const sphcloth::Particles &, const double *reach, const sphcloth::Motion *);
+  void select(const sphcloth::Particles &);
+  void find_equal_masses(const sphcloth::Particles &);
+  void check_densities() const;
+  void find_pressures(const sphcloth::Particles &, bool of_all);
+  sphcloth::Particles particles();
+  double bytes() const;
+
+  // act(i, equation of state) for active fluid particles
+  template <class Act> void for_each_fluid(Act &&act) const
+  {
+    for (int t = 1; t <= atom->ntypes; t++) {
+      if (!is_fluid(t)) continue;
+      const sphcloth::Tait eos = type(t).eos;
+      for (const int slot : core->active().of(t)) act(core->order().at(slot), eos);
+    }
+  }
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

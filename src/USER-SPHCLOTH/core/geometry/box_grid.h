@@ -43,8 +43,8 @@ class BoxGrid {
       });
   }
 
-  // calls visit(b) once for every box b in the cells that `probe` overlaps, in the order of the cells;
-  // the caller still tests the box itself
+  // calls visit(b) once for every box b in the cells that `probe` overlaps, in the order of the
+  // cells; the caller still tests the box itself
 
   template <class Visit> void query(const Box &probe, Visit visit) const
   {

@@ -1,5 +1,5 @@
-// Discs around triangles, sorted by their centres into cells: which triangles may be near a point, which may be
-// the nearest?  No triangle is nearer than its disc, nor farther than the centre.
+// Discs around triangles, sorted by their centres into cells: which triangles may be near a point,
+// which may be the nearest?  No triangle is nearer than its disc, nor farther than the centre.
 //
 // A query looks around the point as far as the largest disc may reach, so small ones and large ones
 // have grids of their own.

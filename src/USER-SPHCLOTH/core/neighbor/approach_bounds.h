@@ -1,9 +1,9 @@
 // How much nearer particles may have come to each other, from place to place.
 //
 // The displacements of the particles of a block of space lie in a box.  The farthest corners of the
-// boxes of two blocks say how much nearer a particle of one may have come to one of the other, or the longest
-// displacements of both if their sum is less: what moves together stays as it is, however fast it goes, and
-// what is fast elsewhere does not matter.  Types have boxes of their own.
+// boxes of two blocks say how much nearer a particle of one may have come to one of the other, or
+// the longest displacements of both if their sum is less: what moves together stays as it is,
+// however fast it goes, and what is fast elsewhere does not matter.  Types have boxes of their own.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_APPROACH_BOUNDS_H
 #define SPHCLOTH_CORE_NEIGHBOR_APPROACH_BOUNDS_H
@@ -25,7 +25,8 @@ class ApproachBounds {
 
   explicit ApproachBounds(const Blocks &blocks_) : blocks(blocks_) {}
 
-  // Takes in how far all particles are from a place of theirs: now - centre - held; held may be null.
+  // Takes in how far all particles are from a place of theirs: now - centre - held; held may be
+  // null.
   SPHCLOTH_MULTIVERSION void measure(const double *now, const std::array<double, 3> &center,
                                      const Place *held)
   {
@@ -33,8 +34,8 @@ class ApproachBounds {
     blocks.spread(boxes, [](Box &box, const Box &more) { take(box, more); });
   }
 
-  // the most by which one of type t in a block may have come nearer to one of another type around; of
-  // velocities: the fastest
+  // the most by which one of type t in a block may have come nearer to one of another type around;
+  // of velocities: the fastest
   float between(int b, int t, int other) const
   {
     const Box &one = boxes.own[blocks.row(b, t)], &two = boxes.around[blocks.row(b, other)];

@@ -1,5 +1,5 @@
-// Which values particles have around a block of space: where all have the same, nobody has to look at
-// neighbour after neighbour.
+// Which values particles have around a block of space: where all have the same, nobody has to look
+// at neighbour after neighbour.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_BLOCK_MINMAX_H
 #define SPHCLOTH_CORE_NEIGHBOR_BLOCK_MINMAX_H

@@ -1,6 +1,6 @@
-// Blocks of space, at least as wide as lists reach: the neighbours of a particle are in its block or in those
-// around.  What all particles of a type in a block have in common is found once, and spread to the blocks
-// around.
+// Blocks of space, at least as wide as lists reach: the neighbours of a particle are in its block
+// or in those around.  What all particles of a type in a block have in common is found once, and
+// spread to the blocks around.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_BLOCKS_H
 #define SPHCLOTH_CORE_NEIGHBOR_BLOCKS_H
@@ -52,8 +52,8 @@ class Blocks {
     return {member.data() + first[r], member.data() + first[r + 1]};
   }
 
-  // What is found of a row: own takes in what particles have, around what the rows of its type in the blocks
-  // around have, itself included.  take(T &, const T &)
+  // What is found of a row: own takes in what particles have, around what the rows of its type in
+  // the blocks around have, itself included.  take(T &, const T &)
   template <class T> struct Found {
     AlignedVector<T> own, around, spare;
     double bytes() const { return bytes_of(own, around, spare); }

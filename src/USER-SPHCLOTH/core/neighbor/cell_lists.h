@@ -2,9 +2,9 @@
 //
 // Particles are sorted by type and then by cell, cells in rows along x, so that the neighbours of a
 // particle lie in a few contiguous runs of single-precision coordinates: lists are built several
-// times faster than over linked bins.  Each type has a grid of its own, as fine as its particles look
-// among each other.  A pair of types without a reach costs nothing, and the neighbours of a particle
-// come grouped by their type, so that a loop over one group has one set of coefficients.
+// times faster than over linked bins.  Each type has a grid of its own, as fine as its particles
+// look among each other.  A pair of types without a reach costs nothing, and the neighbours of a
+// particle come grouped by their type, so that a loop over one group has one set of coefficients.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
 #define SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
@@ -64,8 +64,8 @@ struct NeighborSpan {
   int n = 0;
 };
 
-// For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones lie in others
-// behind it: nothing else moves.
+// For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones
+// lie in others behind it: nothing else moves.
 
 class NeighborSpans {
  public:
@@ -185,7 +185,8 @@ class CellLists {
     const int *region = nullptr;
   };
 
-  // The same, and those that are near come first in each list; front: [slot][type], how many they are.
+  // The same, and those that are near come first in each list; front: [slot][type], how many they
+  // are.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
              const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all)
   {

@@ -2,19 +2,20 @@
 //
 // A list that serves for many steps holds about twice as many particles as are inside the support.
 // Those within the support and a small inner skin are moved to its front, and the loops run over
-// the front alone until particles may have come nearer by the inner skin.  The
-// inner skin follows from the motion: each particle that it adds costs a little at every evaluation,
-// and each evaluation that it lasts saves one pass over the list.  (A dual list: Pall et al., J. Chem.
-// Phys. 153 (2020) 134110.)
+// the front alone until particles may have come nearer by the inner skin.  The inner skin follows
+// from the motion: each particle that it adds costs a little at every evaluation, and each
+// evaluation that it lasts saves one pass over the list.  (A dual list: Pall et al., J. Chem. Phys.
+// 153 (2020) 134110.)
 //
-// Each block of space has an odometer for each pair of types: how much nearer they may have come there
-// (core/neighbor/approach_bounds.h).  A front is valid up to a reading of it, so particles that are evaluated seldom, rest, or move
-// with those around them keep theirs while fronts elsewhere are found anew.  The lists themselves hold
-// until a reading exceeds their skin.
+// Each block of space has an odometer for each pair of types: how much nearer they may have come
+// there (core/neighbor/approach_bounds.h).  A front is valid up to a reading of it, so particles
+// that are evaluated seldom, rest, or move with those around them keep theirs while fronts
+// elsewhere are found anew.  The lists themselves hold until a reading exceeds their skin.
 //
 // Nothing is kept from one list to the next, so a run that is continued from a restart file goes on
-// with the same fronts.  Every rank decides for itself.  A front is found when it is asked for, from
-// the positions at which odometers were read last, so particles that nobody asks for cost nothing.
+// with the same fronts.  Every rank decides for itself.  A front is found when it is asked for,
+// from the positions at which odometers were read last, so particles that nobody asks for cost
+// nothing.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_DUAL_LISTS_H
 #define SPHCLOTH_CORE_NEIGHBOR_DUAL_LISTS_H
@@ -25,9 +26,9 @@
 
 namespace sphcloth {
 
-// What is known of the motion: velocities of all particles, [n_all][3], or null, for about how long from
-// one evaluation to the next; and of a type, [n_types+1], after how many of them one is evaluated itself, on
-// average.
+// What is known of the motion: velocities of all particles, [n_all][3], or null, for about how long
+// from one evaluation to the next; and of a type, [n_types+1], after how many of them one is
+// evaluated itself, on average.
 
 struct Motion {
   const double *v = nullptr;
@@ -37,8 +38,9 @@ struct Motion {
 
 class DualLists {
  public:
-  // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin than
-  // `most`: somebody else sees that lists are built anew before two that are farther apart than that can meet.
+  // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin
+  // than `most`: somebody else sees that lists are built anew before two that are farther apart
+  // than that can meet.
   void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
              const double *support, double most, int dimension, const Motion &motion,
              const Sides *sides = nullptr)
@@ -66,8 +68,8 @@ class DualLists {
     note_lists([](int, int, int) { return true; });
   }
 
-  // Once per evaluation but for the one for which lists are new, before they are read.  The particles are
-  // those for which lists were built, where they are now.
+  // Once per evaluation but for the one for which lists are new, before they are read.  The
+  // particles are those for which lists were built, where they are now.
   void follow(const double *x, const int *type, int n_owned, int n_all,
               const Sides *sides = nullptr)
   {
@@ -102,9 +104,9 @@ class DualLists {
       if (of_block[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
   }
 
-  // Of a value of each particle: is that of a neighbour of one type above a limit?  Whose is another?  What many
-  // are about to ask may be found for whole blocks of space before; `surveyed` says that this was the last
-  // survey.
+  // Of a value of each particle: is that of a neighbour of one type above a limit?  Whose is
+  // another?  What many are about to ask may be found for whole blocks of space before; `surveyed`
+  // says that this was the last survey.
   void measure_block_ranges(const int *value) { survey.take(value); }
   bool any_above(int most, int slot, int other, const int *value, bool surveyed)
   {
@@ -156,8 +158,8 @@ class DualLists {
   // what an entry of a list costs while its front is found, over one of the front in an evaluation,
   // about (measured)
   static constexpr double ENTRY_COST = 0.23;
-  // Skin of the lists over support: narrow lists are quick to read, wide ones last.  Between 0.2 and
-  // 0.4 all cost the same (measured).
+  // Skin of the lists over support: narrow lists are quick to read, wide ones last.  Between 0.2
+  // and 0.4 all cost the same (measured).
   static constexpr double LIST_SKIN = 0.3;
   // least inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
@@ -170,8 +172,8 @@ class DualLists {
   std::vector<int> block;    // [slot]
   std::vector<Front> fronts;    // [block][type][type]
   std::vector<char> due, due_block;    // of these, and of blocks: lists that are made anew
-  // of a pair of types: support, 0: never; reach of the lists; their skin, and how much of it may be used up; cost
-  // of finding a front
+  // of a pair of types: support, 0: never; reach of the lists; their skin, and how much of it may
+  // be used up; cost of finding a front
   std::vector<double> limit, far, widest, lasting, cost;
   std::vector<double> interval;    // of a type
   Blocks blocks;
@@ -219,8 +221,8 @@ class DualLists {
     }
   }
 
-  // Blocks stay as they are while lists are renewed: who meets until lists are built again must be in blocks
-  // beside each other now.
+  // Blocks stay as they are while lists are renewed: who meets until lists are built again must be
+  // in blocks beside each other now.
   void set_blocks(const double *x, const int *type, int n_all, double most, const Motion &motion)
   {
     constexpr double ROUNDING = 1e-6;

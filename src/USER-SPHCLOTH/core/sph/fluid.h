@@ -114,8 +114,8 @@ class Fluid {
   bool select(const Particles &);
   const Selection &active() const { return selection; }
 
-  // Records the positions of all particles.  Mixed precision counts them from the corner lo - margin
-  // in parts of the box lengths, so that periodic images are exact.
+  // Records the positions of all particles.  Mixed precision counts them from the corner lo -
+  // margin in parts of the box lengths, so that periodic images are exact.
   struct Box {
     double lo[3], length[3], margin;
   };
@@ -131,8 +131,8 @@ class Fluid {
   // Gradient [n][3] of the density of every active fluid particle, from the fluid of its type
   virtual void density_gradients(const Particles &, double *gradient) = 0;
 
-  // d rho/dt by continuity, from the density and velocity of all, where they were a time `back` ago;
-  // with diffusion if the gradients of all, ghosts too, are given
+  // d rho/dt by continuity, from the density and velocity of all, where they were a time `back`
+  // ago; with diffusion if the gradients of all, ghosts too, are given
   virtual void density_rates(const Particles &, const double *gradient, double back,
                              double *rate) = 0;
 
@@ -148,10 +148,10 @@ class Fluid {
   // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
   virtual void forces(const Particles &, Target) = 0;
 
-  // Impulses of particles that take steps of their own, given to both partners of a pair: instead of
-  // its pressure, every particle has it times the time for which it acts, and `span` is that time,
-  // which friction takes as the mean of two.  Those with a span below 0 are asleep: they have their
-  // plain pressure, and the partner's time counts.  For all, owned and ghost.
+  // Impulses of particles that take steps of their own, given to both partners of a pair: instead
+  // of its pressure, every particle has it times the time for which it acts, and `span` is that
+  // time, which friction takes as the mean of two.  Those with a span below 0 are asleep: they have
+  // their plain pressure, and the partner's time counts.  For all, owned and ghost.
   virtual void record_impulses(const Particles &, const double *pressure_time,
                                const double *span) = 0;
   virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;

@@ -11,8 +11,8 @@
 namespace sphcloth {
 
 // The determinant of the matrix over that of the isotropic one of the same trace is 1 inside the
-// fluid, 0.6 in the corner of a square and 0.3 in that of a cube, and 0 if all neighbours lie in one
-// plane (on one line).  Below this there is no gradient.
+// fluid, 0.6 in the corner of a square and 0.3 in that of a cube, and 0 if all neighbours lie in
+// one plane (on one line).  Below this there is no gradient.
 inline constexpr double MIN_SPREAD = 0.1;
 
 struct Differences {

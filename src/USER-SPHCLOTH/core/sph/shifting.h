@@ -3,8 +3,8 @@
 // takes particles from where they are crowded to where they are sparse; dx is the spacing of the
 // particle, R the strength of the term against clumping.
 //
-// The displacement of one step is -A H U dt grad C_i, with a speed U and the support H; A = 2 is that
-// of Sun et al.
+// The displacement of one step is -A H U dt grad C_i, with a speed U and the support H; A = 2 is
+// that of Sun et al.
 //
 // Lind, Xu, Stansby & Rogers, J. Comput. Phys. 231 (2012) 1499, equations (16) to (25); Skillen,
 // Lind, Stansby & Rogers, Comput. Methods Appl. Mech. Eng. 265 (2013) 163 (in proportion to speed
@@ -79,8 +79,9 @@ void add_velocity(ConcentrationGradient &crowd, const NeighborTerm &n,
     for (int b = 0; b < 3; b++) crowd.grad_v[3 * a + b] -= weight * v[a] * n.r[b];
 }
 
-// A plane wall at delta = distance/H, filled with fluid behind it.  The kernel's gradient integrates
-// to that of lambda; the divergence of position, by Gauss's theorem, to d lambda + delta w.
+// A plane wall at delta = distance/H, filled with fluid behind it.  The kernel's gradient
+// integrates to that of lambda; the divergence of position, by Gauss's theorem, to d lambda + delta
+// w.
 
 inline double wall_cover(const WallTable::Value &wall, double delta, int dim)
 {

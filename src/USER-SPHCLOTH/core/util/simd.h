@@ -27,8 +27,10 @@
 
 #if defined(__GNUC__)
 #define SPHCLOTH_INLINE inline __attribute__((always_inline))
+#define SPHCLOTH_LAMBDA __attribute__((always_inline))    // behind the parameters of a lambda
 #else
 #define SPHCLOTH_INLINE inline
+#define SPHCLOTH_LAMBDA
 #endif
 
 namespace sphcloth {
@@ -132,8 +134,8 @@ SPHCLOTH_INLINE void columns(const Lane *records, const int *index, Lane *x, Lan
 #endif
 }
 
-// A record of four doubles, whole: one load, one sum, one store.  Rows are combined as they lie, and
-// only what a loop over lanes needs of them is turned into columns.
+// A record of four doubles, whole: one load, one sum, one store.  Rows are combined as they lie,
+// and only what a loop over lanes needs of them is turned into columns.
 
 typedef double Row __attribute__((vector_size(32), aligned(8), may_alias));
 
@@ -213,8 +215,8 @@ inline int compact_plain(const float *key, const int *index, int n, float limit,
   return m;
 }
 
-// Of n indices those whose value is another, in order; returns how many.  Up to 16 places past the end are
-// written.
+// Of n indices those whose value is another, in order; returns how many.  Up to 16 places past the
+// end are written.
 
 inline int pick_others_plain(const int *value, int same, const int *index, int n, int *out)
 {
@@ -227,8 +229,8 @@ inline int pick_others_plain(const int *value, int same, const int *index, int n
   return m;
 }
 
-// Partition: the same as compaction, but the indices stay in place, those kept in front and the others, for which
-// `spare` has room, behind them.  Nothing behind index[n - 1] is written.
+// Partition: the same as compaction, but the indices stay in place, those kept in front and the
+// others, for which `spare` has room, behind them.  Nothing behind index[n - 1] is written.
 
 // the pairs from `k` on, of which m are in front by now
 inline int partition_rest(float *key, int *index, int k, int n, float limit, int *spare, int m)
@@ -320,8 +322,8 @@ pick_others_avx512(const int *value, int same, const int *index, int n, int *out
   return m;
 }
 
-// Without AVX-512 eight at a time, from a table of who goes where: for each set of eight lanes those that
-// are in it, in order.
+// Without AVX-512 eight at a time, from a table of who goes where: for each set of eight lanes
+// those that are in it, in order.
 
 struct LaneSets {
   alignas(64) std::int32_t of[256][8];

@@ -1,0 +1,144 @@
+// Density (1), and what else is summed with the kernel itself: volumes of boundary particles,
+// smoothed densities, pressures of boundary particles.
+
+#ifndef SPHCLOTH_CORE_SPH_DENSITY_LOOPS_H
+#define SPHCLOTH_CORE_SPH_DENSITY_LOOPS_H
+
+#include "core/sph/fluid_loops.h"
+
+namespace sphcloth {
+
+// sum of the kernel's shape over neighbors, of their masses times it if WEIGHTED
+
+template <class K, class P>
+template <bool WEIGHTED>
+SPHCLOTH_INLINE double FluidLoops<K, P>::shape_sum(const Neighborhood &of, Columns &c) const
+{
+  const Terms &t = of.terms;
+  const double *mass = nullptr;
+  LaneSum<LANES> sum;
+  records.for_neighbors(
+      of, c,
+      [&](int from) SPHCLOTH_LAMBDA {
+        records.load_positions(c, of.near.of + from);
+        if (WEIGHTED) mass = of.masses.group(from);
+      },
+      [&](int k, Separation r) SPHCLOTH_LAMBDA {
+        const Real w = K::shape(std::sqrt(r.sq()) * t.inv_support);
+        sum.of[k] += WEIGHTED ? mass[k] * w : w;
+      });
+  return sum.total();
+}
+
+// Not a template of the caller's question but one function: `sum` is tested once per particle.
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_densities(const Particles &p, bool sum)
+{
+  Columns c;
+  const int n_types = model.n_types;
+  for (int t = 1; t <= n_types; t++) {
+    const bool fluid = is_fluid(t);
+    const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      lists.refresh(slot);
+      if (!sum || !fluid) continue;
+      double rho = p.mass_or_volume[i] * at_self;
+      for (int other = 1; other <= n_types; other++) {
+        const NeighborSpan near = lists(slot, other);
+        if (near.n == 0) continue;
+        const PairTerms &whole = model.pair(t, other);
+        const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : whole.rho0;
+        const Neighborhood of{i, near, pair(t, other), masses(p, near, other)};
+        rho += whole.kernel.w *
+            (equal > 0.0 ? equal * shape_sum<false>(of, c) : each * shape_sum<true>(of, c));
+      }
+      p.rho[i] = rho;
+    }
+  }
+}
+
+template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bool sum)
+{
+  begin_evaluation();
+  sum_densities(p, sum);
+}
+
+// The share of space of a particle of a wall or a sheet
+
+template <class K, class P>
+void FluidLoops<K, P>::volumes(const Particles &, int type, double *volume)
+{
+  const PairTerms &whole = model.pair(type, type);
+  const Terms among_each_other(whole, records.quantum[0]);
+  Columns c;
+  for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+    const int i = lists.at(slot);
+    lists.refresh(slot);
+    const double sum = shape_sum<false>({i, lists(slot, type), among_each_other, {}}, c);
+    volume[i] = 1.0 / (whole.kernel.w * (K::shape(0.0) + sum));
+  }
+}
+
+// Shepard interpolation: constant densities stay, also at a free surface.  Boundary particles take
+// part with the rest density.
+
+template <class K, class P>
+void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
+{
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
+      double mass = p.mass_or_volume[i] * at_self, volume = mass / p.rho[i];
+      for (int other = 1; other <= model.n_types; other++) {
+        const NeighborSpan found = lists(slot, other);
+        const PairTerms &of_pair = model.pair(t, other);
+        for (int k = 0; k < found.n; k++) {
+          const int j = found.of[k];
+          const double w = p.mass_or_volume[j] * weight(p, i, j, of_pair.kernel);
+          mass += is_fluid(other) ? w : of_pair.rho0 * w;
+          volume += is_fluid(other) ? w / p.rho[j] : w;
+        }
+      }
+      smooth[i] = mass / volume;
+    }
+  }
+}
+
+// Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, without the weight of the fluid between.
+
+template <class K, class P>
+void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *pressure)
+{
+  for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+    const int i = lists.at(slot);
+    double sum = 0.0, weights = 0.0;
+    for (int other = 1; other <= model.n_types; other++) {
+      if (!is_fluid(other)) continue;
+      const NeighborSpan found = lists(slot, other);
+      for (int k = 0; k < found.n; k++) {
+        const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
+        sum += w * p.pressure[found.of[k]];
+        weights += w;
+      }
+    }
+    pressure[i] = weights > 0.0 ? sum / weights : 0.0;
+  }
+}
+
+// W of a pair, for loops that do not run at every step or over every particle
+
+template <class K, class P>
+double FluidLoops<K, P>::weight(const Particles &p, int i, int j, const KernelScale &s)
+{
+  const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
+               dz = p.x[3 * i + 2] - p.x[3 * j + 2];
+  return s.w * K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * s.inv_support);
+}
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,206 @@
+// Particles as records of four numbers, position with density and velocity with pressure, and the
+// loop over the neighbors of one particle, for one precision.
+//
+// Records of neighbors become columns, a group at a time; the terms of a pair are then plain SIMD
+// loops over a group.
+
+#ifndef SPHCLOTH_CORE_SPH_PAIR_COLUMNS_H
+#define SPHCLOTH_CORE_SPH_PAIR_COLUMNS_H
+
+#include "core/sph/fluid.h"
+
+#include <array>
+
+namespace sphcloth {
+
+struct DoublePrecision {
+  using Real = double;
+  using Coordinate = double;
+  static constexpr bool COUNTED = false;
+  static Real difference(Coordinate a, Coordinate b, Real) { return a - b; }
+};
+
+// Coordinates are counted in a quantum: their differences are exact however far from the origin.
+
+struct MixedPrecision {
+  using Real = float;
+  using Coordinate = std::int32_t;
+  static constexpr bool COUNTED = true;
+  static Real difference(Coordinate a, Coordinate b, Real quantum)
+  {
+    return quantum * static_cast<Real>(a - b);
+  }
+};
+
+// PairTerms in the precision of the loops
+
+template <class P> struct LoopTerms {
+  using Real = typename P::Real;
+  using Coordinate = typename P::Coordinate;
+
+  Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
+  Coordinate outside;    // a distance along x outside the support
+
+  LoopTerms(const PairTerms &t, Real quantum) :
+      inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
+      f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
+      rho0(Real(t.rho0)), stiffness(Real(t.stiffness)), diffusion(Real(t.diffusion)),
+      outside(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
+  {
+  }
+};
+
+// masses of all neighbors of one particle: one column for all groups, step 0, if they are equal
+
+struct MassColumns {
+  const double *of;
+  int step;
+  const double *group(int from) const { return of + from * step; }
+};
+
+template <class P> class PairColumns {
+ public:
+  using Real = typename P::Real;
+  using Coordinate = typename P::Coordinate;
+  static constexpr int LANES = GROUP<Real>;
+
+  struct Site {
+    Coordinate x, y, z;
+    Real density_or_volume;    // of fluid; of a boundary
+  };
+  struct Motion {
+    Real u, v, w, pressure;    // p/rho^2
+  };
+  struct Gradient {
+    Real x, y, z, none;
+  };
+  // one group of neighbors
+  struct Columns {
+    alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
+    alignas(64) Real density_or_volume[LANES], u[LANES], v[LANES], w[LANES], pressure[LANES];
+    alignas(64) Real span[LANES];    // of impulses
+  };
+  // x_i - x_j
+  struct Separation {
+    Real x, y, z;
+    Real sq() const { return x * x + y * y + z * z; }
+  };
+  // one particle and its neighbors of one type
+  struct Neighborhood {
+    int i;
+    NeighborSpan near;
+    const LoopTerms<P> &terms;
+    MassColumns masses;
+  };
+
+  std::array<Real, 3> quantum{1, 1, 1};
+  AlignedVector<Site> sites;
+  AlignedVector<Motion> motions;
+  AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
+  std::vector<Real> spans;              // of impulses, empty without them
+
+  void place(const Particles &p, const Fluid::Box &box)
+  {
+    sites.resize(p.n_all + LANES);
+    motions.resize(p.n_all + LANES);
+    std::array<double, 3> origin{0.0, 0.0, 0.0}, per_quantum{1.0, 1.0, 1.0};
+    if (P::COUNTED) {
+      const double longest = *std::max_element(box.length, box.length + 3) + 2.0 * box.margin;
+      for (int d = 0; d < 3; d++) {
+        origin[d] = box.lo[d] - box.margin;
+        per_quantum[d] = std::ceil(box.length[d] / longest * 0x1p30) / box.length[d];
+        quantum[d] = static_cast<Real>(1.0 / per_quantum[d]);
+      }
+    }
+    place(p, origin, per_quantum);
+  }
+
+  SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role)
+  {
+    for (int i = 0; i < p.n_all; i++) {
+      const bool fluid = role[p.type[i]] == Role::FLUID;
+      sites[i].density_or_volume = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
+      motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
+                    static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.pressure[i])};
+    }
+  }
+
+  void record_gradients(const double *gradient, int n)
+  {
+    gradients.resize(n + LANES);
+    for (int i = 0; i < n; i++)
+      gradients[i] = {static_cast<Real>(gradient[3 * i]), static_cast<Real>(gradient[3 * i + 1]),
+                      static_cast<Real>(gradient[3 * i + 2]), Real(0)};
+  }
+
+  // The one loop over the neighbors of a particle: for each group load(first neighbor), which fills
+  // columns with their positions, then term(lane, separation) in every lane.
+  template <class Load, class Term>
+  SPHCLOTH_INLINE void for_neighbors(const Neighborhood &of, Columns &c, Load load, Term term) const
+  {
+    const Site site = sites[of.i];
+    const Coordinate outside = site.x + of.terms.outside;
+    const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
+    for (int from = 0; from < of.near.n; from += LANES) {
+      load(from);
+      fill_up(c, of.near.n - from, outside);
+#pragma omp simd
+      for (int k = 0; k < LANES; k++) {
+        const Real dx = P::difference(site.x, c.x[k], qx), dy = P::difference(site.y, c.y[k], qy),
+                   dz = P::difference(site.z, c.z[k], qz);
+        term(k, Separation{dx, dy, dz});
+      }
+    }
+  }
+
+  // positions; with them densities or volumes; with these velocities and pressures
+
+  SPHCLOTH_INLINE void load_positions(Columns &c, const int *near) const
+  {
+    columns(&sites[0].x, near, c.x, c.y, c.z, static_cast<Real *>(nullptr));
+  }
+  SPHCLOTH_INLINE void load_sites(Columns &c, const int *near) const
+  {
+    columns(&sites[0].x, near, c.x, c.y, c.z, c.density_or_volume);
+  }
+  SPHCLOTH_INLINE void load(Columns &c, const int *near) const
+  {
+    columns(&motions[0].u, near, c.u, c.v, c.w, c.pressure);
+    load_sites(c, near);
+  }
+  SPHCLOTH_INLINE void load_spans(Columns &c, const int *near) const
+  {
+    for (int m = 0; m < LANES; m++) c.span[m] = spans[near[m]];
+  }
+
+  double bytes() const { return bytes_of(sites, motions, gradients, spans); }
+
+ private:
+  SPHCLOTH_MULTIVERSION void place(const Particles &p, const std::array<double, 3> &origin,
+                                   const std::array<double, 3> &per_quantum)
+  {
+    const double ox = origin[0], oy = origin[1], oz = origin[2];
+    const double qx = per_quantum[0], qy = per_quantum[1], qz = per_quantum[2];
+    for (int i = 0; i < p.n_all; i++) {
+      sites[i].x = static_cast<Coordinate>((p.x[3 * i] - ox) * qx);
+      sites[i].y = static_cast<Coordinate>((p.x[3 * i + 1] - oy) * qy);
+      sites[i].z = static_cast<Coordinate>((p.x[3 * i + 2] - oz) * qz);
+    }
+  }
+
+  // What fills up the last group, of n, lies outside the support.
+  static SPHCLOTH_INLINE void fill_up(Columns &c, int n, Coordinate outside)
+  {
+    if (P::COUNTED) {    // a blend is the faster way with integers, a branch with doubles
+#pragma omp simd
+      for (int m = 0; m < LANES; m++) c.x[m] = m < n ? c.x[m] : outside;
+    } else if (n < LANES) {
+#pragma GCC unroll 1
+      for (int m = LANES - 1; m >= n; m--) c.x[m] = outside;
+    }
+  }
+};
+
+}    // namespace sphcloth
+
+#endif

@@ -219,7 +219,7 @@ void FixClothContact::post_neighbor()
     linking = &surface;
     surface.rebuild(distance);
   });
-  if (walls) walls->look();
+  if (walls) walls->update_candidates();
   if (rules.sides) find_sides();
 }
 
@@ -416,13 +416,4 @@ double FixClothContact::memory_usage()
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
-}
-
-void *FixClothContact::extract(const char *name, int &)
-{
-  if (std::strcmp(name, FluidBoundary::EXTRACT) == 0)
-    return static_cast<FluidBoundary *>(walls.get());
-  if (std::strcmp(name, SideSource::EXTRACT) == 0 && has_sides())
-    return static_cast<SideSource *>(this);
-  return nullptr;
 }

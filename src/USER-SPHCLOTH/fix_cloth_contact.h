@@ -55,12 +55,17 @@ class FixClothContact : public Fix, public SideSource {
   int maxsize_restart() override { return 4; }
   double memory_usage() override;
 
-  bool has_sides() const { return rules.sides; }
   int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const override { return side.data(); }
   // the boundary that it is to fluid, and the sides on which fluid is
-  void *extract(const char *, int &) override;
+  void *extract(const char *name, int &) override
+  {
+    const std::string what = name;
+    if (what == FluidBoundary::EXTRACT) return static_cast<FluidBoundary *>(walls.get());
+    if (what == SideSource::EXTRACT && rules.sides) return static_cast<SideSource *>(this);
+    return nullptr;
+  }
   // the cutoff of pair_style sph/tait
   void set_sight(double distance) override { sight = distance; }
 

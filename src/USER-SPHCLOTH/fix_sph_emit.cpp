@@ -88,7 +88,7 @@ void FixSPHEmit::read_options(ArgReader &args)
   layer_time = spacing / velocity.norm();
 }
 
-// Square lattice in the plane across the velocity, symmetric about the centre.  The first side of
+// Square lattice in the plane across the velocity, symmetric about the center.  The first side of
 // a rectangle lies along x, or along y for a jet along x.
 
 void FixSPHEmit::make_pattern()

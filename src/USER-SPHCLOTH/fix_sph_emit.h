@@ -57,7 +57,7 @@ class FixSPHEmit : public Fix {
   double layer_time;            // between layers: spacing / speed
   bigint layers;                // poured so far
   double momentum[3];           // that came in with the particles
-  std::vector<Vec3> pattern;    // one layer, relative to the centre
+  std::vector<Vec3> pattern;    // one layer, relative to the center
   Vec3 sides[2];                // unit vectors along those of a rectangle
   bool warned = false;
 

@@ -93,7 +93,7 @@ void FixSPHShift::init()
 }
 
 /* ----------------------------------------------------------------------
-   where the forces are: who is crowded, and who is near a free surface
+   where the forces are: concentration gradients, and particles near a free surface
 ------------------------------------------------------------------------- */
 
 void FixSPHShift::post_force(int)

@@ -206,6 +206,7 @@ Fluid::Box PairSPHTait::box() const
 Motion PairSPHTait::usual_motion(const Particles &p) const
 {
   Motion motion;
+  motion.dimension = domain->dimension;
   motion.v = p.v;
   constexpr double USUAL = 0.5;    // of h_s/c
   double step = std::numeric_limits<double>::max();

@@ -25,7 +25,7 @@ struct Scattered {
     std::uniform_real_distribution<> u(0.0, 1.0);
     for (int i = 0; i < 3 * n; i++) x.push_back(u(generator));
     for (int i = 0; i < n; i++) type.push_back(1 + i % TYPES);
-    blocks.divide(x.data(), type.data(), n, TYPES, WIDTH);
+    blocks.divide({x.data(), type.data(), n, n, TYPES}, WIDTH);
   }
   bool near(int i, int j) const
   {
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(no_particles_have_no_minimum_or_maximum)
   const std::vector<double> x{0.5, 0.5, 0.5};
   const std::vector<int> type{1}, value{4};
   Blocks blocks;
-  blocks.divide(x.data(), type.data(), 1, TYPES, WIDTH);
+  blocks.divide({x.data(), type.data(), 1, 1, TYPES}, WIDTH);
   BlockMinMax survey(blocks);
   survey.take(value.data());
   BOOST_CHECK(survey.all_have(4, 0, 1) && !survey.all_have(5, 0, 1));

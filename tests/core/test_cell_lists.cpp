@@ -34,7 +34,7 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
 {
   const int n = static_cast<int>(p.type.size());
   CellLists lists;
-  lists.build(p.x.data(), p.type.data(), n_owned, n, n_types, reach.data());
+  lists.build({p.x.data(), p.type.data(), n_owned, n, n_types}, reach.data());
   std::set<int> seen;
   for (int t = 1; t <= n_types; t++)
     for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) {
@@ -99,8 +99,8 @@ BOOST_AUTO_TEST_CASE(pairs_parted_by_a_sheet_are_left_out_and_no_others)
   }
   const std::vector<double> reach{0, 0, 0, 0.2};
   CellLists all, parts;
-  all.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data());
-  parts.build(p.x.data(), p.type.data(), 500, 600, 1, reach.data(), sides.data());
+  all.build({p.x.data(), p.type.data(), 500, 600, 1}, reach.data());
+  parts.build({p.x.data(), p.type.data(), 500, 600, 1, sides.data()}, reach.data());
   int left_out = 0;
   for (int slot = 0; slot < all.slots(); slot++) {
     const NeighborSpan one = all(slot, 1), other = parts(slot, 1);

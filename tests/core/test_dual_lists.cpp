@@ -67,10 +67,10 @@ struct Watched {
     std::uniform_real_distribution<> u(-fastest, fastest);
     v.resize(walk.x.size());
     for (double &component : v) component = u(walk.generator);
-    lists.build(walk.x.data(), walk.type.data(), owned, walk.n, 2, support.data(), skin, 3,
-                {v.data(), 1.0, interval});
+    lists.build(points(), support.data(), skin, {3, v.data(), 1.0, interval});
   }
-  void follow() { lists.follow(walk.x.data(), walk.type.data(), owned, walk.n); }
+  void follow() { lists.follow(points()); }
+  Points points() const { return {walk.x.data(), walk.type.data(), owned, walk.n, 2}; }
   double inner_skin(int own, int t) { return lists.inner_skin(lists.slot(own - 1), t); }
   int in_fronts(int own, int t)
   {

@@ -26,7 +26,7 @@ SCENES = ("dam", "block")
 SKINS = (0.1, 0.2, 0.3, 0.4, 0.6)
 EQUAL_SKIN = 0.2  # of the support, where pair times are compared
 
-# floating-point operations of one pair, counted in core/sph/fluid_loops.h: distance, kernel, sum;
+# floating-point operations of one pair, counted in core/sph/density_loops.h: distance, kernel, sum;
 # distance, kernel, pressure, artificial viscosity and the four sums
 FLOPS_PER_LISTED, FLOPS_PER_PAIR = 8, 10 + 46
 

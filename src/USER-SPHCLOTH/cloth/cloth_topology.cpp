@@ -2,13 +2,13 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "core/geometry/buckets.h"
 #include "domain.h"
 #include "error.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -141,15 +141,13 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
 
   elements.vertices.clear();
   elements.type.clear();
-  elements.first.assign(n_vertices() + 1, 0);
   for (const Element &e : sorted) {
     elements.vertices.push_back(e.vertices);
     elements.type.push_back(e.type);
-    for (int v : e.vertices) elements.first[v + 1]++;
   }
-  std::partial_sum(elements.first.begin(), elements.first.end(), elements.first.begin());
-  elements.incident.resize(elements.first.back());
-  std::vector<int> cursor(elements.first.begin(), elements.first.end() - 1);
-  for (std::size_t m = 0; m < sorted.size(); m++)
-    for (int v : sorted[m].vertices) elements.incident[cursor[v]++] = static_cast<int>(m);
+  const auto for_each = [&](auto add) {
+    for (std::size_t m = 0; m < sorted.size(); m++)
+      for (int v : sorted[m].vertices) add(static_cast<std::size_t>(v), static_cast<int>(m));
+  };
+  sphcloth::sort_into_buckets(n_vertices(), for_each, elements.first, elements.incident);
 }

@@ -45,9 +45,9 @@ void BoundaryMesh::find_places()
 }
 
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.
-// Who is beyond the border sees the fluid on both sides until then, and nothing is filled.
+// A particle beyond the border has fluid on both sides until then, and nothing is filled.
 
-void BoundaryMesh::look(double list_skin, const std::function<double(int)> &reach)
+void BoundaryMesh::update_candidates(double list_skin, const std::function<double(int)> &reach)
 {
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
@@ -128,9 +128,9 @@ void BoundaryMesh::keep_nearest(const Vec3 &p, double within, std::vector<Candid
     c.distance = gap_to(p, c.triangle, weight).norm();
     nearest = std::min(nearest, c.distance);
   }
-  const double most = nearest > within ? -1.0 : nearest + 2.0 * skin;
+  const double cutoff = nearest > within ? -1.0 : nearest + 2.0 * skin;
   near.erase(std::remove_if(near.begin(), near.end(),
-                            [&](const Candidate &c) { return c.distance > most; }),
+                            [&](const Candidate &c) { return c.distance > cutoff; }),
              near.end());
   std::sort(near.begin(), near.end(), nearer);
 }
@@ -258,10 +258,10 @@ double MeshBoundary::reach() const
 
 double MeshBoundary::support(int i) const { return fluid->support(atom->type[i]); }
 
-void MeshBoundary::look()
+void MeshBoundary::update_candidates()
 {
   for (BoundaryMesh &sheet : sheets)
-    sheet.look(neighbor->skin, [this](int i) {
+    sheet.update_candidates(neighbor->skin, [this](int i) {
       return atom->mask[i] & groupbit && fluid->is_fluid(atom->type[i]) ? support(i) : 0.0;
     });
 }

@@ -40,9 +40,9 @@ class BoundaryMesh : protected Pointers {
 
   BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
 
-  // After each list build: whom each particle may be nearest to until the next one.  reach(i): of
-  // the kernel of an owned particle, 0 for one that does not feel this wall.
-  void look(double skin, const std::function<double(int)> &reach);
+  // After each list build: triangles that may be nearest to a particle until the next one.
+  // reach(i): of the kernel of an owned particle, 0 for one that does not feel this wall.
+  void update_candidates(double skin, const std::function<double(int)> &reach);
 
   // where particles stand now, those within reach, added to what is there
   void find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points);
@@ -106,8 +106,8 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   // anew for each run, with the meshes that are there
   void init(FluidState *);
   void add(const ContactMesh *, TriangleSet *);
-  double reach() const;    // as far as fluid feels a mesh until the next list build
-  void look();    // after each list build
+  double reach() const;    // of fluid to a mesh until the next list build
+  void update_candidates();    // after each list build
 
   void begin() override;
   bool renormalizes() const override { return true; }

@@ -275,7 +275,7 @@ void SPHMaterials::unsettle()
   viscosities.clear();
 }
 
-// What the user did not say of a pair: the mean of two fluids, the fluid's own at a boundary.
+// Coefficients of a pair that are not given: the mean of two fluids, the fluid's own at a boundary.
 
 double SPHMaterials::nu(int i, int j) const
 {
@@ -378,7 +378,7 @@ void SPHMaterials::read_restart(FILE *fp)
 }
 
 // All digits, so that a data file gives the same forces.  Data files want a line for every pair; a
-// stiffness is there only if it was said, for there is none to mix.
+// stiffness is there only if it was given, for there is none to mix.
 
 std::string SPHMaterials::words(int i, int j) const
 {

@@ -4,6 +4,7 @@
 #ifndef SPHCLOTH_CORE_GEOMETRY_BOX_GRID_H
 #define SPHCLOTH_CORE_GEOMETRY_BOX_GRID_H
 
+#include "core/geometry/buckets.h"
 #include "core/geometry/cell_grid.h"
 #include "core/util/bytes.h"
 
@@ -28,19 +29,13 @@ class BoxGrid {
     grid.cut(bounds, mean / static_cast<double>(boxes.size()), boxes.size());
 
     begin.resize(boxes.size());
-    first.assign(grid.size() + 1, 0);
-    for (std::size_t b = 0; b < boxes.size(); b++) {
-      begin[b] = grid.of(boxes[b].min());
-      grid.for_cells(begin[b], grid.of(boxes[b].max()),
-                     [&](const CellGrid::Cell &, std::size_t c) { first[c + 1]++; });
-    }
-    for (std::size_t c = 1; c < first.size(); c++) first[c] += first[c - 1];
-    items.resize(first.back());
-    cursor.assign(first.begin(), first.end() - 1);
-    for (std::size_t b = 0; b < boxes.size(); b++)
-      grid.for_cells(begin[b], grid.of(boxes[b].max()), [&](const CellGrid::Cell &, std::size_t c) {
-        items[cursor[c]++] = static_cast<int>(b);
-      });
+    for (std::size_t b = 0; b < boxes.size(); b++) begin[b] = grid.of(boxes[b].min());
+    const auto for_each = [&](auto add) {
+      for (std::size_t b = 0; b < boxes.size(); b++)
+        grid.for_cells(begin[b], grid.of(boxes[b].max()),
+                       [&](const CellGrid::Cell &, std::size_t c) { add(c, static_cast<int>(b)); });
+    };
+    sort_into_buckets(grid.size(), for_each, first, items);
   }
 
   // calls visit(b) once for every box b in the cells that `probe` overlaps, in the order of the
@@ -60,12 +55,12 @@ class BoxGrid {
     });
   }
 
-  double bytes() const { return bytes_of(begin, first, cursor, items); }
+  double bytes() const { return bytes_of(begin, first, items); }
 
  private:
   CellGrid grid;
   std::vector<CellGrid::Cell> begin;    // the first cell of each box
-  std::vector<int> first, cursor, items;
+  std::vector<int> first, items;
 };
 
 }    // namespace sphcloth

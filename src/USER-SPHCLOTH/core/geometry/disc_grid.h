@@ -1,5 +1,5 @@
-// Discs around triangles, sorted by their centres into cells: which triangles may be near a point,
-// which may be the nearest?  No triangle is nearer than its disc, nor farther than the centre.
+// Discs around triangles, sorted by their centers into cells: which triangles may be near a point,
+// which may be the nearest?  No triangle is nearer than its disc, nor farther than the center.
 //
 // A query looks around the point as far as the largest disc may reach, so small ones and large ones
 // have grids of their own.
@@ -7,6 +7,7 @@
 #ifndef SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
 #define SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
 
+#include "core/geometry/buckets.h"
 #include "core/geometry/cell_grid.h"
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
@@ -63,7 +64,7 @@ class DiscGrid {
       }
   }
 
-  // of those the ones that are not farther than the nearest centre of all, and `slack`
+  // of those the ones that are not farther than the nearest center of all, and `slack`
 
   template <class Visit>
   void nearest(const Eigen::Vector3d &p, double far, double slack, Visit visit)
@@ -79,7 +80,7 @@ class DiscGrid {
   {
     double sum = 0.0;
     for (const Size &s : sizes)
-      sum += bytes_of(s.members, s.first, s.cursor, s.items, s.x, s.y, s.z, s.disc, s.distance_sq);
+      sum += bytes_of(s.members, s.first, s.items, s.x, s.y, s.z, s.disc, s.distance_sq);
     return sum;
   }
 
@@ -90,10 +91,10 @@ class DiscGrid {
     std::vector<int> members;
     CellGrid grid;
     double largest = 0.0;    // radius and room
-    std::vector<int> first, cursor, items;
+    std::vector<int> first, items;
     std::vector<double> x, y, z;    // in the order of the cells
     std::vector<Disc> disc;
-    // of the last query: the cells, if any, and how far the centres in them are
+    // of the last query: the cells, if any, and how far the centers in them are
     CellGrid::Cell lo, hi;
     std::vector<double> distance_sq;
 
@@ -112,12 +113,10 @@ class DiscGrid {
         const CellGrid::Cell c = grid.of(discs[d].center);
         return grid.number(c[0], c[1], c[2]);
       };
-      first.assign(grid.size() + 1, 0);
-      for (const int d : members) first[cell_of(d) + 1]++;
-      for (std::size_t c = 1; c < first.size(); c++) first[c] += first[c - 1];
-      cursor.assign(first.begin(), first.end() - 1);
-      items.resize(members.size());
-      for (const int d : members) items[cursor[cell_of(d)]++] = d;
+      const auto for_each = [&](auto add) {
+        for (const int d : members) add(cell_of(d), d);
+      };
+      sort_into_buckets(grid.size(), for_each, first, items);
       for (std::vector<double> *column : {&x, &y, &z, &distance_sq})
         column->assign(items.size() + LANES, std::numeric_limits<double>::infinity());
       disc.resize(items.size());
@@ -129,7 +128,7 @@ class DiscGrid {
       }
     }
 
-    // Which cells hold the centres of those within `far`?  None: false.
+    // Which cells hold the centers of those within `far`?  None: false.
     bool look(const Eigen::Vector3d &p, double far)
     {
       const double room = far + largest;
@@ -141,7 +140,7 @@ class DiscGrid {
       return true;
     }
 
-    // the least distance of a centre, squared, if it is below what is known
+    // the least distance of a center, squared, if it is below what is known
     SPHCLOTH_MULTIVERSION double measure(const Eigen::Vector3d &p, double known)
     {
       const double px = p[0], py = p[1], pz = p[2];

@@ -25,7 +25,7 @@ class ApproachBounds {
 
   explicit ApproachBounds(const Blocks &blocks_) : blocks(blocks_) {}
 
-  // Takes in how far all particles are from a place of theirs: now - centre - held; held may be
+  // Takes in displacements: now - center - held; held may be
   // null.
   SPHCLOTH_MULTIVERSION void measure(const double *now, const std::array<double, 3> &center,
                                      const Place *held)

@@ -1,5 +1,5 @@
-// Which values particles have around a block of space: where all have the same, nobody has to look
-// at neighbour after neighbour.
+// Minimum and maximum of a value of the particles around a block of space: where all have the same,
+// no neighbor needs to be tested.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_BLOCK_MINMAX_H
 #define SPHCLOTH_CORE_NEIGHBOR_BLOCK_MINMAX_H
@@ -27,20 +27,20 @@ class BlockMinMax {
     blocks.spread(ranges, [](Range &range, const Range &more) { widen(range, more); });
   }
 
-  // the greatest of a type in a block and around; least int where there is none
-  int greatest(int b, int t) const { return ranges.around[blocks.row(b, t)].greatest; }
-  // has nobody of that type another?
+  // the maximum of a type in a block and around; the smallest int where there is none
+  int greatest(int b, int t) const { return ranges.around[blocks.row(b, t)].max; }
+  // have all of that type the same?
   bool all_have(int same, int b, int t) const
   {
     const Range &range = ranges.around[blocks.row(b, t)];
-    return range.least >= same && range.greatest <= same;
+    return range.min >= same && range.max <= same;
   }
 
   double bytes() const { return ranges.bytes(); }
 
  private:
   struct Range {
-    int least = std::numeric_limits<int>::max(), greatest = std::numeric_limits<int>::min();
+    int min = std::numeric_limits<int>::max(), max = std::numeric_limits<int>::min();
   };
 
   const Blocks &blocks;
@@ -48,8 +48,8 @@ class BlockMinMax {
 
   static void widen(Range &range, const Range &more)
   {
-    range.least = std::min(range.least, more.least);
-    range.greatest = std::max(range.greatest, more.greatest);
+    range.min = std::min(range.min, more.min);
+    range.max = std::max(range.max, more.max);
   }
 };
 

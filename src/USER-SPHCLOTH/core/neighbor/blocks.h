@@ -1,4 +1,4 @@
-// Blocks of space, at least as wide as lists reach: the neighbours of a particle are in its block
+// Blocks of space, at least as wide as lists reach: the neighbors of a particle are in its block
 // or in those around.  What all particles of a type in a block have in common is found once, and
 // spread to the blocks around.
 
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/buckets.h"
 #include "core/neighbor/cell_lists.h"
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
@@ -18,21 +19,18 @@ namespace sphcloth {
 
 class Blocks {
  public:
-  // x: [n_all][3]; at least so wide, and with many particles on average, so that blocks cost little
-  void divide(const double *x, const int *type, int n_all, int n_types, double width)
+  // at least so wide, and with many particles on average, so that blocks cost little
+  void divide(const Points &p, double width)
   {
-    types = n_types;
-    cut(Bounds(x, n_all), n_all, width);
+    const int n_all = p.n_all;
+    types = p.n_types;
+    cut(Bounds(p.x, n_all), n_all, width);
     block.resize(n_all);
-    first.assign(static_cast<std::size_t>(types) * n_blocks + 1, 0);
-    for (int i = 0; i < n_all; i++) {
-      block[i] = block_at(x + 3 * i);
-      first[row(block[i], type[i]) + 1]++;
-    }
-    for (std::size_t r = 1; r < first.size(); r++) first[r] += first[r - 1];
-    member.resize(n_all);
-    std::vector<int> next(first.begin(), first.end() - 1);
-    for (int i = 0; i < n_all; i++) member[next[row(block[i], type[i])]++] = i;
+    for (int i = 0; i < n_all; i++) block[i] = block_at(p.x + 3 * i);
+    const auto for_each = [&](auto add) {
+      for (int i = 0; i < n_all; i++) add(row(block[i], p.type[i]), i);
+    };
+    sort_into_buckets(static_cast<std::size_t>(types) * n_blocks, for_each, first, member);
   }
 
   int count() const { return n_blocks; }
@@ -83,7 +81,7 @@ class Blocks {
   int types = 0, n_blocks = 0;
   std::array<int, 3> n{1, 1, 1};
   std::array<double, 3> lo{}, inv_width{};
-  std::vector<int> block, first, member;    // of a particle; of a row, and who they are
+  std::vector<int> block, first, member;    // of a particle; of a row: its members
 
   void cut(const Extent &extent, int n_all, double width)
   {

@@ -1,9 +1,9 @@
-// Neighbour lists of short-ranged particles, by type of the neighbour.
+// Neighbor lists of short-ranged particles, by type of the neighbor.
 //
-// Particles are sorted by type and then by cell, cells in rows along x, so that the neighbours of a
+// Particles are sorted by type and then by cell, cells in rows along x, so that the neighbors of a
 // particle lie in a few contiguous runs of single-precision coordinates: lists are built several
 // times faster than over linked bins.  Each type has a grid of its own, as fine as its particles
-// look among each other.  A pair of types without a reach costs nothing, and the neighbours of a
+// interact among each other.  A pair of types without a reach costs nothing, and the neighbors of a
 // particle come grouped by their type, so that a loop over one group has one set of coefficients.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
@@ -17,12 +17,13 @@
 #include <vector>
 
 #include "core/contact/sheet_sides.h"
+#include "core/geometry/buckets.h"
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
 
 namespace sphcloth {
 
-// Where particles are, to count coordinates from the centre in single precision
+// Where particles are, to count coordinates from the center in single precision
 
 struct Extent {
   std::array<double, 3> lo, hi;
@@ -57,7 +58,16 @@ struct Bounds : Extent {
   }
 };
 
-// one group of neighbours; LANES indices past the end are readable and valid
+// Particles that are listed: positions [n_all][3], owned particles first
+
+struct Points {
+  const double *x = nullptr;
+  const int *type = nullptr;
+  int n_owned = 0, n_all = 0, n_types = 0;
+  const Sides *sides = nullptr;    // of all; null: there are no sheets that part neighbors
+};
+
+// one group of neighbors; LANES indices past the end are readable and valid
 
 struct NeighborSpan {
   const int *of = nullptr;
@@ -169,14 +179,12 @@ class NeighborSpans {
 
 class CellLists {
  public:
-  // x: [n_all][3], owned particles first; reach: [(n_types+1)^2], distance up to which the second
-  // type is listed as a neighbour of the first, 0: never; sides: of all particles, or null.  Who is
-  // parted by a sheet is not listed.
-  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const Sides *of_all = nullptr)
+  // reach: [(n_types+1)^2], distance up to which the second type is listed as a neighbor of the
+  // first, 0: never.  Particles that a sheet parts are not neighbors.
+  void build(const Points &p, const double *reach)
   {
     std::vector<int> none;
-    build(x, type, n_owned, n_all, n_types, reach, {}, none, of_all);
+    build(p, reach, {}, none);
   }
 
   // [region][(n_types+1)^2], and the region of each particle
@@ -185,48 +193,47 @@ class CellLists {
     const int *region = nullptr;
   };
 
-  // The same, and those that are near come first in each list; front: [slot][type], how many they
-  // are.
-  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all)
+  // The same, and those that are near come first in each list; n_near: [slot][type], how many.
+  void build(const Points &p, const double *reach, const Near &near, std::vector<int> &n_near)
   {
-    sides = of_all;
-    sort_into_cells(x, type, n_all, n_types, reach);
-    find_slots(type, n_owned, n_types);
+    const int n_types = p.n_types;
+    sides = p.sides;
+    sort_into_cells(p, reach);
+    find_slots(p);
     lists.start(order.size(), n_types);
-    front.assign(near.distance ? order.size() * n_types : 0, 0);
-    int *in_front = front.data();
+    n_near.assign(near.distance ? order.size() * n_types : 0, 0);
+    int *next = n_near.data();
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
           const int pair = t * (n_types + 1) + other;
           const int n = list(slot, other, reach[pair], t == other);
           if (near.distance)
-            *in_front++ = bring_to_front(lists.room(0), n, near_in(near, slot, n_types)[pair]);
+            *next++ = near_first(lists.room(0), n, near_in(near, slot, n_types)[pair]);
           lists.close(n);
         }
     lists.finish();
     finish();
   }
 
-  // Some of them anew, of the same particles where they are now, in the same slots: those that are
-  // due(slot, type, other).
+  // Rebuilds those lists that are due(slot, type, other), of the same particles at their present
+  // positions, in the same slots.
   template <class Due>
-  void renew(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *reach, const Near &near, std::vector<int> &front, const Sides *of_all,
+  void renew(const Points &p, const double *reach, const Near &near, std::vector<int> &n_near,
              Due due)
   {
-    sides = of_all;
-    sort_into_cells(x, type, n_all, n_types, reach);
-    find_places(n_owned);
+    const int n_types = p.n_types;
+    sides = p.sides;
+    sort_into_cells(p, reach);
+    find_places(p.n_owned);
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
           if (!due(slot, t, other)) continue;
           const int pair = t * (n_types + 1) + other;
           const int n = list(slot, other, reach[pair], t == other);
-          front[static_cast<std::size_t>(slot) * n_types + other - 1] =
-              bring_to_front(lists.replace(slot, other, n), n, near_in(near, slot, n_types)[pair]);
+          n_near[static_cast<std::size_t>(slot) * n_types + other - 1] =
+              near_first(lists.replace(slot, other, n), n, near_in(near, slot, n_types)[pair]);
         }
     finish();
   }
@@ -284,28 +291,28 @@ class CellLists {
   NeighborSpans lists;
   const Sides *sides = nullptr;    // during a build
 
-  // Half of how far a type looks among its own, or, if it does not, of what others see of it
+  // half of the reach of a type among its own or, without one, the minimum reach of others to it
 
   static double cell_side(int t, int n_types, const double *reach)
   {
     if (const double own = reach[t * (n_types + 1) + t]; own > 0.0) return 0.5 * own;
-    double least = std::numeric_limits<double>::max();
+    double min = std::numeric_limits<double>::max();
     for (int other = 1; other <= n_types; other++)
-      if (const double far = reach[other * (n_types + 1) + t]; far > 0.0)
-        least = std::min(least, far);
-    return 0.5 * least;
+      if (const double of_other = reach[other * (n_types + 1) + t]; of_other > 0.0)
+        min = std::min(min, of_other);
+    return 0.5 * min;
   }
 
   // returns how many cells there are
 
-  std::int64_t set_grids(const double *x, const int *type, int n_all, int n_types,
-                         const double *reach)
+  std::int64_t set_grids(const Points &p, const double *reach)
   {
+    const int n_types = p.n_types;
     std::vector<Extent> extents(n_types + 1);
     std::vector<int> count(n_types + 1, 0);
-    for (int i = 0; i < n_all; i++) {
-      extents[type[i]].include(x + 3 * i);
-      count[type[i]]++;
+    for (int i = 0; i < p.n_all; i++) {
+      extents[p.type[i]].include(p.x + 3 * i);
+      count[p.type[i]]++;
     }
     grids.assign(n_types + 1, Grid());
     std::int64_t cells = 0;
@@ -333,59 +340,51 @@ class CellLists {
 
   // counting sort by type and cell
 
-  void sort_into_cells(const double *x, const int *type, int n_all, int n_types,
-                       const double *reach)
+  void sort_into_cells(const Points &p, const double *reach)
   {
-    const double longest = *std::max_element(reach, reach + (n_types + 1) * (n_types + 1));
+    const double *x = p.x;
+    const int *type = p.type, n_all = p.n_all;
+    const double longest = *std::max_element(reach, reach + (p.n_types + 1) * (p.n_types + 1));
     sorted = 0;
     if (n_all == 0 || longest == 0.0) return;
     const Bounds bounds(x, n_all);
     center = bounds.center;
     slack = bounds.rounding;
 
-    cell_start.assign(set_grids(x, type, n_all, n_types, reach) + 1, 0);
+    const std::int64_t n_cells = set_grids(p, reach);
     cell.resize(n_all);
-    for (int i = 0; i < n_all; i++) {
-      cell[i] = static_cast<int>(grids[type[i]].at(x + 3 * i));
-      cell_start[cell[i]]++;
-    }
-    int before = 0;
-    for (int &start : cell_start) {
-      const int count = start;
-      start = before;
-      before += count;
-    }
-    id.resize(n_all);
-    for (int i = 0; i < n_all; i++) id[cell_start[cell[i]]++] = i;
-    for (std::size_t c = cell_start.size() - 1; c > 0; c--) cell_start[c] = cell_start[c - 1];
-    cell_start[0] = 0;
+    for (int i = 0; i < n_all; i++) cell[i] = static_cast<int>(grids[type[i]].at(x + 3 * i));
+    const auto for_each = [&](auto add) {
+      for (int i = 0; i < n_all; i++) add(static_cast<std::size_t>(cell[i]), i);
+    };
+    sort_into_buckets(static_cast<std::size_t>(n_cells), for_each, cell_start, id);
 
     px.resize(n_all + LANES);
     py.resize(n_all + LANES);
     pz.resize(n_all + LANES);
     id.resize(n_all + LANES);
-    for (int p = 0; p < n_all; p++) {
-      const int i = id[p];
-      px[p] = static_cast<float>(x[3 * i] - center[0]);
-      py[p] = static_cast<float>(x[3 * i + 1] - center[1]);
-      pz[p] = static_cast<float>(x[3 * i + 2] - center[2]);
+    for (int k = 0; k < n_all; k++) {
+      const int i = id[k];
+      px[k] = static_cast<float>(x[3 * i] - center[0]);
+      py[k] = static_cast<float>(x[3 * i + 1] - center[1]);
+      pz[k] = static_cast<float>(x[3 * i + 2] - center[2]);
     }
     sorted = n_all;
   }
 
-  void find_slots(const int *type, int n_owned, int n_types)
+  void find_slots(const Points &p)
   {
     order.clear();
     place.clear();
-    slots_of.assign(n_types + 2, 0);
-    for (int p = 0; p < sorted; p++) {
-      const int i = id[p];
-      if (i >= n_owned) continue;
+    slots_of.assign(p.n_types + 2, 0);
+    for (int k = 0; k < sorted; k++) {
+      const int i = id[k];
+      if (i >= p.n_owned) continue;
       order.push_back(i);
-      place.push_back(p);
-      slots_of[type[i] + 1]++;
+      place.push_back(k);
+      slots_of[p.type[i] + 1]++;
     }
-    for (int t = 1; t <= n_types + 1; t++) slots_of[t] += slots_of[t - 1];
+    for (int t = 1; t <= p.n_types + 1; t++) slots_of[t] += slots_of[t - 1];
   }
 
   // of the slots that there are
@@ -410,10 +409,10 @@ class CellLists {
   int list(int slot, int other, double reach, bool same_type)
   {
     if (reach == 0.0) return 0;
-    const double far = reach + slack;
-    const int n = candidates(slot, other, far, same_type);
+    const double cutoff = reach + slack;
+    const int n = candidates(slot, other, cutoff, same_type);
     if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
-    return compact(key.data(), candidate.data(), n, static_cast<float>(far * far), key.data(),
+    return compact(key.data(), candidate.data(), n, static_cast<float>(cutoff * cutoff), key.data(),
                    lists.room(n));
   }
 
@@ -425,11 +424,11 @@ class CellLists {
 
   // those of the list just made, of n, that are nearer; returns how many
 
-  int bring_to_front(int *list, int n, double near)
+  int near_first(int *list, int n, double near)
   {
     if (n == 0 || near == 0.0) return 0;
-    const double far = near + slack;
-    return partition(key.data(), list, n, static_cast<float>(far * far), candidate.data());
+    const double cutoff = near + slack;
+    return partition(key.data(), list, n, static_cast<float>(cutoff * cutoff), candidate.data());
   }
 
   void leave_out_parted(Sides mine, int n)
@@ -439,8 +438,8 @@ class CellLists {
         key[k] = std::numeric_limits<float>::max();
   }
 
-  // everyone in the cells that the sphere around a particle touches, with the squared distance;
-  // returns how many
+  // all particles in the cells that the sphere around a particle touches, with the squared
+  // distances; returns how many
 
   SPHCLOTH_MULTIVERSION int candidates(int slot, int other, double reach, bool same_type)
   {

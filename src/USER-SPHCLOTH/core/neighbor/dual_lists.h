@@ -1,21 +1,22 @@
-// Neighbour lists whose front holds those who interact now.
+// Dual neighbor lists: outer lists that hold for many steps, and at the front of each its inner
+// list, the neighbors that interact now.
 //
-// A list that serves for many steps holds about twice as many particles as are inside the support.
-// Those within the support and a small inner skin are moved to its front, and the loops run over
-// the front alone until particles may have come nearer by the inner skin.  The inner skin follows
-// from the motion: each particle that it adds costs a little at every evaluation, and each
-// evaluation that it lasts saves one pass over the list.  (A dual list: Pall et al., J. Chem. Phys.
-// 153 (2020) 134110.)
+// An outer list holds about twice as many particles as are inside the support.  Pruning moves those
+// within the support and a small inner skin to its front, and the loops run over this inner list
+// until particles may have approached each other by the inner skin.  The inner skin follows from
+// the motion: each particle that it adds costs a little at every evaluation, and each evaluation
+// that it lasts saves one pruning.  (Pall et al., J. Chem. Phys. 153 (2020) 134110.)
 //
-// Each block of space has an odometer for each pair of types: how much nearer they may have come
-// there (core/neighbor/approach_bounds.h).  A front is valid up to a reading of it, so particles
-// that are evaluated seldom, rest, or move with those around them keep theirs while fronts
-// elsewhere are found anew.  The lists themselves hold until a reading exceeds their skin.
+// Each block of space has for each pair of types a displacement bound: how much nearer the
+// particles may have come there since lists were built (core/neighbor/approach_bounds.h).  An inner
+// list is valid up to a value of it, so particles that are evaluated seldom, rest, or move with
+// those around them keep theirs while lists elsewhere are pruned.  The outer lists hold until the
+// bound exceeds their skin.
 //
-// Nothing is kept from one list to the next, so a run that is continued from a restart file goes on
-// with the same fronts.  Every rank decides for itself.  A front is found when it is asked for,
-// from the positions at which odometers were read last, so particles that nobody asks for cost
-// nothing.
+// Nothing is kept from one build to the next, so a run that is continued from a restart file goes
+// on with the same inner lists.  Every rank decides for itself.  Lists are pruned when they are
+// read, from the positions at which the bounds were updated last, so particles that are not
+// evaluated cost nothing.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_DUAL_LISTS_H
 #define SPHCLOTH_CORE_NEIGHBOR_DUAL_LISTS_H
@@ -26,11 +27,12 @@
 
 namespace sphcloth {
 
-// What is known of the motion: velocities of all particles, [n_all][3], or null, for about how long
-// from one evaluation to the next; and of a type, [n_types+1], after how many of them one is
-// evaluated itself, on average.
+// The dimension, and what is known of the motion: velocities of all particles, [n_all][3], or null;
+// the time from one evaluation to the next, about; and of each type, [n_types+1], the mean number
+// of evaluations from one in which a particle is active to the next.
 
 struct Motion {
+  int dimension = 3;
   const double *v = nullptr;
   double step = 0.0;
   std::vector<double> interval;
@@ -39,23 +41,19 @@ struct Motion {
 class DualLists {
  public:
   // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin
-  // than `most`: somebody else sees that lists are built anew before two that are farther apart
-  // than that can meet.
-  void build(const double *x, const int *type, int n_owned, int n_all, int n_types,
-             const double *support, double most, int dimension, const Motion &motion,
-             const Sides *sides = nullptr)
+  // than max_skin: lists are built again before particles have approached by more.
+  void build(const Points &p, const double *support, double max_skin, const Motion &motion)
   {
-    give_back(held);    // its memory for what the lists are made of
-    types = n_types;
-    dim = dimension;
+    give_back(reference);    // its memory for what the lists are made of
+    types = p.n_types;
+    dim = motion.dimension;
     interval = motion.interval;
-    set_limits(support, most);
-    set_blocks(x, type, n_all, most, motion);
-    const std::vector<double> near = near_fronts();
-    outer.build(x, type, n_owned, n_all, n_types, far.data(), {near.data(), blocks.of_particle()},
-                in_front, sides);
-    until.resize(in_front.size());
-    slot_of.resize(n_owned);
+    set_limits(support, max_skin);
+    set_blocks(p, max_skin, motion);
+    const std::vector<double> near = inner_reach();
+    outer.build(p, cutoff.data(), {near.data(), blocks.of_particle()}, n_inner);
+    inner_until.resize(n_inner.size());
+    slot_of.resize(p.n_owned);
     block.resize(outer.slots());
     for (int slot = 0; slot < outer.slots(); slot++) {
       slot_of[outer.at(slot)] = slot;
@@ -63,61 +61,60 @@ class DualLists {
     }
     current.assign(outer.slots(), 1);
     evaluation = 1;
-    hold(x, n_all);
+    set_reference(p);
     longest_list = 0;
     note_lists([](int, int, int) { return true; });
   }
 
   // Once per evaluation but for the one for which lists are new, before they are read.  The
   // particles are those for which lists were built, where they are now.
-  void follow(const double *x, const int *type, int n_owned, int n_all,
-              const Sides *sides = nullptr)
+  void follow(const Points &p)
   {
     if (outer.slots() == 0) return;
     begin_evaluation();
     steps++;
-    closing.measure(x, center, held.data());
-    bool fronts_hold = true, lists_hold = true;
-    for_each_front([&](Front &front, int b, int t, int other) {
-      const double nearer = closing.between(b, t, other);
-      front.reading = front.held + (nearer > 0.0 ? nearer + 2.0 * rounding : 0.0);
-      fronts_hold = fronts_hold && front.reading <= front.held + front.skin;
-      lists_hold = lists_hold && front.reading <= front.lists_until;
+    displacements.measure(p.x, center, reference.data());
+    bool inner_hold = true, outer_hold = true;
+    for_each_bound([&](Bound &bound, int b, int t, int other) {
+      const double nearer = displacements.between(b, t, other);
+      bound.approach = bound.at_reference + (nearer > 0.0 ? nearer + 2.0 * rounding : 0.0);
+      inner_hold = inner_hold && bound.approach <= bound.at_reference + bound.skin;
+      outer_hold = outer_hold && bound.approach <= bound.outer_until;
     });
-    if (fronts_hold && lists_hold) return;
-    for_each_front([&](Front &front, int, int t, int other) {
-      front.skin = lasting_skin(t, other, (front.reading - front.held) / steps);
-      front.held = front.reading;
+    if (inner_hold && outer_hold) return;
+    for_each_bound([&](Bound &bound, int, int t, int other) {
+      bound.skin = lasting_skin(t, other, (bound.approach - bound.at_reference) / steps);
+      bound.at_reference = bound.approach;
     });
-    hold(x, n_all);
-    if (!lists_hold) renew(x, type, n_owned, n_all, sides);
+    set_reference(p);
+    if (!outer_hold) renew(p);
   }
 
-  // makes the front of all lists of one particle valid
+  // makes all inner lists of one particle valid
   void refresh(int slot)
   {
     if (current[slot] == evaluation) return;
     current[slot] = static_cast<std::uint8_t>(evaluation);
     const int t = type_of(slot);
-    const Front *of_block = &at(block[slot], t, 1);
+    const Bound *of_block = &at(block[slot], t, 1);
     for (int other = 1; other <= types; other++)
-      if (of_block[other - 1].reading > until[of(slot, other)]) move_to_front(slot, t, other);
+      if (of_block[other - 1].approach > inner_until[of(slot, other)]) prune(slot, t, other);
   }
 
-  // Of a value of each particle: is that of a neighbour of one type above a limit?  Whose is
-  // another?  What many are about to ask may be found for whole blocks of space before; `surveyed`
-  // says that this was the last survey.
-  void measure_block_ranges(const int *value) { survey.take(value); }
-  bool any_above(int most, int slot, int other, const int *value, bool surveyed)
+  // Of a value of each particle: is that of a neighbor of one type above a limit?  Whose is
+  // another? Ranges of the value may be measured for whole blocks of space before; `ranges_known`
+  // says that those are of this value.
+  void measure_block_ranges(const int *value) { ranges.take(value); }
+  bool any_above(int limit_of_value, int slot, int other, const int *value, bool ranges_known)
   {
-    if (surveyed && survey.greatest(block[slot], other) <= most) return false;
+    if (ranges_known && ranges.greatest(block[slot], other) <= limit_of_value) return false;
     refresh(slot);
-    return greatest((*this)(slot, other), value) > most;
+    return greatest((*this)(slot, other), value) > limit_of_value;
   }
-  // until somebody asks again
-  NeighborSpan others(int same, int slot, int other, const int *value, bool surveyed = false)
+  // valid until the next call
+  NeighborSpan others(int same, int slot, int other, const int *value, bool ranges_known = false)
   {
-    if (surveyed && survey.all_have(same, block[slot], other)) return {nullptr, 0};
+    if (ranges_known && ranges.all_have(same, block[slot], other)) return {nullptr, 0};
     refresh(slot);
     const NeighborSpan near = (*this)(slot, other);
     const int n = pick_others(value, same, near.of, near.n, spare.data());
@@ -125,61 +122,62 @@ class DualLists {
     return {spare.data(), n};
   }
 
-  // owned particles by type and in space, see NeighbourLists
+  // owned particles by type and in space, see CellLists
   int begin(int t) const { return outer.begin(t); }
   int slots() const { return outer.slots(); }
   int at(int slot) const { return outer.at(slot); }
-  // Everyone inside the support and some a little outside, as of the last refresh.
+  // all neighbors inside the support and some a little outside, as of the last refresh
   NeighborSpan operator()(int slot, int t) const
   {
-    return {outer(slot, t).of, in_front[of(slot, t)]};
+    return {outer(slot, t).of, n_inner[of(slot, t)]};
   }
   int slot(int owned) const { return slot_of[owned]; }
-  // of the front of one particle, if it were found now
+  // of the inner list of one particle, if it were pruned now
   double inner_skin(int slot, int t) const { return at(block[slot], type_of(slot), t).skin; }
   // list, of one particle and type
   int longest() const { return longest_list; }
 
   double bytes() const
   {
-    return outer.bytes() + blocks.bytes() + closing.bytes() + survey.bytes() +
-        bytes_of(held, until, in_front, slot_of, block, current, fronts, due, due_block);
+    return outer.bytes() + blocks.bytes() + displacements.bytes() + ranges.bytes() +
+        bytes_of(reference, inner_until, n_inner, slot_of, block, current, pair_bounds, due,
+                 due_block);
   }
 
  private:
   // of particles of a type in a block, in the lists of another type
-  struct Front {
-    double reading = 0.0;    // of the odometer, now
-    double held = 0.0;    // and when positions were held
-    double skin = 0.0;    // inner skin of what is found from these
-    double lists_until = 0.0;    // the lists hold up to this reading
+  struct Bound {
+    double approach = 0.0;    // maximum since lists were built: now
+    double at_reference = 0.0;    // and at the reference positions
+    double skin = 0.0;    // inner skin of lists that are pruned from these
+    double outer_until = 0.0;    // the outer lists hold up to this approach
   };
 
-  // what an entry of a list costs while its front is found, over one of the front in an evaluation,
-  // about (measured)
+  // cost of an entry of an outer list when it is pruned over that of an inner list in an
+  // evaluation, about (measured)
   static constexpr double ENTRY_COST = 0.23;
   // Skin of the lists over support: narrow lists are quick to read, wide ones last.  Between 0.2
   // and 0.4 all cost the same (measured).
   static constexpr double LIST_SKIN = 0.3;
-  // least inner skin over support while nothing is known of the motion
+  // minimum inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
 
   CellLists outer;
   int types = 0;
-  std::vector<int> in_front, slot_of;    // [slot][type], [owned particle]
-  std::vector<double> until;    // [slot][type], reading of the odometer
-  std::vector<std::uint8_t> current;    // [slot], the evaluation in which it was asked for
+  std::vector<int> n_inner, slot_of;    // [slot][type], [owned particle]
+  std::vector<double> inner_until;    // [slot][type], approach up to which inner lists hold
+  std::vector<std::uint8_t> current;    // [slot], the evaluation in which it was refreshed
   std::vector<int> block;    // [slot]
-  std::vector<Front> fronts;    // [block][type][type]
+  std::vector<Bound> pair_bounds;    // [block][type][type]
   std::vector<char> due, due_block;    // of these, and of blocks: lists that are made anew
-  // of a pair of types: support, 0: never; reach of the lists; their skin, and how much of it may
-  // be used up; cost of finding a front
-  std::vector<double> limit, far, widest, lasting, cost;
+  // of a pair of types: support, 0: never; cutoff of the outer lists; their skin, and how much of
+  // it may be used up; cost of pruning
+  std::vector<double> limit, cutoff, widest, lasting, cost;
   std::vector<double> interval;    // of a type
   Blocks blocks;
-  ApproachBounds closing{blocks};
-  BlockMinMax survey{blocks};
-  AlignedVector<ApproachBounds::Place> held;    // positions from which fronts are found
+  ApproachBounds displacements{blocks};
+  BlockMinMax ranges{blocks};
+  AlignedVector<ApproachBounds::Place> reference;    // positions from which lists are pruned
   std::array<double, 3> center{};
   AlignedVector<float> key;
   std::vector<int> spare;
@@ -187,17 +185,20 @@ class DualLists {
   int dim = 3;
   int longest_list = 0;
   int evaluation = 0;    // 1 to 255
-  int steps = 0;    // evaluations since positions were held
+  int steps = 0;    // evaluations since the reference positions
   double rounding = 0.0;    // of a distance in single precision
 
   std::size_t of(int slot, int t) const { return static_cast<std::size_t>(slot) * types + t - 1; }
   int pair(int t, int other) const { return t * (types + 1) + other; }
-  Front &at(int b, int t, int other) { return fronts[(b * types + t - 1) * types + other - 1]; }
-  const Front &at(int b, int t, int other) const
+  Bound &at(int b, int t, int other)
   {
-    return fronts[(b * types + t - 1) * types + other - 1];
+    return pair_bounds[(b * types + t - 1) * types + other - 1];
   }
-  template <class Do> void for_each_front(Do something)
+  const Bound &at(int b, int t, int other) const
+  {
+    return pair_bounds[(b * types + t - 1) * types + other - 1];
+  }
+  template <class Do> void for_each_bound(Do something)
   {
     for (int b = 0; b < blocks.count(); b++)
       for (int t = 1; t <= types; t++) {
@@ -207,68 +208,68 @@ class DualLists {
       }
   }
 
-  void set_limits(const double *support, double most)
+  void set_limits(const double *support, double max_skin)
   {
     const int n = (types + 1) * (types + 1);
     limit.assign(support, support + n);
-    for (std::vector<double> *of_pair : {&far, &widest, &lasting, &cost}) of_pair->assign(n, 0.0);
+    for (std::vector<double> *of_pair : {&cutoff, &widest, &lasting, &cost})
+      of_pair->assign(n, 0.0);
     for (int k = 0; k < n; k++) {
       if (limit[k] == 0.0) continue;
-      widest[k] = std::min(most, LIST_SKIN * limit[k]);
-      lasting[k] = widest[k] < most ? widest[k] : std::numeric_limits<double>::max();
-      far[k] = limit[k] + widest[k];
-      cost[k] = ENTRY_COST * std::pow(far[k] / limit[k], dim);
+      widest[k] = std::min(max_skin, LIST_SKIN * limit[k]);
+      lasting[k] = widest[k] < max_skin ? widest[k] : std::numeric_limits<double>::max();
+      cutoff[k] = limit[k] + widest[k];
+      cost[k] = ENTRY_COST * std::pow(cutoff[k] / limit[k], dim);
     }
   }
 
-  // Blocks stay as they are while lists are renewed: who meets until lists are built again must be
-  // in blocks beside each other now.
-  void set_blocks(const double *x, const int *type, int n_all, double most, const Motion &motion)
+  // Blocks stay as they are while lists are renewed: particles that may interact until lists are
+  // built again must be in blocks beside each other now.
+  void set_blocks(const Points &p, double max_skin, const Motion &motion)
   {
     constexpr double ROUNDING = 1e-6;
-    const double longest = *std::max_element(limit.begin(), limit.end()) + most;
-    blocks.divide(x, type, n_all, types, longest * (1.0 + ROUNDING));
-    fronts.assign(static_cast<std::size_t>(blocks.count()) * types * types, Front());
-    if (motion.v) closing.measure(motion.v, {0.0, 0.0, 0.0}, nullptr);
-    for_each_front([&](Front &front, int b, int t, int other) {
-      const double displacement = motion.v ? closing.between(b, t, other) * motion.step : 0.0;
+    const double longest = *std::max_element(limit.begin(), limit.end()) + max_skin;
+    blocks.divide(p, longest * (1.0 + ROUNDING));
+    pair_bounds.assign(static_cast<std::size_t>(blocks.count()) * types * types, Bound());
+    if (motion.v) displacements.measure(motion.v, {0.0, 0.0, 0.0}, nullptr);
+    for_each_bound([&](Bound &bound, int b, int t, int other) {
+      const double displacement = motion.v ? displacements.between(b, t, other) * motion.step : 0.0;
       const int k = pair(t, other);
-      front.skin = std::min(widest[k],
+      bound.skin = std::min(widest[k],
                             std::max(FIRST_SKIN * limit[k], lasting_skin(t, other, displacement)));
-      front.lists_until = lasting[k];
+      bound.outer_until = lasting[k];
     });
   }
 
-  // the lists of those blocks where somebody may be missing
-  void renew(const double *x, const int *type, int n_owned, int n_all, const Sides *sides)
+  // the outer lists of those blocks where a neighbor may be missing
+  void renew(const Points &p)
   {
-    const std::vector<double> near = near_fronts();
-    due.assign(fronts.size(), false);
+    const std::vector<double> near = inner_reach();
+    due.assign(pair_bounds.size(), false);
     due_block.assign(blocks.count(), false);
-    for_each_front([&](Front &front, int b, int t, int other) {
-      if (front.held <= front.lists_until) return;
-      front.lists_until = front.held + lasting[pair(t, other)];
-      due[&front - fronts.data()] = due_block[b] = true;
+    for_each_bound([&](Bound &bound, int b, int t, int other) {
+      if (bound.at_reference <= bound.outer_until) return;
+      bound.outer_until = bound.at_reference + lasting[pair(t, other)];
+      due[&bound - pair_bounds.data()] = due_block[b] = true;
     });
     const auto is_due = [this](int slot, int t, int other) {
-      return due_block[block[slot]] && due[&at(block[slot], t, other) - fronts.data()];
+      return due_block[block[slot]] && due[&at(block[slot], t, other) - pair_bounds.data()];
     };
-    outer.renew(x, type, n_owned, n_all, types, far.data(), {near.data(), blocks.of_particle()},
-                in_front, sides, is_due);
+    outer.renew(p, cutoff.data(), {near.data(), blocks.of_particle()}, n_inner, is_due);
     note_lists(is_due);
   }
 
-  // up to where particles are in front: [block][(n_types+1)^2]
-  std::vector<double> near_fronts()
+  // cutoff of the inner lists: [block][(n_types+1)^2]
+  std::vector<double> inner_reach()
   {
     std::vector<double> near(blocks.count() * limit.size());
-    for_each_front([&](const Front &front, int b, int t, int other) {
-      near[b * limit.size() + pair(t, other)] = limit[pair(t, other)] + front.skin;
+    for_each_bound([&](const Bound &bound, int b, int t, int other) {
+      near[b * limit.size() + pair(t, other)] = limit[pair(t, other)] + bound.skin;
     });
     return near;
   }
 
-  // after those that are new(slot, type, other) were made
+  // after those that are is_new(slot, type, other) were made
   template <class New> void note_lists(New is_new)
   {
     for (int slot = 0, t = 1; slot < outer.slots(); slot++) {
@@ -276,8 +277,8 @@ class DualLists {
       for (int other = 1; other <= types; other++) {
         if (!is_new(slot, t, other)) continue;
         longest_list = std::max(longest_list, outer(slot, other).n);
-        const Front &front = at(block[slot], t, other);
-        until[of(slot, other)] = front.held + front.skin;
+        const Bound &bound = at(block[slot], t, other);
+        inner_until[of(slot, other)] = bound.at_reference + bound.skin;
       }
     }
     key.resize(whole_groups(longest_list) + 2 * LANES);
@@ -285,8 +286,8 @@ class DualLists {
   }
 
   // For n evaluations of one particle a skin that is used up in the meantime, with a margin: the
-  // front then holds 1 + dim skin/H as many, and finding it costs cost/(n + 1) per evaluation.  The
-  // n of least cost.
+  // inner list then holds 1 + dim skin/H as many, and pruning costs cost/(n + 1) per evaluation.
+  // The n of minimum cost.
   double lasting_skin(int t, int other, double displacement) const
   {
     const int k = pair(t, other);
@@ -303,31 +304,33 @@ class DualLists {
     evaluation = 1;
   }
 
-  void hold(const double *x, int n_all)
+  void set_reference(const Points &p)
   {
+    const double *x = p.x;
+    const int n_all = p.n_all;
     const Bounds bounds(x, n_all);
     center = bounds.center;
     rounding = bounds.rounding;
-    held.resize(n_all + LANES);
+    reference.resize(n_all + LANES);
     for (int i = 0; i < n_all; i++)
-      held[i] = {static_cast<float>(x[3 * i] - center[0]),
-                 static_cast<float>(x[3 * i + 1] - center[1]),
-                 static_cast<float>(x[3 * i + 2] - center[2])};
+      reference[i] = {static_cast<float>(x[3 * i] - center[0]),
+                      static_cast<float>(x[3 * i + 1] - center[1]),
+                      static_cast<float>(x[3 * i + 2] - center[2])};
     steps = 0;
   }
 
-  SPHCLOTH_MULTIVERSION void move_to_front(int slot, int t, int other)
+  SPHCLOTH_MULTIVERSION void prune(int slot, int t, int other)
   {
     const int types_of_it = pair(t, other);
-    const Front &now = at(block[slot], t, other);
-    until[of(slot, other)] = now.held + now.skin;
+    const Bound &now = at(block[slot], t, other);
+    inner_until[of(slot, other)] = now.at_reference + now.skin;
     const NeighborSpan list = outer(slot, other);
     if (list.n == 0 || limit[types_of_it] == 0.0) return;
-    const ApproachBounds::Place self = held[outer.at(slot)];
+    const ApproachBounds::Place self = reference[outer.at(slot)];
     static_assert(LANES == GROUP<float>);
     alignas(64) float x[LANES], y[LANES], z[LANES];
     for (int group = 0; group < list.n; group += LANES) {
-      columns<3>(&held[0].x, list.of + group, x, y, z, static_cast<float *>(nullptr));
+      columns<3>(&reference[0].x, list.of + group, x, y, z, static_cast<float *>(nullptr));
       float *sq = key.data() + group;
 #pragma omp simd
       for (int k = 0; k < LANES; k++) {
@@ -336,8 +339,8 @@ class DualLists {
       }
     }
     const double near = limit[types_of_it] + now.skin + rounding;
-    in_front[of(slot, other)] = partition(key.data(), outer.open(slot, other), list.n,
-                                          static_cast<float>(near * near), spare.data());
+    n_inner[of(slot, other)] = partition(key.data(), outer.open(slot, other), list.n,
+                                         static_cast<float>(near * near), spare.data());
   }
 
   SPHCLOTH_MULTIVERSION int greatest(const NeighborSpan &near, const int *value) const

@@ -15,15 +15,14 @@ std::unique_ptr<Fluid> Fluid::create(KernelName kernel, Precision precision)
 
 void Fluid::list(const Particles &p, const double *support, double skin, const Motion &motion)
 {
-  everyone = false;
-  lists.build(p.x, p.type, p.n_owned, p.n_all, model.n_types, support, skin, model.dimension,
-              motion, p.sides);
+  all_selected = false;
+  lists.build(points(p), support, skin, motion);
 }
 
 bool Fluid::select(const Particles &p)
 {
-  if (everyone && !p.active) return false;
-  everyone = !p.active;
+  if (all_selected && !p.active) return false;
+  all_selected = !p.active;
   selection.slots.clear();
   selection.first.assign(model.n_types + 2, 0);
   for (int t = 1; t <= model.n_types; t++) {
@@ -36,13 +35,13 @@ bool Fluid::select(const Particles &p)
   return true;
 }
 
-int Fluid::count_inside(const Particles &p, int owned, int type, int most)
+int Fluid::count_inside(const Particles &p, int owned, int type, int max)
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
   const NeighborSpan list = neighbors(owned, type);
   const double *x = p.x + 3 * owned;
   int n = 0;
-  for (int k = 0; k < list.n && n < most; k++) {
+  for (int k = 0; k < list.n && n < max; k++) {
     const double *y = p.x + 3 * list.of[k];
     const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
     n += dx * dx + dy * dy + dz * dz < support_sq;

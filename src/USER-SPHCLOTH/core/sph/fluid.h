@@ -1,6 +1,6 @@
-// The fluid of one rank: neighbours, density (1), momentum (2), boundary particles.
+// The fluid of one rank: neighbors, density (1), momentum (2), boundary particles.
 //
-// A fluid particle sums over fluid neighbours (its mass m_j) and over boundary neighbours, walls
+// A fluid particle sums over fluid neighbors (its mass m_j) and over boundary neighbors, walls
 // and cloth, which count with the mass rho0_i V_b that water in their volume V_b would have.
 // Akinci et al., ACM Trans. Graph. 31 (2012) 62.
 //
@@ -27,10 +27,10 @@ enum class Precision : int { DOUBLE, MIXED };
 
 enum class Friction : int { NONE, ARTIFICIAL, ANY };
 
-// whom forces are for
+// particles on which forces are found
 enum class Target { ALL, FLUID, BOUNDARIES };
 
-// what is found beside the forces: d rho/dt, the speed at which the fastest neighbour comes near
+// outputs beside the forces: d rho/dt, the maximum approach speed of a neighbor
 enum class Outputs : int { NOTHING, RATE, RATE_AND_APPROACH };
 
 // one pair of types
@@ -74,12 +74,12 @@ struct Particles {
   bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
 };
 
-// what the neighbours do to one particle, per mass of fluid or per volume of a boundary
+// what the neighbors do to one particle, per mass of fluid or per volume of a boundary
 
 struct Acceleration {
   double x = 0.0, y = 0.0, z = 0.0;
   double drho = 0.0;    // d rho / dt
-  double approach = 0.0;    // the largest speed of a neighbour inside the support, 0 if all recede
+  double approach = 0.0;    // the largest speed of a neighbor inside the support, 0 if all recede
   double virial[6] = {};    // half of sum r_ij f_ij: xx, yy, zz, xy, xz, yz
 };
 
@@ -104,10 +104,10 @@ class Fluid {
 
   FluidModel model;
 
-  // new neighbour lists, see NearLists
+  // new neighbor lists, see DualLists
   void list(const Particles &, const double *support, double skin, const Motion &);
   // in every other evaluation, first
-  void follow(const Particles &p) { lists.follow(p.x, p.type, p.n_owned, p.n_all, p.sides); }
+  void follow(const Particles &p) { lists.follow(points(p)); }
 
   // Once per evaluation: the active fluid particles, and all others, in the order of the lists.
   // False if nothing has changed.
@@ -121,10 +121,10 @@ class Fluid {
   };
   virtual void place(const Particles &, const Box &) = 0;
 
-  // amount = 1 / sum_k W_bk over the boundary particles of the same type, with itself
-  virtual void volumes(const Particles &, int type, double *amount) = 0;
+  // volume = 1 / sum_k W_bk over the boundary particles of the same type, with itself
+  virtual void volumes(const Particles &, int type, double *volume) = 0;
 
-  // Refreshes the neighbours of every active fluid particle and every boundary particle, and sums
+  // Refreshes the neighbors of every active fluid particle and every boundary particle, and sums
   // the density (1) if asked.
   virtual void gather(const Particles &, bool sum) = 0;
 
@@ -164,19 +164,24 @@ class Fluid {
 
   const DualLists &order() const { return lists; }
   DualLists &order() { return lists; }
-  // neighbours of one type inside the support, and some a little outside it
+  // neighbors of one type inside the support, and some a little outside it
   NeighborSpan neighbors(int owned, int type)
   {
     lists.refresh(lists.slot(owned));
     return lists(lists.slot(owned), type);
   }
-  // how many are inside the support; counts up to `most`
-  int count_inside(const Particles &, int owned, int type, int most);
+  // how many are inside the support; counts up to `max`
+  int count_inside(const Particles &, int owned, int type, int max);
 
  protected:
+  Points points(const Particles &p) const
+  {
+    return {p.x, p.type, p.n_owned, p.n_all, model.n_types, p.sides};
+  }
+
   DualLists lists;
   Selection selection;
-  bool everyone = false;    // is selected, of these lists
+  bool all_selected = false;    // is selected, of these lists
 };
 
 }    // namespace sphcloth

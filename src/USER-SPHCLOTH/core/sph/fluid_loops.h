@@ -50,7 +50,7 @@ template <class K, class P> class FluidLoops : public Fluid {
  private:
   template <Outputs OUTPUTS, bool VIRIAL> struct Sums;    // of forces, force_loops.h
   struct DifferenceSums;    // rate_loops.h
-  struct Listener {    // who gets the virials
+  struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;
   };
@@ -115,9 +115,5 @@ template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)
 }
 
 }    // namespace sphcloth
-
-#include "core/sph/density_loops.h"
-#include "core/sph/force_loops.h"
-#include "core/sph/rate_loops.h"
 
 #endif

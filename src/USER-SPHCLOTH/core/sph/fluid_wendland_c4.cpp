@@ -1,4 +1,6 @@
-#include "core/sph/fluid_loops.h"
+#include "core/sph/density_loops.h"
+#include "core/sph/force_loops.h"
+#include "core/sph/rate_loops.h"
 
 template std::unique_ptr<sphcloth::Fluid>
     sphcloth::fluid_of_kernel<sphcloth::WendlandC4>(sphcloth::Precision);

@@ -1,6 +1,7 @@
-// Gradient of a field f at a particle from the differences to its neighbours, exact for a linear
-// field wherever the neighbours are:
-//   <grad f>_i = L_i sum_j V_j (f_j - f_i) grad_i W_ij,  L_i = [sum_j V_j (x_j - x_i) grad_i W_ij]^-1
+// Gradient of a field f at a particle from the differences to its neighbors, exact for a linear
+// field wherever the neighbors are:
+//   <grad f>_i = L_i sum_j V_j (f_j - f_i) grad_i W_ij
+//   L_i = [sum_j V_j (x_j - x_i) grad_i W_ij]^-1
 // Randles & Libersky, Comput. Methods Appl. Mech. Eng. 139 (1996) 375.
 
 #ifndef SPHCLOTH_CORE_SPH_GRADIENT_H
@@ -11,7 +12,7 @@
 namespace sphcloth {
 
 // The determinant of the matrix over that of the isotropic one of the same trace is 1 inside the
-// fluid, 0.6 in the corner of a square and 0.3 in that of a cube, and 0 if all neighbours lie in
+// fluid, 0.6 in the corner of a square and 0.3 in that of a cube, and 0 if all neighbors lie in
 // one plane (on one line).  Below this there is no gradient.
 inline constexpr double MIN_SPREAD = 0.1;
 

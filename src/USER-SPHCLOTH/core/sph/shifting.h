@@ -39,7 +39,7 @@ inline double spacing_of(double volume, int dim)
   return dim == 3 ? std::cbrt(volume) : std::sqrt(volume);
 }
 
-// what the neighbours of one particle add up to
+// what the neighbors of one particle add up to
 
 struct ConcentrationGradient {
   std::array<double, 3> gradient{};    // of the concentration
@@ -47,7 +47,7 @@ struct ConcentrationGradient {
   std::array<double, 9> grad_v{};    // d v_a / d x_b
 };
 
-// one neighbour: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
+// one neighbor: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
 
 struct NeighborTerm {
   std::array<double, 3> r;

@@ -322,7 +322,7 @@ pick_others_avx512(const int *value, int same, const int *index, int n, int *out
   return m;
 }
 
-// Without AVX-512 eight at a time, from a table of who goes where: for each set of eight lanes
+// Without AVX-512 eight at a time, from a table: for each set of eight lanes
 // those that are in it, in order.
 
 struct LaneSets {

@@ -276,7 +276,7 @@ region          box block -2 2 -2 2 -2 2
 ATOMS = """
 create_box      3 box bond/types 2 angle/types 2 dihedral/types 2 extra/bond/per/atom 8 &
                 extra/angle/per/atom 8 extra/dihedral/per/atom 16
-mass            * 0.12090811
+mass            * 0.1
 create_cloth    2 1.0 size 0.6 0.6 spacing 0.1 group cloth
 group           pins id 40:45
 create_cloth    3 1.0 center 0 0 -0.6 size 0.6 0.6 spacing 0.1 group table

@@ -30,13 +30,13 @@ static constexpr int MAX_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)),
-    linking(nullptr), sight(0.0), vertex_bits(0)
+    sight(0.0), vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
   global_freq = 1;
   extvector = 0;
-  comm_forward = VertexHalo::LINK;
+  comm_forward = 1;
   dynamic_group_allow = 1;
   create_attribute = 1;
 
@@ -129,7 +129,7 @@ void FixClothContact::init()
 
 std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
 {
-  return std::make_unique<ContactSurface>(lmp, mesh, this, label, groupbits, rules, counts,
+  return std::make_unique<ContactSurface>(lmp, mesh, label, groupbits, rules, counts,
                                           last_positions);
 }
 
@@ -167,12 +167,6 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
     cloths[k]->register_coupling(couplings.back().get());
     hard.back()->triangles.add_vertices_of(cloths[k]);
   }
-}
-
-template <class Do> void FixClothContact::for_all_surfaces(Do something)
-{
-  for (auto &surface : surfaces) something(*surface);
-  for (auto &surface : hard) something(*surface);
 }
 
 // every cloth has gathered its mesh by now
@@ -215,10 +209,7 @@ void FixClothContact::post_neighbor()
 {
   wrap_last_positions();
   const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
-  for_all_surfaces([this, distance](ContactSurface &surface) {
-    linking = &surface;
-    surface.rebuild(distance);
-  });
+  for_all_surfaces([distance](ContactSurface &surface) { surface.rebuild(distance); });
   if (walls) walls->update_candidates();
   if (rules.sides) find_sides();
 }
@@ -231,8 +222,7 @@ void FixClothContact::find_sides()
   if (sight == 0.0) return;
   for (std::size_t sheet = 0; sheet < surfaces.size(); sheet++)
     surfaces[sheet]->sides.find(sight, static_cast<int>(sheet), side);
-  linking = nullptr;
-  comm->forward_comm(this, 1);
+  comm->forward_comm(this);
 }
 
 void FixClothContact::initial_integrate(int)
@@ -349,25 +339,13 @@ double FixClothContact::compute_vector(int n)
 
 int FixClothContact::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
 {
-  if (linking) return linking->triangles.pack_link(n, sendlist, buf);
   for (int k = 0; k < n; k++) buf[k] = side[sendlist[k]];
   return n;
 }
 
 void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 {
-  if (linking) return linking->triangles.unpack_link(n, first, buf);
   for (int k = 0; k < n; k++) side[first + k] = static_cast<sphcloth::Sides>(buf[k]);
-}
-
-void FixClothContact::grow_arrays(int nmax)
-{
-  for (ParticleColumns *each : columns()) each->grow(nmax);
-}
-
-void FixClothContact::copy_arrays(int i, int j, int)
-{
-  for (ParticleColumns *each : columns()) each->copy(i, j);
 }
 
 void FixClothContact::set_arrays(int i)

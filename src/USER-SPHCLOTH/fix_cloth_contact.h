@@ -44,8 +44,14 @@ class FixClothContact : public Fix, public SideSource {
   void pre_reverse(int, int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
+  void grow_arrays(int nmax) override
+  {
+    for (ParticleColumns *each : columns()) each->grow(nmax);
+  }
+  void copy_arrays(int i, int j, int) override
+  {
+    for (ParticleColumns *each : columns()) each->copy(i, j);
+  }
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
@@ -83,7 +89,6 @@ class FixClothContact : public Fix, public SideSource {
   std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
   std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
   std::unique_ptr<MeshBoundary> walls;
-  ContactSurface *linking;    // whose halo uses the communication of this fix; null: sides do
   std::vector<sphcloth::Sides> side;
   double sight;
   int vertex_bits;    // group bits of the cloths
@@ -101,7 +106,11 @@ class FixClothContact : public Fix, public SideSource {
   void read_obstacle(ArgReader &);
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
-  template <class Do> void for_all_surfaces(Do);
+  template <class Do> void for_all_surfaces(Do something)
+  {
+    for (auto &surface : surfaces) something(*surface);
+    for (auto &surface : hard) something(*surface);
+  }
 };
 
 }    // namespace LAMMPS_NS

@@ -46,7 +46,6 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
   size_vector = 10;
   global_freq = 1;
   extvector = 0;
-  comm_forward = VertexHalo::LINK;
 
   if (atom->molecular != Atom::MOLECULAR || !atom->num_bond)
     error->all(FLERR,
@@ -200,7 +199,7 @@ void FixPBDCloth::post_neighbor()
   VertexHalo &halo = vertices.halo;
   halo.reset(constraints.n_channels(), owned);
   constraints.collect(halo);
-  halo.connect(this);
+  halo.connect();
 
   std::vector<double> w(halo.n_slots());
   vertices.attached.clear();
@@ -379,20 +378,6 @@ void FixPBDCloth::measure()
   measured = true;
   last_residual = substepping.residual();
   last_energy = substepping.energy();
-}
-
-/* ----------------------------------------------------------------------
-   the halo's link data
-------------------------------------------------------------------------- */
-
-int FixPBDCloth::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
-{
-  return vertices.halo.pack_link(n, sendlist, buf);
-}
-
-void FixPBDCloth::unpack_forward_comm(int n, int first, double *buf)
-{
-  vertices.halo.unpack_link(n, first, buf);
 }
 
 /* ----------------------------------------------------------------------

@@ -40,8 +40,6 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void pre_reverse(int, int) override;
   double compute_vector(int) override;
 
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
@@ -63,7 +61,6 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   double inverse_mass(int owned_atom) const override;
   double inverse_mass_in_solver(int owned_atom) const override;
   void push_held(int owned_atom, const Eigen::Vector3d &impulse) override;
-  int n_owned() const { return vertices.halo.n_owned(); }
 
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }

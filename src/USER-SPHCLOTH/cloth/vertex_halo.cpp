@@ -4,7 +4,6 @@
 #include "comm.h"
 #include "core/util/bytes.h"
 #include "domain.h"
-#include "fix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,34 +40,21 @@ void VertexHalo::need(int slot, int channel)
    owners of the ghosts, their periodic images, and what is needed of them
 ------------------------------------------------------------------------- */
 
-void VertexHalo::connect(Fix *fix)
+void VertexHalo::connect()
 {
   const int nlocal = atom->nlocal;
-  link.resize(static_cast<std::size_t>(LINK) * (nlocal + atom->nghost));
+  link_rows.resize(nlocal + atom->nghost);
+  link.resize(LINK * link_rows.size());
+  for (std::size_t i = 0; i < link_rows.size(); i++) link_rows[i] = &link[LINK * i];
   for (int i = 0; i < nlocal; i++) {
-    double *l = &link[LINK * static_cast<std::size_t>(i)];
+    double *l = link_rows[i];
     l[0] = comm->me;
     l[1] = slot_by_atom[i];
     for (int d = 0; d < 3; d++) l[2 + d] = atom->x[i][d];
   }
-  comm->forward_comm(fix, LINK);
+  comm->forward_comm_array(LINK, link_rows.data());
   find_images();
   exchange_requests();
-}
-
-int VertexHalo::pack_link(int n, const int *sendlist, double *buf) const
-{
-  int m = 0;
-  for (int k = 0; k < n; k++)
-    for (int d = 0; d < LINK; d++)
-      buf[m++] = link[LINK * static_cast<std::size_t>(sendlist[k]) + d];
-  return m;
-}
-
-void VertexHalo::unpack_link(int n, int first, const double *buf)
-{
-  std::copy(buf, buf + static_cast<std::size_t>(LINK) * n,
-            link.begin() + LINK * static_cast<std::size_t>(first));
 }
 
 // how many box vectors lie between a ghost and its owner
@@ -78,7 +64,7 @@ void VertexHalo::find_images()
   image.resize(n_slots() - owned);
   for (int s = owned; s < n_slots(); s++) {
     const double *x = atom->x[atoms[s]],
-                 *x_owner = &link[LINK * static_cast<std::size_t>(atoms[s]) + 2];
+                 *x_owner = link_rows[atoms[s]] + 2;
     double dx = x[0] - x_owner[0], dy = x[1] - x_owner[1], dz = x[2] - x_owner[2];
     const auto count = [](double distance, double period) {
       return static_cast<int>(std::lround(distance / period));
@@ -122,7 +108,7 @@ void VertexHalo::exchange_requests()
   for (int c = 0; c < nc; c++) {
     std::vector<std::vector<int>> mine(nprocs);
     for (int s : asked[c]) {
-      const double *l = &link[LINK * static_cast<std::size_t>(atoms[s])];
+      const double *l = link_rows[atoms[s]];
       const int rank = static_cast<int>(l[0]);
       mine[rank].push_back(s);
       ask[rank][c].push_back(static_cast<int>(l[1]));

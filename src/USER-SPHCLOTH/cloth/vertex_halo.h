@@ -17,8 +17,6 @@
 
 namespace LAMMPS_NS {
 
-class Fix;
-
 class VertexHalo : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
@@ -33,12 +31,8 @@ class VertexHalo : protected Pointers {
   int slot_of(int atom_index);
   void need(int slot, int channel);
 
-  // 3. collective: tell the owners.  It goes through the forward communication of a fix, whose
-  // pack_forward_comm / unpack_forward_comm call pack_link / unpack_link, comm_forward is LINK.
-  static constexpr int LINK = 5;
-  void connect(Fix *);
-  int pack_link(int n, const int *atoms, double *buf) const;
-  void unpack_link(int n, int first, const double *buf);
+  // 3. collective: tell the owners
+  void connect();
 
   int n_owned() const { return owned; }
   int n_slots() const { return static_cast<int>(atoms.size()); }
@@ -82,7 +76,9 @@ class VertexHalo : protected Pointers {
   std::vector<int> slot_by_atom;     // -1: none
   std::vector<std::vector<int>> asked;               // ghost slots by channel
   std::vector<std::array<int, 3>> image;             // of a ghost slot, by slot - owned
-  std::vector<double> link;                          // per atom: rank, slot, x, y, z
+  static constexpr int LINK = 5;
+  std::vector<double> link;    // of each atom, ghosts have that of their owner: rank, slot, x, y, z
+  std::vector<double *> link_rows;
   std::vector<Channel> channels;
   std::vector<Vec3> buffer, scalars;
   std::vector<MPI_Request> requests;

@@ -17,10 +17,10 @@ namespace LAMMPS_NS {
 
 struct ContactSurface {
   // see MovingTriangles
-  ContactSurface(LAMMPS *lmp, ContactMesh *mesh, Fix *link, const std::string &label,
-                 int groupbits, const ContactRules &rules, ContactCounts &counts,
+  ContactSurface(LAMMPS *lmp, ContactMesh *mesh, const std::string &label, int groupbits,
+                 const ContactRules &rules, ContactCounts &counts,
                  const ParticleColumns &last_positions) :
-      triangles(lmp, mesh, link, label, groupbits, rules, counts, last_positions),
+      triangles(lmp, mesh, label, groupbits, rules, counts, last_positions),
       candidates(lmp, triangles), solver(lmp, triangles, candidates),
       stabilization(lmp, triangles, candidates), sides(lmp, triangles)
   {

@@ -10,11 +10,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_,
-                                 const std::string &label_, int groupbits_,
-                                 const ContactRules &rules_, ContactCounts &counts_,
-                                 const ParticleColumns &last_positions_) :
-    TriangleSet(lmp_, mesh_, link_, label_),
+MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &label_,
+                                 int groupbits_, const ContactRules &rules_,
+                                 ContactCounts &counts_, const ParticleColumns &last_positions_) :
+    TriangleSet(lmp_, mesh_, label_),
     groupbits(groupbits_), rules(rules_), counts(counts_), last_positions(last_positions_)
 {
 }

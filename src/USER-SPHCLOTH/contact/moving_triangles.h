@@ -20,7 +20,7 @@ class MovingTriangles : public TriangleSet {
  public:
   // groupbits: of the atoms that collide with the mesh; last_positions: x, y, z of all owned atoms
   // at the end of the last step
-  MovingTriangles(LAMMPS *, ContactMesh *, Fix *link, const std::string &label, int groupbits,
+  MovingTriangles(LAMMPS *, ContactMesh *, const std::string &label, int groupbits,
                   const ContactRules &, ContactCounts &, const ParticleColumns &last_positions);
 
   const int groupbits;

@@ -4,7 +4,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
 #include "lammps_util/rank_error.h"
 
 #include <algorithm>
@@ -13,8 +12,8 @@
 
 using namespace LAMMPS_NS;
 
-TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, Fix *link_, const std::string &label_) :
-    Pointers(lmp_), label(label_), mesh(mesh_), halo(lmp), link(link_)
+TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &label_) :
+    Pointers(lmp_), label(label_), mesh(mesh_), halo(lmp)
 {
 }
 
@@ -38,7 +37,7 @@ void TriangleSet::rebuild(double max_distance)
   element.clear();
   add_triangles(reach);
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
-  halo.connect(link);
+  halo.connect();
   check_reach(max_distance);
 }
 

@@ -14,14 +14,11 @@
 
 namespace LAMMPS_NS {
 
-class Fix;
-
 class TriangleSet : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // link: the fix whose communication finds the images of vertices
-  TriangleSet(LAMMPS *, ContactMesh *, Fix *link, const std::string &label);
+  TriangleSet(LAMMPS *, ContactMesh *, const std::string &label);
 
   // after each list build; a particle must see the whole of each triangle that is nearer than this
   void rebuild(double max_distance);
@@ -31,12 +28,6 @@ class TriangleSet : protected Pointers {
 
   // sides need triangles that are wound alike
   void check_winding() const;
-
-  int pack_link(int n, const int *atoms, double *buf) const
-  {
-    return halo.pack_link(n, atoms, buf);
-  }
-  void unpack_link(int n, int first, const double *buf) { halo.unpack_link(n, first, buf); }
 
   const std::string label;    // for error messages
   ContactMesh *const mesh;
@@ -59,7 +50,6 @@ class TriangleSet : protected Pointers {
   Vec3 place(int slot) const;
 
  private:
-  Fix *link;
   std::vector<std::array<bool, 3>> at_border;    // of each element
 
   void find_border();

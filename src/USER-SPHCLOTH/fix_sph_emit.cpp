@@ -135,7 +135,8 @@ void FixSPHEmit::init()
   if (comm->me == 0 && excess > 0.01)
     error->warning(
         FLERR,
-        "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of {:.6g}",
+        "{}: particles at this spacing are {:.1f} % too dense and burst apart: use a mass of "
+        "{:.6g}",
         label, 100.0 * excess, at_rest);
   for (const Vec3 &x : pattern) {
     Vec3 place = center + x;

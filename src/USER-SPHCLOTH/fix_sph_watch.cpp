@@ -218,7 +218,7 @@ double FixSPHWatch::speed(int i) const
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-// A sum over neighbours is small at a surface: only compression counts.
+// A sum over neighbors is small at a surface: only compression counts.
 
 double FixSPHWatch::deviation(int i) const
 {

@@ -44,10 +44,10 @@ void BinChoice::init(FluidState *style)
     for (int u = 1; u < n; u++) max_difference_of[t * n + u] = find_max_difference(t, u);
 }
 
-// How many bins may a particle be above a neighbor of another type?  What a coarse one gives for
-// its whole step comes at once, and a fine one bears that no longer than about twice its own
-// acoustic step: while pressures balance, it moves to and fro by p/(2 rho H) times the square of
-// that time.
+// By how many bins may a particle's step be longer than that of a neighbor of another type?  The
+// impulse of a coarse particle's whole step acts at once, and a fine particle tolerates that for no
+// longer than about twice its own acoustic step: while pressures balance, it oscillates by p/(2 rho
+// H) times the square of that time.
 
 int BinChoice::find_max_difference(int type, int neighbor_type) const
 {
@@ -77,8 +77,8 @@ void BinChoice::choose()
    limits
 ------------------------------------------------------------------------- */
 
-// The tightest of them.  Particles in free flight ask neighbors under pressure, unless the steps of
-// these will be their own.
+// Returns the tightest.  Particles in free flight have to ask neighbors under pressure where these
+// may take shorter steps.
 
 StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
 {
@@ -188,7 +188,7 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
   }
   WantedSteps here, anywhere;
   for (const int i : fluid->active_particles()) here.add(wanted[i], shortest);
-  here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // whatever they want
+  here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // which move in every smallest step
   MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
   base.length = anywhere.base_step_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
   base.uniform = base.length <= shortest;
@@ -214,9 +214,9 @@ bool BinChoice::may_gain(double shortest, double gain)
    bins
 ------------------------------------------------------------------------- */
 
-// The bin of each active particle, the smallest step, and whether it is uniform.  A new particle
-// that lengthens its step asks for no smallest step where others ask for the same: of limits at the
-// shortest step the first in the list counts.
+// The bin of each active particle, the smallest step, and whether it is uniform.  Of the limits of
+// particles in the finest bin the first in enum Limit is reported, so growth, of a new particle,
+// comes after those that others have.
 
 void BinChoice::find_bins()
 {
@@ -254,7 +254,7 @@ void BinChoice::find_bins()
   finest_vertex = static_cast<int>(all[4]);
   clock.uniform = clock.all_synchronized() && -all[1] >= clock.deepest && all[3] == -all[2] &&
       parts.options.block.sleep == 0.0;
-  // none of a new particle reaches anywhere yet
+  // impulses of new particles reach nowhere yet
   clock.uniform_span = all[3] == 0.0 ? 1.0 : 0.5 - all[3] / clock.smallest_ticks();
 }
 
@@ -279,7 +279,7 @@ void BinChoice::limit_differences()
   for (const int i : fluid->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
 }
 
-// for a neighbor, or for a particle a little outside the support?
+// for a neighbor?  Particles a little outside the support count as well
 
 bool BinChoice::is_too_coarse(int i) const
 {
@@ -306,7 +306,8 @@ int BinChoice::bin_beside(int i) const
   return own;
 }
 
-// of a vertex of cloth, as for a neighbor whose step may be `ratio` times as long; a wall has none
+// of a vertex of cloth, raised by the difference that the limiter allows, since no neighbor may
+// take a longer step; walls limit no neighbor
 
 int BinChoice::vertex_bin(int i) const
 {

@@ -123,7 +123,7 @@ void BlockImpulses::find_spans()
   }
 }
 
-// the force of other particles, `times` more of it, and what walls do beside it
+// adds `times` the force of other particles, and walls for the time beyond one smallest step
 
 void BlockImpulses::add_pair_force(int i, double times)
 {

@@ -34,7 +34,7 @@ bool HalfKick::correct_velocities()
   return true;
 }
 
-// How far is the end of a particle's impulses behind that of particles with the smallest step?
+// the time from the end of a particle's impulses to that of particles with the smallest step
 
 void HalfKick::find_spans()
 {

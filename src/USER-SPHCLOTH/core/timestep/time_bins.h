@@ -66,10 +66,10 @@ class WantedSteps {
 
   std::array<int, N> count{};    // to be summed over ranks
 
-  void add(double dt, double least)
+  void add(double dt, double shortest)
   {
     constexpr float ROUNDING = 1e-4F;
-    const float octaves = std::log2(static_cast<float>(dt / least));
+    const float octaves = std::log2(static_cast<float>(dt / shortest));
     count[std::clamp(static_cast<int>(PARTS * octaves + ROUNDING), 0, N - 1)]++;
   }
 

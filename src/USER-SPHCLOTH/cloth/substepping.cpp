@@ -111,7 +111,7 @@ void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
   Vertex *displacement = vertices.displacement.data();
   const ClothState state{vertices.start.data(), displacement, options.from_start,
                          uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
-                         1.0 / (dt * dt)};
+                         inv_dt_sq()};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations;
@@ -169,20 +169,29 @@ void Substepping::jacobi(const ClothState &state)
   vertices.halo.forward_displacements(ALL, displacement.data(), substep_dt());
 }
 
+// A compliance times this is an inverse mass, in all systems of units.
+
+double Substepping::inv_dt_sq() const
+{
+  const double dt = substep_dt();
+  return 1.0 / (dt * dt * force->ftm2v);
+}
+
 double Substepping::residual() const
 {
-  const double dt = substep_dt(), inv_dt_sq = 1.0 / (dt * dt);
+  const double by = inv_dt_sq();
   const Vertex *p = vertices.p.data();
-  return std::max(sphcloth::residual(constraints.distance, p, inv_dt_sq, constraints.mean_length()),
-                  sphcloth::residual(constraints.bending, p, inv_dt_sq));
+  return std::max(sphcloth::residual(constraints.distance, p, by, constraints.mean_length()),
+                  sphcloth::residual(constraints.bending, p, by));
 }
+
+// force times length: the unit of energy in all systems of units
 
 double Substepping::energy() const
 {
   const int n_owned = vertices.halo.n_owned();
-  return force->mvv2e *
-      (elastic_energy(constraints.distance, vertices.p.data(), n_owned) +
-       elastic_energy(constraints.bending, vertices.p.data(), n_owned));
+  return elastic_energy(constraints.distance, vertices.p.data(), n_owned) +
+      elastic_energy(constraints.bending, vertices.p.data(), n_owned);
 }
 
 bool Substepping::converged() const

@@ -87,6 +87,7 @@ class Substepping : protected Pointers {
   int sweeps = 0;    // of the last substep
   bool started = false;    // velocities are those of half a step ago, see direction start
 
+  double inv_dt_sq() const;
   void apply_forces(double dt);
   void predict(bool last);
   void set_velocities();

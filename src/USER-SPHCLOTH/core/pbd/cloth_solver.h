@@ -101,7 +101,7 @@ struct ClothState {
   Vertex *displacement = nullptr;
   bool along_start = false;    // project edges along the directions that they had at the start
   Vertex *change = nullptr;    // Jacobi: sum of the changes of displacements; or null
-  double inv_dt_sq = 0.0;
+  double inv_dt_sq = 0.0;    // times a compliance: an inverse mass
 };
 
 void project(Constraints<2> &, int color, const ClothState &);

@@ -178,12 +178,13 @@ def test_every_command_ends_a_mistake_with_exit_code_2(
 
 # functions that the walk-through of CONTRIBUTING lets the reader write
 TO_BE_WRITTEN = ("project_areas", "material_of_area", "channel_of_area_color")
-CODE = "".join(
+SOURCES = [
     path.read_text()
     for folder, kinds in (("src", "*.[hc]*"), ("python", "*.py"))
     for path in (ROOT / folder).rglob(kinds)
     if path.is_file()
-)
+]
+CODE = "".join(SOURCES)
 
 
 def anchors(page: Path) -> set[str]:
@@ -218,6 +219,19 @@ def test_every_link_leads_somewhere(page: Path) -> None:
         assert ours or source in ("fix_nve.cpp", "version.h"), source
     for function in re.findall(r"`(?:\w+::)?(\w+)\(\)`", prose):
         assert re.search(rf"\b{function}(<\w+>)?\(", CODE) or function in TO_BE_WRITTEN, function
+    for name, member in re.findall(r"`(\w+)::(\w+)(?:\(\))?`", prose):
+        assert is_member(name, member), f"{name}::{member}"
+
+
+def is_member(name: str, member: str) -> bool:
+    """Say whether a file that defines the class, struct or enumeration has the member's name."""
+    defined = re.compile(rf"\b(?:class|struct)\s+{name}\b[^;{{]*\{{")
+    return any(re.search(rf"\b{member}\b", text) for text in SOURCES if defined.search(text))
+
+
+def test_members_are_looked_for_where_their_class_is_defined() -> None:
+    assert is_member("PairTerms", "nu") and is_member("WallTable", "PIECES")
+    assert not is_member("Particles", "amount") and not is_member("PairTerms", "PIECES")
 
 
 # text

@@ -1,4 +1,5 @@
-// An outflow.  It works at list builds, just before LAMMPS would lose what left the box.
+// An outflow.  It works just before LAMMPS would lose what left the box: at list builds, and when
+// commands set up the system to move atoms to other ranks, as write_restart does.
 
 #include "fix_sph_drain.h"
 
@@ -57,6 +58,12 @@ void FixSPHDrain::init()
                  region_name);
     region->init();
   }
+  check_group();
+  pre_exchange();
+}
+
+void FixSPHDrain::check_group()
+{
   if (!atom->num_bond) return;
   int mine = 0, any = 0;
   for (int i = 0; i < atom->nlocal; i++)

@@ -35,6 +35,7 @@ class FixSPHDrain : public Fix {
   bigint drained;
   double taken[4];    // mass, momentum
 
+  void check_group();
   bool leaves(int) const;
 };
 

@@ -125,6 +125,52 @@ def test_water_that_backs_up_into_the_opening_is_named(capfd, opening, back):
     assert ("particles are where a layer appears, at the time 0.05" in said) == (back > 0.0)
 
 
+# 0.002 outside the box when the run ends, 0.012 from where the lists were built
+OUTSIDE = (
+    header("f p p", FLUID)
+    + box("-1 1 -1 1 -1 1")
+    + "mass 1 0.125\ncreate_atoms 1 single 0.99 0 0\ncreate_atoms 1 single 0 0 0\n"
+    + sph_tait("1 1 fluid 1000 c0 20")
+    + neighbor(0.03)
+    + """timestep 1e-3
+group water type 1
+velocity all set 1 0 0 units box
+fix step water sph/integrate constant
+fix out water sph/drain
+run 12
+"""
+)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "write_restart end.restart",
+        "write_data end.data",
+        "delete_atoms overlap 0.01 all all",
+        "balance 1.1 shift x 1 1.1",
+        "change_box all x scale 1.0",
+        "run 0",
+    ],
+)
+def test_what_is_outside_when_a_run_ends_is_drained_by_the_next_command(
+    command, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    lmp = instance()
+    lmp.commands_string(OUTSIDE)
+    assert lmp.get_natoms() == 2
+    lmp.command(command)
+    assert lmp.get_natoms() + lmp.extract_fix("out", 0, 0) == 2
+    lmp.command("run 0")
+    assert lmp.get_natoms() == 1
+    assert lmp.extract_fix("out", 0, 0) == 1
+    assert lmp.extract_fix("out", 0, 1, 0) == 0.125
+    assert lmp.extract_fix("out", 0, 1, 1) == 0.125
+    lmp.command("run 5")
+    assert lmp.get_natoms() == 1
+
+
 RUN = """
 fix out water sph/drain
 {before}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from sphcloth.advice.probe import Probe
 from sphcloth.advice.unused import unused
 from sphcloth.cli import app
 from sphcloth.errors import UserError
+from sphcloth.fix_values import FIX_OF, LIMITS, NUMBERS
 
 # a column of water, 12 particles wide and 24 high, collapses in a corner
 COLUMN = {
@@ -329,6 +331,22 @@ def test_values_that_computes_give_by_keyword_are_known(tmp_path: Path) -> None:
     columns = Evidence.of_log(log).columns
     known = {name: values[-1] for name, values in columns.items() if name.startswith("f_")}
     assert known == {"f_s[27]": 2, "f_s[1]": 3, "f_s[3]": 4, "f_two[4]": 5}
+
+
+def test_keywords_are_those_of_the_computes() -> None:
+    """Their numbers are those of the sources; those of limits count on from the first."""
+    folder = Path(__file__).parents[2] / "src/USER-SPHCLOTH"
+    for style, numbers in NUMBERS.items():
+        compute = next(name for name, fix in FIX_OF.items() if fix == style)
+        text = (folder / f"compute_{compute.replace('/', '_')}.cpp").read_text()
+        known = {name: int(n) for name, n in re.findall(r'\{"([\w/]+)", (\d+),', text)}
+        for keyword, number in numbers.items():
+            if not keyword.startswith("particles/"):
+                assert known[keyword] == number, keyword
+    page = (folder.parents[1] / "docs/styles/fix_sph_integrate.md").read_text()
+    for n, limit in enumerate(LIMITS, start=1):
+        number = NUMBERS["sph/integrate"][f"particles/{limit}"]
+        assert re.search(rf"^\| {n} \| `?{limit}`? \|.*\| `f_ID\[{number}\]` \|$", page, re.M)
 
 
 def test_settings_are_read_as_lammps_echoes_them(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ def results(tmp_path: Path) -> Path:
     (folder / "c" / "pool-kinetic.png").write_bytes(DOT)
     spread = {"value": 1.5, "least": 1.25, "most": 2.0}
     write(folder, "pair.json", {"bench": "pair", "ratio": spread, "deep": {"inner": {"x": EVIL}}})
-    fact = {"topic": "contact", "measured": "f_contact[1] = 0", "line": "# fix contact"}
+    fact = {"topic": "contact", "measured": "contacts = 0", "line": "# fix contact"}
     write(folder, "advice.json", {"script": "in.x", "facts": [fact, 3], "needs": [], "unused": []})
     write(folder, "broken.json", '{"case": "half')
     write(folder, "other.json", [1, 2, 3])

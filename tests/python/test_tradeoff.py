@@ -172,7 +172,7 @@ def test_updates_are_those_of_the_fix_or_atoms_times_steps() -> None:
     assert count_updates(counted, "fix mine all sph/integrate global\n", "individual") == 7
     named = ThermoTable(table | {"c_updates": np.array([5.0, 9, 13])}, 0.0)
     assert count_updates(named, "", "individual") == 8
-    with pytest.raises(UserError, match=r"add f_step\[3\]"):
+    with pytest.raises(UserError, match="add 'compute updates all sph/step updates'"):
         count_updates(plain, "", "individual")
 
 

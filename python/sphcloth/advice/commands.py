@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sphcloth.errors import UserError
+from sphcloth.fix_values import column
 
 # what fix sph/integrate prints at the end of a run
 STEPS_BY_LIMIT = "sph/integrate: steps by limit:"
@@ -64,6 +65,10 @@ class Fix:
         """Return the word behind a keyword, the last one if it is there twice."""
         found = [n for n, word in enumerate(self.arguments[:-1]) if word == keyword]
         return self.arguments[found[-1] + 1] if found else default
+
+    def output(self, keyword: str) -> str:
+        """Return the column of the value that the fix's compute has for a keyword."""
+        return column(self.id, self.style, keyword)
 
     @property
     def line(self) -> str:

@@ -12,19 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.advice.commands import Commands
+from sphcloth.fix_values import FIX_OF, NUMBERS, column
 from sphcloth.log import ThermoTable
-
-LIMITS = "velocity force acoustic viscous density relative wetted cloth max"
-# compute -> its fix, and n of f_ID[n] for the keywords that an advice may need
-NAMED = {
-    "sph/step": (
-        "sph/integrate",
-        {"limit": 1, "updates": 3, "compression": 4}
-        | {f"particles/{limit}": 19 + n for n, limit in enumerate(LIMITS.split())},
-    ),
-    "pbd/cloth": ("pbd/cloth", {"strain": 4}),
-    "cloth/contact": ("cloth/contact", {"contacts": 1, "stops": 2}),
-}
 
 
 @dataclass(frozen=True)
@@ -51,8 +40,8 @@ class Evidence:
         commands, table = Commands.read(log), ThermoTable.read(log)
         columns = dict(table.columns)
         stand_for = {f"v_{name}": formula for name, formula in commands.variables.items()}
-        for column, values in table.columns.items():
-            meant = _value_of_fix(stand_for.get(column, column), commands)
+        for name, values in table.columns.items():
+            meant = _value_of_fix(stand_for.get(name, name), commands)
             if meant:
                 columns[meant] = values
         steps = int(table["Step"][-1] - table["Step"][0])
@@ -81,13 +70,14 @@ def _value_of_fix(formula: str, commands: Commands) -> str | None:
         return formula
     found = re.fullmatch(r"c_(\w+?)(?:\[(\d+)\])?", formula)
     style, *words = commands.computes.get(found[1], ("",)) if found else ("",)
-    if style not in NAMED or any("*" in word for word in words):
+    if style not in FIX_OF or any("*" in word for word in words):
         return None
-    fix_style, numbers = NAMED[style]
+    fix_style = FIX_OF[style]
     fixes = [fix.id for fix in commands.styled(fix_style)]
     while "fix" in words:
         place = words.index("fix")
         fixes = words[place + 1 : place + 2]
         del words[place : place + 2]
     keyword = words[int(found[2] or 1) - 1] if int(found[2] or 1) <= len(words) else ""
-    return f"f_{fixes[0]}[{numbers[keyword]}]" if keyword in numbers and len(fixes) == 1 else None
+    known = keyword in NUMBERS[fix_style] and len(fixes) == 1
+    return column(fixes[0], fix_style, keyword) if known else None

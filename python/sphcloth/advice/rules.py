@@ -10,7 +10,8 @@ import numpy as np
 
 from sphcloth.advice.commands import Fix, Fluid
 from sphcloth.advice.evidence import Evidence
-from sphcloth.advice.unused import NUMBER, Finding
+from sphcloth.advice.unused import Finding
+from sphcloth.fix_values import LIMITS
 
 # a limit that sets most of the steps is worth a word
 MOSTLY = 0.5
@@ -29,7 +30,6 @@ LEAST_SKIN, MOST_SKIN = 0.1, 1.2
 # constant steps over smoothing length / speed of sound: the default of global, and stability
 USUAL, STABLE = 0.5, 1.6
 
-ALL_NUMBERS = NUMBER | {"acoustic": 3, "wetted": 7, "max": 9}
 # coefficient of the acoustic limit to try: the default is 0.5, runs are stable up to about 1.6
 LOUDER = "0.8"
 # how much more compression a longer step may bring
@@ -72,7 +72,7 @@ def _steps(run: Evidence) -> Iterator[Finding]:
 def _speeds(run: Evidence) -> Iterator[Finding]:
     for kind, fluid in run.commands.fluids.items():
         fastest = max(run.largest("c_advise_fast") or 0.0, 0.0)
-        densest = run.largest(f"f_{run.commands.stepper.id}[4]") or 0.0
+        densest = run.largest(run.commands.stepper.output("compression")) or 0.0
         yield Finding(
             f"sound, type {kind}",
             f"c0 = {fluid.sound:.3g}, largest speed {fastest:.3g} (v/c0 = "
@@ -89,7 +89,7 @@ def _builds(run: Evidence) -> Iterator[Finding]:
 
 def _strains(run: Evidence) -> Iterator[Finding]:
     for fix in run.commands.styled("pbd/cloth"):
-        strain = run.largest(f"f_{fix.id}[4]") or 0.0
+        strain = run.largest(fix.output("strain")) or 0.0
         kind = "substeps" if is_substeps(fix) else "sweeps"
         yield Finding(f"cloth {fix.id}", f"largest strain {strain:.2%}, {sweeps(fix)} {kind}")
 
@@ -137,11 +137,11 @@ def _limited(run: Evidence, stepper: Fix, name: str) -> float | None:
 
     None for ``max``, which no particle is near, and for limits of vertices, one for each cloth.
     """
-    number = ALL_NUMBERS.get(name)
-    if number is None or name in ("wetted", "cloth", "max"):
+    if name not in LIMITS or name in ("wetted", "cloth", "max"):
         return None
-    column = run.columns.get(f"f_{stepper.id}[{18 + number}]", np.empty(0))
-    chosen = run.columns.get(f"f_{stepper.id}[1]", np.empty(0)) == number
+    column = run.columns.get(stepper.output(f"particles/{name}"), np.empty(0))
+    number = 1 + LIMITS.index(name)
+    chosen = run.columns.get(stepper.output("limit"), np.empty(0)) == number
     return float(np.mean(column[chosen])) if np.any(chosen) else None
 
 
@@ -150,7 +150,7 @@ def _longer(keywords: str) -> Trial:
 
     def judge(run: Evidence, again: Evidence) -> tuple[str, bool]:
         further = again.time / again.steps / (run.time / run.steps)
-        name = f"f_{run.commands.stepper.id}[4]"
+        name = run.commands.stepper.output("compression")
         # the second probe goes further: only what both have seen is compared
         before, after = (
             each.largest(name, min(run.time, again.time)) or 0.0 for each in (run, again)
@@ -164,7 +164,7 @@ def _longer(keywords: str) -> Trial:
 
 def _saves_updates(run: Evidence, again: Evidence) -> tuple[str, bool]:
     """Compare the particle updates for the same time."""
-    name = f"f_{run.commands.stepper.id}[3]"
+    name = run.commands.stepper.output("updates")
     share = again.last(name) / again.time / (run.last(name) / run.time)
     return f"with block steps {share:.0%} of the particle updates", share < WORTH
 
@@ -197,7 +197,7 @@ def _sound(run: Evidence, expected: float | None) -> Iterator[Finding]:
         return
     fluid = min(fluids, key=lambda each: each.sound)
     fastest = max(speed, expected or 0.0)
-    densest = run.largest(f"f_{stepper.id}[4]") or 0.0
+    densest = run.largest(stepper.output("compression")) or 0.0
     measured = (
         f"c0 = {fluid.sound:.3g}, largest speed {speed:.3g}, "
         f"v/c0 = {speed / fluid.sound:.2g}, largest compression {densest:.1%}"
@@ -257,7 +257,7 @@ def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
     if not all(_is_rigid(words) for words in run.commands.bonds.values()):
         return
     for fix in run.commands.styled("pbd/cloth"):
-        name = f"f_{fix.id}[4]"
+        name = fix.output("strain")
         strain = run.largest(name)
         if strain is None or strain <= wanted:
             continue

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 from sphcloth.advice.commands import Fix
 from sphcloth.advice.evidence import Evidence
+from sphcloth.fix_values import LIMITS
 
 # limits of fix sph/integrate that can be switched off, with the value that is their default
-LIMITS = {"velocity": "0.1", "force": "0.05", "viscous": "0.2", "density": "0.1"}
+DEFAULTS = {"velocity": "0.1", "force": "0.05", "viscous": "0.2", "density": "0.1"}
 OPTIONAL = ("relative", "cloth", "fluctuation")
-# their numbers: f_ID[18 + n] counts the particles whose tightest limit is n
-NUMBER = {"velocity": 1, "force": 2, "viscous": 4, "density": 5, "relative": 6, "cloth": 8}
 # arguments of fix wall/sph: faces and their positions come first
 FACES = ("xlo", "xhi", "ylo", "yhi", "zlo", "zhi")
 
@@ -42,7 +41,7 @@ def _limits(run: Evidence) -> Iterator[Finding]:
     stepper, set_by = run.commands.stepper, run.commands.steps_by_limit
     if stepper is None or not sum(set_by.values()):
         return
-    off = [name for name in LIMITS if _is_on(stepper, name, LIMITS[name])]
+    off = [name for name in DEFAULTS if _is_on(stepper, name, DEFAULTS[name])]
     off += [name for name in OPTIONAL if _is_on(stepper, name, "0")]
     # without a viscosity there is no such limit to switch off
     if not any(fluid.alpha or fluid.nu for fluid in run.commands.fluids.values()):
@@ -64,7 +63,7 @@ def _is_on(stepper: Fix, limit: str, default: str) -> bool:
 
 def _particles(run: Evidence, stepper: Fix, limit: str) -> float:
     """Return the largest number of particles whose own tightest limit it was; 0 if not logged."""
-    return run.largest(f"f_{stepper.id}[{18 + NUMBER[limit]}]") or 0 if limit in NUMBER else 0
+    return run.largest(stepper.output(f"particles/{limit}")) or 0 if limit in LIMITS else 0
 
 
 def _without(stepper: Fix, keywords: list[str]) -> list[str]:
@@ -81,10 +80,10 @@ def _without(stepper: Fix, keywords: list[str]) -> list[str]:
 
 def _contact(run: Evidence) -> Iterator[Finding]:
     for fix in run.commands.styled("cloth/contact"):
-        projected, stopped = (run.largest(f"f_{fix.id}[{n}]") for n in (1, 2))
+        projected, stopped = (run.largest(fix.output(name)) for name in ("contacts", "stops"))
         # with wall yes it is the wall of the water as well
         if projected == 0 and not stopped and fix.value("wall", "no") == "no":
-            yield Finding("contact", f"f_{fix.id}[1] = 0: nothing met the cloth", f"# {fix.line}")
+            yield Finding("contact", "contacts = 0: nothing met the cloth", f"# {fix.line}")
 
 
 def _walls(run: Evidence) -> Iterator[Finding]:

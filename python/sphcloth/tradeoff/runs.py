@@ -21,6 +21,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from sphcloth.errors import UserError
+from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
 from sphcloth.programs import installed_version
 from sphcloth.results import write_json
@@ -42,6 +43,7 @@ TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 20.0
 STOPPED = "stopped; what has finished is kept: the same command goes on from there"
 # schemes under which a step is not a step of every particle
 PARTIAL = ("individual", "block")
+REMEDY = "'compute updates all sph/step updates', and c_updates to thermo_style"
 
 
 @dataclass(frozen=True)
@@ -260,24 +262,22 @@ class Crew:
 def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
     """Return how often a particle was updated in a run.
 
-    That is what fix sph/integrate counts, from the column ``v_updates``, ``c_updates`` or
-    ``f_ID[3]``, or else, right where all particles take every step, the atoms summed over the
-    steps.
+    That is `updates` of compute sph/step, from a column ``v_updates`` or ``c_updates`` or that of
+    fix sph/integrate itself, or else, right where all particles take every step, the atoms summed
+    over the steps.
 
     Raises:
         UserError: steps are individual and the log has neither column.
     """
     fix = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)
-    counted = f"f_{fix[1]}[3]" if fix else "f_step[3]"
+    counted = column(fix[1] if fix else "step", "sph/integrate", "updates")
     for name in ("v_updates", "c_updates", counted):
         if name in table:
             return float(table[name][-1] - table[name][0])
     if scheme in PARTIAL:
-        raise UserError(
-            f"{scheme} steps, but the log has no particle updates: add {counted} to thermo_style"
-        )
+        raise UserError(f"{scheme} steps, but the log has no particle updates: add {REMEDY}")
     if "Atoms" not in table:
-        raise UserError(f"no particle updates in the log: add {counted}, or atoms, to thermo_style")
+        raise UserError(f"no particle updates in the log: add {REMEDY}, or atoms")
     return float(np.trapezoid(table["Atoms"], table["Step"]))
 
 

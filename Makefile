@@ -92,7 +92,7 @@ tidy: $(VENV)/strict
 	$(CMAKE_HERE) -S . -B build/tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 	$(BIN)/clang-tidy --quiet -p build/tidy $(shell find src/USER-SPHCLOTH src/plugin -name '*.cpp')
 
-# the tests with a plugin that looks at every address and at undefined behaviour: an hour
+# the tests with a plugin that looks at every address and at undefined behavior: an hour
 sanitize: $(VENV)/installed
 	$(call build_with,sanitize,SPHCLOTH_SANITIZE)
 	$(CTEST) build/sanitize/core

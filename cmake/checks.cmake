@@ -2,7 +2,7 @@
 # nothing; the rest is off unless asked for.
 
 include_guard()
-option(SPHCLOTH_SANITIZE "find bad addresses and undefined behaviour while running" OFF)
+option(SPHCLOTH_SANITIZE "find bad addresses and undefined behavior while running" OFF)
 option(SPHCLOTH_COVERAGE "count which lines run" OFF)
 option(SPHCLOTH_GUIDE "count which branches of the styles run, for a fuzzer to follow" OFF)
 
@@ -10,7 +10,7 @@ add_library(sphcloth_checks INTERFACE)
 target_compile_options(sphcloth_checks INTERFACE -Wall -Wextra -Wshadow -Wconversion)
 if(SPHCLOTH_SANITIZE)
   # null pointers are bad addresses too, and what need not be aligned says so in its type: left out,
-  # they make the loops over neighbours compile five times as long
+  # they make the loops over neighbors compile five times as long
   set(_sanitizers -fsanitize=address,undefined,float-cast-overflow -fno-sanitize=null,alignment
     -fno-sanitize-recover=undefined)
   target_compile_options(sphcloth_checks INTERFACE ${_sanitizers} -O1 -g1 -fno-omit-frame-pointer)

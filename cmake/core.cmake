@@ -1,4 +1,4 @@
-# sphcloth::core: numerics without LAMMPS; the loops over neighbours are compiled once per kernel.
+# sphcloth::core: numerics without LAMMPS; the loops over neighbors are compiled once per kernel.
 
 include("${CMAKE_CURRENT_LIST_DIR}/checks.cmake")
 file(GLOB_RECURSE _core CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH/core/*.cpp")

@@ -44,7 +44,7 @@ def main() -> int:
         "PYTHONPATH": str(site),
         "PYTHONMALLOC": "malloc",
     }
-    # undefined behaviour is reported there alone
+    # undefined behavior is reported there alone
     command = [sys.executable, "-m", "pytest", "-s", *sys.argv[2:]]
     done = subprocess.run(command, env=environment, stderr=subprocess.PIPE, text=True)
     code = done.returncode

@@ -90,7 +90,7 @@ class ClothMesh:
     def __post_init__(self) -> None:
         """Raise UserError if two neighboring triangles are wound in opposite senses."""
         if len(np.unique(self._sides, axis=0)) < len(self._sides):
-            raise UserError("neighbouring cloth triangles are wound in opposite senses")
+            raise UserError("neighboring cloth triangles are wound in opposite senses")
 
     @classmethod
     def read(cls, data: str | Path) -> ClothMesh:

@@ -20,7 +20,7 @@ sphcloth render pour.lammpstrj --time 0.5:2 --format mp4 --size 1920x1080
 
 sphcloth render pour.lammpstrj --frames 1 --turntable --format gif --size 640x480
 
-sphcloth render run.dump --data run.data --fluid 1,3 --colour-by speed --camera 4,-6,3
+sphcloth render run.dump --data run.data --fluid 1,3 --color-by speed --camera 4,-6,3
 """
 
 
@@ -60,9 +60,12 @@ class Particles:
         float | None,
         typer.Option(help="Of the particles.", show_default="from the data file, or found out"),
     ] = None
-    colour_by: Annotated[
+    color_by: Annotated[
         str, typer.Option(help="speed, pressure, density or none: water's own color.")
     ] = "none"
+    old_color_by: Annotated[
+        str | None, typer.Option("--colour-by", help="The same as --color-by.", hidden=True)
+    ] = None
     fluid: Annotated[
         str | None,
         typer.Option(metavar="TYPES", help="Types of water.", show_default="from the data file"),
@@ -109,7 +112,10 @@ def render(
         log=log,
         frames=command.Frames(frames.frames, frames.every, frames.time),
         choice=command.make_choice(
-            particles.fluid, particles.cloth, particles.spacing, particles.colour_by
+            particles.fluid,
+            particles.cloth,
+            particles.spacing,
+            particles.old_color_by or particles.color_by,
         ),
         view=command.View(view.camera, view.target, view.turntable, view.size, view.spheres),
         form=form,

@@ -126,7 +126,7 @@ def script_for_data(cloth: Cloth, data: Path, groups: Path, mass_per_atom: bool)
 
 
 def script_for_molecule(cloth: Cloth, molecule: Path, mass_per_atom: bool) -> list[str]:
-    """Return the lines of an input script that place a molecule template where it was modelled.
+    """Return the lines of an input script that place a molecule template where it was modeled.
 
     ``create_atoms`` puts the mean of the vertices at the given point.
     """

@@ -120,7 +120,7 @@ def make_choice(
     if spacing is not None and not 0 < spacing < np.inf:
         raise UserError(f"--spacing {spacing:g}: must be positive")
     if color_by not in ("none", *QUANTITIES):
-        raise UserError(f"--colour-by {color_by}: use {', '.join(('none', *QUANTITIES))}")
+        raise UserError(f"--color-by {color_by}: use {', '.join(('none', *QUANTITIES))}")
     return Choice(
         None if fluid is None else parse_types(fluid, "--fluid"),
         None if cloth is None else parse_types(cloth, "--cloth"),

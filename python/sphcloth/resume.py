@@ -20,7 +20,7 @@ from sphcloth.trajectory import frame_texts
 BEFORE = ".before"
 # the last bytes of a restart file
 END_OF_RESTART = b"LammpS RestartT\0"
-ROW = re.compile(r"^  - \[(\d+),")
+ROW = re.compile(r"^  - \[(\d+),.*\]\n")
 
 
 def newest_restart(folder: Path, name: str) -> Path:
@@ -64,7 +64,7 @@ def join(log: Path, dump: Path) -> None:
     What the stopped run had written behind the step from which the new one went on is dropped. If
     that has not got as far as its first row, what was kept is put back.
     """
-    first = _first_step(log)
+    first = first_step(log)
     if first is None:
         for file in (dump, log):
             if kept(file).exists():
@@ -76,8 +76,8 @@ def join(log: Path, dump: Path) -> None:
         _join_logs(kept(log), log, first)
 
 
-def _first_step(log: Path) -> int | None:
-    """Return the step of the first row of a log; None if there is none."""
+def first_step(log: Path) -> int | None:
+    """Return the step of the first complete row of a log; None if there is none."""
     if not log.is_file():
         return None
     with log.open(encoding="utf-8", errors="replace") as lines:

@@ -20,7 +20,7 @@ from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
-from sphcloth.resume import join, kept, newest_restart, set_aside
+from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 from sphcloth.summary import summarize
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -84,6 +84,9 @@ def run_example(
     command = lammps_command(example.script.resolve(), ranks, variables)
     outcome = run_lammps(command, out, t_end, console)
     join(log, dump)
+    if outcome.interrupted and first_step(log) is None:
+        console.print("[yellow]stopped before the first row of output: nothing to sum up[/]")
+        return 1
     if outcome.interrupted:
         console.print("[yellow]stopped: the summary is of what was reached[/]")
     elif outcome.status != 0:

@@ -33,7 +33,8 @@ class Summary:
         poured: particles poured.
         on_sheet: particles with the sheet below them in the last frame.
         spilled: particles poured that are not on the sheet: beside it, below it or drained.
-        crossed: particles that went through the sheet, from the dump alone.
+        crossed: particles that went through the sheet, from the dump alone; None of a dump with a
+            single frame.
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
         mass_defect: largest abs(poured - drained - present) at any time.
         deviation: largest abs(rho - rho0) / rho0 under pressure.
@@ -71,7 +72,7 @@ class Summary:
 
         A scene of cloth alone has neither to show.
         """
-        return self.crossed is None or (self.crossed == 0 and self.mass_defect == 0)
+        return self.on_sheet is None or (self.crossed == 0 and self.mass_defect == 0)
 
     def write(self, path: Path) -> None:
         """Write all values and the verdict as JSON."""
@@ -98,7 +99,7 @@ class Summary:
             ("particle updates", text(self.particle_updates, "{:.3e}")),
             ("particle updates per second", text(self.updates_per_second, "{:.3e}")),
         ]
-        if self.crossed is None:
+        if self.on_sheet is None:
             # a scene of cloth alone: what is not there says nothing
             rows = [row for row in rows if "n/a" not in row[1]]
         if self.crossing_steps:
@@ -152,11 +153,11 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
 
 @dataclass(frozen=True)
 class Water:
-    """Where the water of a run is; None in a scene without water or without cloth.
+    """Where the water of a run is; all None in a scene without water or without cloth.
 
     Attributes:
         on_sheet: particles with the sheet below them in the last frame.
-        crossed: particles that went through the sheet.
+        crossed: particles that went through the sheet; None of a dump with a single frame.
         crossing_steps: the steps of the frames after that, without repeats.
         compressed: share of the water, of all frames, that is denser than at rest by more than
             1 %; None if the dump does not tell.
@@ -181,6 +182,10 @@ class Water:
         last, mesh = trajectory[-1], scene_roles.mesh
         above = [metrics.above_sheet(mesh, last, kind) for kind in scene_roles.fluid]
         densities = Densities(rest_density)
+        if len(trajectory) < 2:
+            for _ in densities.watch(_counted(trajectory, table, scene_roles.fluid)):
+                pass
+            return cls(int(sum(map(np.count_nonzero, above))), compressed=densities.compressed)
         passes = []
         for kind in scene_roles.fluid:
             frames = _counted(trajectory, table, scene_roles.fluid)

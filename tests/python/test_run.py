@@ -5,6 +5,9 @@ from __future__ import annotations
 import io
 import json
 import os
+import subprocess
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -120,18 +123,49 @@ def test_pictures_are_drawn(drop: Path) -> None:
     assert all((drop / name).stat().st_size > 1000 for name in names)
 
 
-def test_a_run_that_is_interrupted_ends_lammps_and_sums_up_what_was_reached(
-    drop: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupt(*_: object) -> str:
-        raise KeyboardInterrupt
+def interrupt_when(log_has: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the user stop the run as soon as its log has some words."""
 
-    monkeypatch.setattr(sphcloth.run, "_describe", interrupt)
+    def follow(log: Path, process: subprocess.Popen[bytes]) -> Iterator[dict[str, float]]:
+        while not (log.is_file() and log_has in log.read_text()):
+            assert process.poll() is None
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+        yield {}
+
+    monkeypatch.setattr(sphcloth.run, "_follow", follow)
+
+
+# the first frame is written before the first row; the second one never, at the rows, or between
+@pytest.mark.parametrize(("every", "row"), [(10**9, "[0,"), (10, "[50,"), (7, "[10,")])
+def test_a_run_that_is_interrupted_ends_lammps_and_sums_up_what_was_reached(
+    drop: Path, monkeypatch: pytest.MonkeyPatch, every: int, row: str
+) -> None:
+    script = examples.find_example("drop").script
+    script.write_text(SCRIPT.replace("custom 10 ", f"custom {every} "))
+    interrupt_when(f"  - {row}", monkeypatch)
     before = set(descendants(os.getpid()))
-    _, text = run(drop, t_end="1e5", ranks=2)
+    code, text = run(drop, t_end="1e5", ranks=2)
     assert "stopped: the summary is of what was reached" in text and "time reached" in text
     assert set(descendants(os.getpid())) <= before
-    assert json.loads((drop / "summary.json").read_text())["time"] < 1e5
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 1
+    assert summary["time"] < 1e5
+    assert summary["on_sheet"] == 1
+    assert summary["crossed"] == (None if every == 10**9 else 0)
+    assert summary["passed"] == (every != 10**9)
+
+
+def test_a_run_that_is_interrupted_before_its_first_row_has_nothing_to_sum_up(
+    drop: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = examples.find_example("drop").script
+    script.write_text(SCRIPT.replace("line yaml", "line one"))
+    interrupt_when("   Step ", monkeypatch)
+    code, text = run(drop, t_end="1e5")
+    assert code == 1
+    assert "stopped before the first row of output: nothing to sum up" in text
+    assert not (drop / "summary.json").exists()
 
 
 def test_size_and_settings_reach_the_script(drop: Path) -> None:

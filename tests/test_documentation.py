@@ -581,7 +581,7 @@ assert updates[2] > 3 * updates[1] > 9 * updates[0]
         env=os.environ | {"MPLBACKEND": "agg"},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=1800,
     )
     assert done.returncode == 0, done.stderr
 

@@ -28,7 +28,7 @@ def run(example: str, out: Path, *settings: str) -> tuple[dict, ThermoTable]:
         ],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=1800,
     )
     # 0 says that nothing crossed the sheet, and no particle is missing
     assert done.returncode == 0, done.stdout + done.stderr

@@ -89,7 +89,7 @@ def test_another_release_is_refused(capfd):
 
 def test_doctor_finds_nothing_wrong(tmp_path):
     done = subprocess.run(
-        [BIN / "sphcloth", "doctor"], cwd=tmp_path, capture_output=True, text=True, timeout=120
+        [BIN / "sphcloth", "doctor"], cwd=tmp_path, capture_output=True, text=True, timeout=1800
     )
     assert done.returncode == 0, done.stdout
     assert "20250722" in done.stdout and "ranks: 2" in done.stdout

@@ -66,10 +66,13 @@ def find_example(name: str) -> Example:
 
 
 def parse_settings(settings: Sequence[str], option: str = "--set") -> dict[str, str]:
-    """Turn the ``name=value`` texts of an option into a dictionary; UserError for other forms."""
+    """Turn the ``name=value`` texts of an option into a dictionary; UserError for other forms.
+
+    ``name=`` is the empty text.
+    """
     pairs = [setting.partition("=") for setting in settings]
-    for setting, (name, equals, value) in zip(settings, pairs, strict=True):
-        if not (name.isidentifier() and equals and value.strip()):
+    for setting, (name, equals, _) in zip(settings, pairs, strict=True):
+        if not (name.isidentifier() and equals):
             raise UserError(f"{option} {setting}: expected name=value")
     return {name: value.strip() for name, _, value in pairs}
 

@@ -31,14 +31,15 @@ def program(name: str) -> Path:
     return Path(found)
 
 
-def lammps_on(ranks: int, bare: bool = False) -> list[str]:
+def lammps_on(ranks: int, bare: bool = False, jobs: int = 1) -> list[str]:
     """Return the command that starts LAMMPS on so many ranks, one rank without mpiexec if bare.
 
-    With more ranks than cores those that wait sleep, unless the user's environment says otherwise.
+    With more ranks than cores, those of all jobs that run side by side, ranks that wait sleep,
+    unless the user's environment says otherwise.
     """
     if bare and ranks == 1:
         return [str(program("lmp"))]
-    oversubscribed = ranks > len(os.sched_getaffinity(0))
+    oversubscribed = ranks > 1 and ranks * jobs > len(os.sched_getaffinity(0))
     settings = [pair for pair in YIELDING.items() if oversubscribed and pair[0] not in os.environ]
     told = [word for pair in settings for word in ("-genv", *pair)]
     return [str(program("mpiexec")), *told, "-n", str(ranks), str(program("lmp"))]

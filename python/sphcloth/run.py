@@ -160,10 +160,12 @@ def check_no_link(folder: Path) -> None:
         raise UserError(f"{folder} is a link to {folder.readlink()}: remove it first")
 
 
-def lammps_command(script: Path, ranks: int, variables: Mapping[str, str]) -> list[str]:
-    """Return the command line that runs a script with these variables."""
+def lammps_command(
+    script: Path, ranks: int, variables: Mapping[str, str], jobs: int = 1
+) -> list[str]:
+    """Return the command line that runs a script with these variables, one of so many jobs."""
     values = [text for name, value in variables.items() for text in ("-var", name, value)]
-    return [*lammps_on(ranks), "-in", str(script), "-log", LOG, *values]
+    return [*lammps_on(ranks, jobs=jobs), "-in", str(script), "-log", LOG, *values]
 
 
 def run_lammps(command: list[str], out: Path, t_end: float, console: Console) -> Outcome:

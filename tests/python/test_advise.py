@@ -108,7 +108,7 @@ def write(folder: Path, text: str, values: dict[str, str], **changes: str) -> Pa
 
 
 def ask(script: Path, steps: int = 2000, **given: float) -> Advice:
-    return advise(Probe(script, {}, 1, steps, 60.0), Console(quiet=True), **given)
+    return advise(Probe(script, {}, 1, steps, 600.0), Console(quiet=True), **given)
 
 
 def water(folder: Path, **changes: str) -> Advice:
@@ -139,8 +139,8 @@ def test_a_probe_computes_what_the_script_does(tmp_path: Path) -> None:
 
     dump = "write_dump all custom end.dump id type x y z modify sort id format float %.17g"
     script = write(tmp_path, WATER + dump + "\n", COLUMN, steps="60")
-    Probe(script, {}, 1, 2000, 60.0).run(tmp_path / "probe")
-    assert start_lammps(lammps_command(script, 1, {}), tmp_path).wait(60) == 0
+    Probe(script, {}, 1, 2000, 600.0).run(tmp_path / "probe")
+    assert start_lammps(lammps_command(script, 1, {}), tmp_path).wait(600) == 0
     ends = [Trajectory(folder / "end.dump")[-1] for folder in (tmp_path, tmp_path / "probe")]
     assert (ends[0].positions == ends[1].positions).all()
 
@@ -258,9 +258,9 @@ def test_runs_in_loops_branches_and_includes_are_probed(tmp_path: Path) -> None:
         'if "1 > 0" then "run 5" else "run 500"\nrun 50 upto\ninclude more.in',
     )
     script = write(tmp_path, text, COLUMN)
-    run = Probe(script, {}, 1, 1000, 60.0).run(tmp_path / "all")
+    run = Probe(script, {}, 1, 1000, 600.0).run(tmp_path / "all")
     assert (run.steps, run.whole) == (57, True)
-    run = Probe(script, {}, 1, 33, 60.0).run(tmp_path / "part")
+    run = Probe(script, {}, 1, 33, 600.0).run(tmp_path / "part")
     assert (run.steps, run.whole) == (33, False)
 
 

@@ -1,8 +1,10 @@
 """What makes the tables of docs/evidence/reliability.md: small runs of each, and the page."""
 
+import itertools
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -23,6 +25,8 @@ def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):
         monkeypatch.delenv(name, raising=False)
     assert lammps_on(2)[1:3] == ["-n", "2"]
     assert lammps_on(3).count("-genv") == len(YIELDING)
+    assert lammps_on(2, jobs=2).count("-genv") == len(YIELDING)
+    assert lammps_on(1, jobs=4)[1:3] == ["-n", "1"]
     monkeypatch.setenv("MPIR_CVAR_ENABLE_HEAVY_YIELD", "0")
     assert "MPIR_CVAR_ENABLE_HEAVY_YIELD" not in lammps_on(3)
 
@@ -53,7 +57,10 @@ def test_mass_and_momentum_stay():
     assert found.mass == 0 and found.momentum < 1e-12 and found.energy_left < 1
 
 
-def test_looks_at_a_run_that_pours(tmp_path):
+def test_looks_at_a_run_that_pours(tmp_path, monkeypatch):
+    ticks = itertools.count()
+    clock = SimpleNamespace(monotonic=lambda: 0.1 * next(ticks), sleep=lambda _: None)
+    monkeypatch.setattr(endurance, "time", clock)
     file = tmp_path / "pour.json"
     words = ["pour", "--minutes", "0.02", "--load", "1", "--json", str(file)]
     CliRunner().invoke(endurance.app, words)

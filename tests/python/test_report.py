@@ -199,7 +199,7 @@ def test_the_page_in_a_browser(browser, results: Path, tmp_path: Path) -> None:
         return find("canvas").get_attribute(f"data-{name}")
 
     def wait(condition, what: str) -> None:
-        WebDriverWait(browser, 10, 0.05).until(lambda _: condition(), what)
+        WebDriverWait(browser, 300, 0.05).until(lambda _: condition(), what)
 
     def picture() -> str:
         return browser.execute_script("return arguments[0].toDataURL()", find("canvas"))

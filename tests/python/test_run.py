@@ -191,8 +191,20 @@ def test_unknown_names_say_what_there_is(drop: Path) -> None:
         run(drop, flor="1")
 
 
-@pytest.mark.parametrize("setting", ["t_end", "=1", "t_end=", "1a=2"])
+@pytest.mark.parametrize("setting", ["t_end", "=1", "=", "1a=2"])
 def test_settings_are_name_and_value(setting: str) -> None:
     with pytest.raises(UserError, match="expected name=value"):
         examples.parse_settings([setting])
     assert examples.parse_settings(["a=1", "b=x=y"]) == {"a": "1", "b": "x=y"}
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_variable_is_emptied(drop: Path, ranks: int) -> None:
+    script = examples.find_example("drop").script
+    script.write_text(
+        f"variable more index mistaken\n{SCRIPT.replace('fluid nve', 'fluid nve ${more}')}"
+    )
+    settings = examples.parse_settings(["more="])
+    assert settings == {"more": ""}
+    code, text = run(drop, "tiny", ranks, **settings)
+    assert code == 0, text

@@ -16,6 +16,7 @@ from rich.console import Console
 from sphcloth.cli import main
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
+from sphcloth.programs import YIELDING
 from sphcloth.tradeoff import runs
 from sphcloth.tradeoff.command import all_scenes, find_scene, parse_quantity, parse_variations
 from sphcloth.tradeoff.report import show, write_all
@@ -264,6 +265,27 @@ def test_values_too_large_to_be_squared_are_a_failure(
     found = study(scene, wish, tmp_path / "out", quiet)
     assert [each.failure for each in found.points] == [None, "values too large for an error"]
     write_all(found, tmp_path)
+
+
+def test_ranks_of_runs_side_by_side_that_are_more_than_cores_sleep(
+    spring: Path, tmp_path: Path, quiet: Console, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1})
+    for name in YIELDING:
+        monkeypatch.delenv(name, raising=False)
+    start, asked = runs.start_lammps, []
+
+    def note(command: list[str], folder: Path) -> object:
+        asked.append("-genv" in command)
+        return start(command, folder)
+
+    monkeypatch.setattr(runs, "start_lammps", note)
+    for jobs in (1, 2):
+        workshop = runs.Workshop(
+            find_scene(str(spring), ["v_x"], last_run=False), tmp_path / str(jobs), 2, jobs, quiet
+        )
+        workshop.run([runs.Setting(AS_WRITTEN, {}, {})])
+    assert asked == [False, True]
 
 
 @pytest.fixture

@@ -46,6 +46,8 @@ def test_every_case_has_its_script_and_sets_only_what_the_script_knows() -> None
         ("height=-1", "--set height=-1: undisturbed height H must be a number from 0.001 to 100"),
         ("height=tall", "--set height=tall"),
         ("height=nan", "--set height=nan"),
+        ("height=", "--set height=: undisturbed height H must be a number from 0.001 to 100"),
+        ("kernel=", "--set kernel=: "),
         ("layers=40.5", "a whole number from 24 to 400"),
         ("kernel=gauss", "kernel must be wendland/c2, wendland/c4, cubic, quintic"),
         ("height", "expected name=value"),

@@ -17,14 +17,14 @@ BIN = Path(sys.executable).parent
 
 def run(script: Path, ranks: int = 1, **variables: object) -> str:
     """Run ``script`` in its own folder on ``ranks`` ranks; return what it printed."""
-    done = _started(script, ranks, variables, timeout=300)
+    done = _started(script, ranks, variables, timeout=1800)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
     return done.stdout
 
 
 def fail(script: Path, ranks: int) -> str:
-    """Run a script that must end in an error, all ranks within a minute; return what it printed."""
-    done = _started(script, ranks, {}, timeout=60)
+    """Run a script that must end in an error on all ranks; return what it printed."""
+    done = _started(script, ranks, {}, timeout=600)
     assert done.returncode != 0
     return done.stdout
 

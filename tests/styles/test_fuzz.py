@@ -21,7 +21,7 @@ from scenes import SMALL_SHEET
 
 WORKER = Path(__file__).with_name("fuzz_worker.py")
 # seconds until a command counts as hung
-PATIENCE = 60.0
+PATIENCE = 600.0
 
 EDGES = "0 1 -1 2 0.1 -0 1e-3 1e-310 1e300 1e400 -1e300 nan inf -inf 0x10 1e 1.2.3 2147483648"
 WORDS = "99999999999999999999 abc yes no NULL * 1* *1 1*2 v_x v_none EDGE none all water cloth --"

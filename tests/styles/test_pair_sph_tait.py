@@ -826,6 +826,6 @@ except Exception as error:
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="reserves more memory")
 def test_lists_that_do_not_fit_the_memory_are_named():
     command = [sys.executable, "-c", CROWDED]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     words = "pair_style sph/tait: not enough memory for the neighbours of 12000 particles within"
     assert words in done.stdout, done.stdout + done.stderr

@@ -23,7 +23,12 @@ def advise(
     script: Annotated[Path, typer.Argument(metavar="IN", help="Input script; it is not changed.")],
     settings: Annotated[
         list[str] | None,
-        typer.Option("--var", "--set", metavar="NAME=VALUE", help="Set a variable of the script."),
+        typer.Option(
+            "--var",
+            "--set",
+            metavar="NAME=VALUE",
+            help="Set a variable of the script; NAME= empties it.",
+        ),
     ] = None,
     ranks: Ranks = 1,
     steps: Annotated[

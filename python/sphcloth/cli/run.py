@@ -32,7 +32,9 @@ def run(
     ] = None,
     settings: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="Set a variable of the script."),
+        typer.Option(
+            "--set", metavar="NAME=VALUE", help="Set a variable of the script; NAME= empties it."
+        ),
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw pictures afterwards.")] = True,
     frames: Annotated[int, typer.Option(min=1, help="Number of pictures.")] = 12,

@@ -49,7 +49,9 @@ class Settings:
     ] = None
     settings: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="Set a variable in all runs."),
+        typer.Option(
+            "--set", metavar="NAME=VALUE", help="Set a variable in all runs; NAME= empties it."
+        ),
     ] = None
     over: Annotated[
         list[str] | None,

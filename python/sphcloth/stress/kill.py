@@ -28,7 +28,7 @@ from sphcloth.stress.processes import descendants, kill_all, run_to_end, start
 
 SCRIPT = SCENES / "in.kill"
 # seconds that the others have to end after one of them was killed, and a run at all
-GRACE_SECONDS, TIMEOUT_SECONDS = 60.0, 300.0
+GRACE_SECONDS, TIMEOUT_SECONDS = 300.0, 1800.0
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _run_and_kill(
 ) -> tuple[bool, str]:
     """Return whether the run was still there when it was killed, and what went wrong."""
     run = start(_command(scheme, ranks, "no"), folder)
-    time.sleep(at)
+    _await(folder, at)
     in_time = run.poll() is None
     family = descendants(run.pid)
     one = [pid for pid in family if _is_rank(pid)][-1:] if killed == "one" else []
@@ -118,6 +118,11 @@ def _run_and_kill(
         kill_all([run.pid] if run.poll() is None else [])
         run.wait()
     return in_time, ""
+
+
+def _await(_: Path, at: float) -> None:
+    """Return when a run that was started in a folder is to be killed."""
+    time.sleep(at)
 
 
 def _is_rank(pid: int) -> bool:

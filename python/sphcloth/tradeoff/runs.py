@@ -39,7 +39,7 @@ from sphcloth.tradeoff.scene import Scene
 
 RECORD = "result.json"
 # a run is stopped when it takes so many times as long as the reference, and these seconds
-TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 20.0
+TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 120.0
 STOPPED = "stopped; what has finished is kept: the same command goes on from there"
 # schemes under which a step is not a step of every particle
 PARTIAL = ("individual", "block")
@@ -200,7 +200,8 @@ class Workshop:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         copy_companions(self.scene.script, folder)
-        command = lammps_command(self.scene.script.resolve(), self.ranks, setting.variables)
+        script = self.scene.script.resolve()
+        command = lammps_command(script, self.ranks, setting.variables, self.jobs)
         begin = time.monotonic()
         failure = crew.run(command, folder)
         if crew.stopped:

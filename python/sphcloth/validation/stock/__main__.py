@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.examples import parse_settings
 from sphcloth.validation.stock import CODES, compare_stock
 
 
@@ -23,9 +24,9 @@ def main() -> int:
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("stock"))
     given = parser.parse_args()
-    settings = dict(text.partition("=")[::2] for text in given.settings)
     start = time.monotonic()
     try:
+        settings = parse_settings(given.settings)
         measured, runner = compare_stock(
             given.case,
             given.code,

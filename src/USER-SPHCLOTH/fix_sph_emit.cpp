@@ -252,13 +252,17 @@ double FixSPHEmit::compute_vector(int n)
 
 struct FixSPHEmit::Record {
   bigint emitted, layers;
-  double start, momentum[3];
+  double start, momentum[3], time;    // start and time: physical
 };
 
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, Record{emitted, layers, start, {momentum[0], momentum[1], momentum[2]}});
+  write_record(fp, Record{emitted,
+                          layers,
+                          start,
+                          {momentum[0], momentum[1], momentum[2]},
+                          physical_time(update)});
 }
 
 void FixSPHEmit::restart(char *buf)
@@ -266,6 +270,7 @@ void FixSPHEmit::restart(char *buf)
   const auto record = read_record<Record>(buf, label, error);
   emitted = record.emitted;
   layers = record.layers;
-  start = record.start;
+  // reset_timestep may have come before this fix
+  start = record.start + (physical_time(update) - record.time);
   std::copy(record.momentum, record.momentum + 3, momentum);
 }

@@ -31,7 +31,7 @@ using namespace sphcloth;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), fluid(nullptr),
     limits(lmp_, options), control(lmp_, options, label, groupbit), report(lmp_, options, groupbit),
-    scheme(SteppingScheme::CONSTANT), run_style_drives(false)
+    scheme(SteppingScheme::CONSTANT), run_style_drives(false), has_moved(false)
 {
   time_integrate = 1;
   nevery = 1;
@@ -89,6 +89,11 @@ void FixSPHIntegrate::init()
   const SteppingScheme wanted = run_style ? run_style->scheme() : options.scheme;
   options.check(wanted, control.times, fluid->integrates_density(), label, error);
   use_scheme(wanted, BlockClock());
+  if (update->whichflag == 2 && updates_some())
+    error->all(FLERR,
+               "{}: with run_style sph/adaptive {} minimize would update the particles that are due "
+               "alone: use 'run_style verlet' before",
+               label, scheme_name(scheme));
   limits.init(fluid, scheme);
   control.init(fluid, limits.shortest_sound_time());
   stepper->init(fluid);
@@ -127,18 +132,34 @@ void FixSPHIntegrate::check_group()
 
 void FixSPHIntegrate::setup(int)
 {
+  const double now = physical_time(update), jump = control.jump(now);
+  if (jump != 0.0) stepper->shift_times(jump);
+  control.set_time(now);
+  has_moved = false;
   stepper->choose_step();
   control.times.look_for_end();
 }
 
 void FixSPHIntegrate::initial_integrate(int)
 {
+  if (control.jump(physical_time(update) - update->dt) != 0.0)
+    error->all(FLERR, "{}: the time has been reset since the last step: leave 'pre no' out of run",
+               label);
+  has_moved = true;
+  control.begin_step();
   fluid->advance(update->dt);
   stepper->move();
 }
 
+// Rerun evaluates without steps.
+
 void FixSPHIntegrate::end_of_step()
 {
+  if (!has_moved && updates_some())
+    error->all(FLERR,
+               "{}: with run_style sph/adaptive {} rerun would update the particles that are due "
+               "alone: use 'run_style verlet' before",
+               label, scheme_name(scheme));
   if (!run_style_drives) finish_step();
 }
 
@@ -179,6 +200,8 @@ double FixSPHIntegrate::compute_vector(int n) { return report.output(n, *stepper
 struct FixSPHIntegrate::Record {
   double previous, ceiling, updates, ideal_updates, largest_before;
   Limit limited_by;
+  bigint steps;
+  double time;
   std::array<double, N_LIMITS> steps_by_limit;
   BlockClock clock;
 };
@@ -196,6 +219,8 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       all[1],
                       state.largest_before,
                       state.limited_by,
+                      state.steps,
+                      state.time,
                       report.steps_by_limit,
                       stepper->clock() ? *stepper->clock() : BlockClock()};
   write_record(fp, record);
@@ -205,7 +230,8 @@ void FixSPHIntegrate::restart(char *buf)
 {
   const auto record = read_record<Record>(buf, label, error);
   keep_restored_time(update);
-  control.restore({record.previous, record.largest_before, record.limited_by});
+  control.restore(
+      {record.previous, record.largest_before, record.limited_by, record.steps, record.time});
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
   if (!options.ceiling_given) options.ceiling = record.ceiling;
   report.updates = comm->me == 0 ? record.updates : 0.0;

@@ -89,7 +89,13 @@ class FixSPHIntegrate : public Fix, public HasLongestStep {
   SteppingScheme scheme;    // in force, of this fix or of the run style
   std::unique_ptr<Stepper> stepper;
   bool run_style_drives;
+  bool has_moved;    // since the setup
 
+  // particles that are due, and not all in each evaluation?
+  bool updates_some() const
+  {
+    return scheme == SteppingScheme::INDIVIDUAL || scheme == SteppingScheme::BLOCK;
+  }
   void check_group();
   void use_scheme(SteppingScheme, const BlockClock &);
 };

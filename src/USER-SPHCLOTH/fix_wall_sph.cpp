@@ -38,7 +38,7 @@ static int face_of(const std::string &name)
 
 FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), fluid(nullptr), slip(false),
-    any_variable(false), any_moves(false), reflection(1.0), last_time(-1.0), summed(false)
+    any_variable(false), any_moves(false), reflection(1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
@@ -166,14 +166,13 @@ void FixWallSPH::check_face(const Wall &wall) const
 
 void FixWallSPH::begin()
 {
-  const double now = physical_time(update);
-  const double elapsed = last_time < 0.0 ? 0.0 : now - last_time;
+  // the time may be reset between runs
+  const double elapsed = update->setupflag ? 0.0 : update->dt;
   if (any_variable) modify->clearstep_compute();
   for (Wall &wall : walls) locate(wall, elapsed);
   any_moves = std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.moves(); });
   if (any_variable) modify->addstep_compute(update->ntimestep + 1);
   find_open_space();
-  last_time = now;
   std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
   found.clear();

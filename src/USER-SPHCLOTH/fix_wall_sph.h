@@ -78,7 +78,6 @@ class FixWallSPH : public Fix, public FluidBoundary {
   bool slip, any_variable, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
   std::array<double, 3> open_low, open_high;    // out of reach of all walls
-  double last_time;    // of the positions, < 0: none yet
   sphcloth::WallTable table;
 
   std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall

@@ -6,7 +6,9 @@
 #include "comm.h"
 #include "core/util/bytes.h"
 #include "fluid/fluid_state.h"
+#include "lammps_util/atom_tools.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -41,6 +43,7 @@ void BlockState::add_particle(int i)
   columns[Columns::BIN][i] = clock.deepest;
   columns[Columns::BIN_BEFORE][i] = StepKey::FIRST;
   columns[Columns::EVENT][i] = Columns::NEW;
+  columns[Columns::SLOW_SINCE][i] = physical_time(update);
   if (clock.chosen) begin_own_step(i);
 }
 

@@ -109,6 +109,23 @@ void BlockSteps::choose_step()
   parts.control.take(dt, clock.limit, to_output);
 }
 
+// The base step ends where it would have ended.  An output time before that would be missed.
+
+void BlockSteps::shift_times(double by)
+{
+  Stepper::shift_times(by);
+  double *slow_since = state.columns[Columns::SLOW_SINCE];
+  for (int i = 0; i < atom->nlocal; i++) slow_since[i] += by;
+  BlockClock &clock = state.clock;
+  if (!clock.begun() || !parts.control.times.any()) return;
+  constexpr double SLACK = 1e-6;    // of a step
+  const double step = clock.smallest_step(), end = physical_time(update) + clock.line.remaining();
+  clock.output_time = parts.control.times.next(step);
+  clock.reaches_output = std::fabs(clock.output_time - end) < SLACK * step;
+  if (!clock.reaches_output && clock.output_time < end)
+    parts.control.refuse_reset(clock.output_time, end);
+}
+
 /* ----------------------------------------------------------------------
    what others ask
 ------------------------------------------------------------------------- */

@@ -35,6 +35,7 @@ class BlockSteps : public Stepper, public StepHooks {
   void end_step() override;
   void choose_step() override;
   void add_particle(int i) override { state.add_particle(i); }
+  void shift_times(double by) override;
   ParticleColumns &columns() override { return state.columns; }
   const BlockClock *clock() const override { return &state.clock; }
   int count_sleeping() const override;

@@ -51,7 +51,7 @@ void IndividualSteps::select_active()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & parts.fix->groupbit)) continue;
     double *row = parts.rows[i];
-    const bool active = update->ntimestep % whole_steps(row[UpdateRows::OWN_STEP], dt) == 0;
+    const bool active = parts.control.steps() % whole_steps(row[UpdateRows::OWN_STEP], dt) == 0;
     row[UpdateRows::ACTIVE] = active;
     if (active)
       parts.report.updates++;

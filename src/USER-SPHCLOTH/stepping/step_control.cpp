@@ -8,12 +8,14 @@
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "integrate.h"
+#include "lammps_util/atom_tools.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -22,7 +24,8 @@ using namespace sphcloth;
 StepControl::StepControl(LAMMPS *lmp_, const StepOptions &options_, std::string label_,
                          int groupbit_) :
     Pointers(lmp_), times(lmp_), options(options_), label(std::move(label_)), groupbit(groupbit_),
-    fluid(nullptr), previous(0.0), largest_before(0.0), limit(Limit::NONE)
+    fluid(nullptr), previous(0.0), largest_before(0.0), limit(Limit::NONE),
+    n_steps(update->ntimestep), time(physical_time(update))
 {
 }
 
@@ -38,6 +41,8 @@ void StepControl::restore(const State &before)
   previous = before.previous;
   largest_before = before.largest_before;
   limit = before.limited_by;
+  n_steps = before.steps;
+  time = before.time;
 }
 
 /* ----------------------------------------------------------------------
@@ -71,6 +76,14 @@ void StepControl::end_step()
 {
   previous = times.uncut() > 0.0 ? times.uncut() : update->dt;
   largest_before = compression.largest;
+  time = physical_time(update);
+}
+
+double StepControl::jump(double now) const
+{
+  constexpr double OF_STEP = 1e-6, ROUNDING = 1e-12;
+  const double by = now - time;
+  return std::fabs(by) > OF_STEP * update->dt + ROUNDING * std::fabs(now) ? by : 0.0;
 }
 
 StepLimit StepControl::bounded(const StepLimit &wanted, double before) const
@@ -88,6 +101,14 @@ std::string StepControl::too_short(const StepLimit &wanted, const std::string &f
   return fmt::format("{}: the {} limit asks for a step of {}{}, below min {}: lower min, or use "
                      "'below clamp' to go on with min and count",
                      label, limit_name(wanted.by), wanted.dt, for_which, options.floor);
+}
+
+void StepControl::refuse_reset(double output_time, double end) const
+{
+  error->all(FLERR,
+             "{}: the time has been reset to {}, the next output time is {}, but all particles are "
+             "synchronized again at {}: reset the time where a run has ended at an output time",
+             label, physical_time(update), output_time, end);
 }
 
 StepLimit StepControl::tightest_of_ranks(const StepLimit &mine) const

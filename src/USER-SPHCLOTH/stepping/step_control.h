@@ -25,11 +25,20 @@ class StepControl : protected Pointers {
 
   void init(FluidState *, double shortest_sound_time);
 
+  // a step of the run begins, whatever LAMMPS calls it: reset_timestep changes its number
+  void begin_step() { n_steps++; }
+  bigint steps() const { return n_steps; }
+
   // collective: the next step from the tightest limit of this rank
   void choose(const sphcloth::StepLimit &mine);
   // the next step, as a scheme has chosen it
   void take(double dt, sphcloth::Limit by, bool ends_at_output_time);
   void end_step();
+
+  // By how much the physical time is later than at the end of the last step: 0, unless it has been
+  // reset since.
+  double jump(double now) const;
+  void set_time(double now) { time = now; }
 
   sphcloth::Limit limited_by() const { return limit; }
   // of this rank
@@ -41,13 +50,18 @@ class StepControl : protected Pointers {
   bool is_too_short(const sphcloth::StepLimit &bounded) const;
   std::string too_short(const sphcloth::StepLimit &wanted, const std::string &for_which) const;
 
+  // an error: the time was reset between an output time and the end of a base step
+  void refuse_reset(double output_time, double end) const;
+
   // for restart files
   struct State {
     double previous;    // the last step, before an output time cut it; 0 before the first
     double largest_before;    // compression when that step was chosen
     sphcloth::Limit limited_by;
+    bigint steps;
+    double time;    // at the end of the last step
   };
-  State state() const { return {previous, largest_before, limit}; }
+  State state() const { return {previous, largest_before, limit, n_steps, time}; }
   void restore(const State &);
 
  private:
@@ -59,6 +73,8 @@ class StepControl : protected Pointers {
   double previous, largest_before;
   sphcloth::Compression compression;    // when the step that comes next was chosen
   sphcloth::Limit limit;
+  bigint n_steps;
+  double time;    // physical, at the end of the last step
 
   sphcloth::StepLimit tightest_of_ranks(const sphcloth::StepLimit &mine) const;
   sphcloth::Compression compression_of_ranks() const;

@@ -2,6 +2,7 @@
 
 #include "stepping/stepper.h"
 
+#include "atom.h"
 #include "fluid/fluid_state.h"
 
 using namespace LAMMPS_NS;
@@ -16,6 +17,11 @@ void Stepper::grow(int nmax)
 {
   columns().grow(nmax);
   if (fluid) tell_active(false);
+}
+
+void Stepper::shift_times(double by)
+{
+  for (int i = 0; i < atom->nlocal; i++) parts.rows[i][UpdateRows::LAST_UPDATE] += by;
 }
 
 void Stepper::tell_active(bool all)

@@ -52,6 +52,9 @@ class Stepper : protected Pointers {
   virtual void end_step() {}
   virtual void choose_step() = 0;
   virtual void add_particle(int) {}    // owned; its columns are zero
+  // the physical time has been reset, to one that is later by this: the times that are kept of
+  // particles follow
+  virtual void shift_times(double by);
   void grow(int nmax);    // after the rows
 
   // what the scheme keeps of each atom beside its row, in the order of restart files

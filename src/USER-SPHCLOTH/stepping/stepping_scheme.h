@@ -7,6 +7,17 @@ namespace LAMMPS_NS {
 
 enum class SteppingScheme : int { CONSTANT, GLOBAL, INDIVIDUAL, BLOCK };
 
+inline const char *scheme_name(SteppingScheme scheme)
+{
+  switch (scheme) {
+    case SteppingScheme::CONSTANT: return "constant";
+    case SteppingScheme::GLOBAL: return "global";
+    case SteppingScheme::INDIVIDUAL: return "individual";
+    case SteppingScheme::BLOCK: return "block";
+  }
+  return "";
+}
+
 // run_style sph/adaptive
 
 class HasSteppingScheme {

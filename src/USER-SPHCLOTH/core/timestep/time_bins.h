@@ -28,6 +28,11 @@ class TimeBins {
   double step(int bin) const { return base * PARTS_OF_BASE[bin]; }
   bool begins(int bin) const { return now % ticks(bin) == 0; }
   bool ended() const { return now == ticks(0); }
+  // to the end of the base step
+  double remaining() const
+  {
+    return base * static_cast<double>(ticks(0) - now) / static_cast<double>(ticks(0));
+  }
 
   // the longest step that may begin now
   int coarsest() const

@@ -1,0 +1,185 @@
+"""What commands between two runs do to steps: nothing, or an error that says why."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import MAKE_FALL, fall
+
+SCHEMES = ("constant", "global", "individual", "block")
+DUMP = "id type x y z vx vy vz"
+EXACT = f"modify sort id format float %.17g\nrerun now.dump dump {' '.join(DUMP.split()[2:])}"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("between")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(path)
+        with instance() as lmp:
+            lmp.commands_string(MAKE_FALL)
+    return path
+
+
+@pytest.fixture
+def here(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def falling(scheme, limits="", extra="", walls="zlo 0"):
+    """Half-way through the impact, in the middle of a base step."""
+    lmp = instance()
+    script = fall(scheme, ceiling=5e-4 if scheme == "constant" else 2e-3, limits=limits)
+    script = script.replace("fix walls all wall/sph zlo 0", f"fix walls all wall/sph {walls}")
+    lmp.commands_string(f"{extra}{script}thermo_style custom step time\nrun 30")
+    return lmp
+
+
+def state(lmp):
+    return np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
+
+
+def end(scheme, between, limits="", run="run 30"):
+    """Positions, velocities, and the time since the command between the runs."""
+    with falling(scheme, limits) as lmp:
+        lmp.commands_string(between)
+        begin = lmp.get_thermo("time")
+        lmp.command(run)
+        return state(lmp), lmp.get_thermo("time") - begin
+
+
+def error_between(scheme, between, limits="", run="run 30"):
+    with falling(scheme, limits) as lmp:
+        try:
+            lmp.commands_string(f"{between}\n{run}")
+        except Exception as error:
+            return str(error)
+    return ""
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize(
+    "between", ["reset_timestep 0", "reset_timestep 7 time 0.5", "reset_timestep 1000"]
+)
+def test_a_reset_of_the_time_changes_no_motion(here, scheme, between):
+    (expected, took), (found, takes) = end(scheme, "run 0"), end(scheme, between)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11)
+    assert takes == pytest.approx(took, rel=1e-9)
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual"])
+def test_output_times_are_those_of_the_new_time(here, scheme):
+    with falling(scheme, "output 0.01") as lmp:
+        lmp.commands_string("reset_timestep 0")
+        met = []
+        for _ in range(40):
+            lmp.command("run 1 post no")
+            if lmp.extract_fix("step", 0, 1, 27):
+                met.append(lmp.get_thermo("time"))
+    assert met
+    np.testing.assert_allclose(met, 0.01 * np.arange(1, len(met) + 1), rtol=1e-12)
+
+
+def test_a_reset_that_would_miss_an_output_time_is_an_error(here):
+    """Particles of unequal steps are synchronized at the end of a base step alone."""
+    limits = "output 0.1 gain 1"
+    between = "reset_timestep 0 time 0.09999"
+    message = error_between("block", between, limits)
+    assert "fix step sph/integrate: the time has been reset to 0.09999" in message
+    assert "reset the time where a run has ended at an output time" in message
+
+
+def test_output_times_of_block_steps_after_a_reset(here):
+    with falling("block", "output 0.01 gain 1 until 0.02") as lmp:
+        lmp.commands_string("run 1000\nreset_timestep 0\nrun 1000")
+        assert lmp.get_thermo("time") == pytest.approx(0.02, rel=1e-12)
+
+
+def test_a_reset_and_a_run_without_setup_are_an_error(here):
+    message = error_between("individual", "reset_timestep 0", run="run 30 pre no")
+    assert "the time has been reset since the last step: leave 'pre no' out of run" in message
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("between", ["timestep {dt}", "write_restart half.restart"])
+def test_other_commands_change_nothing(here, scheme, between):
+    dt = 5e-4 if scheme == "constant" else 1e-4
+    expected, found = end(scheme, "run 0"), end(scheme, between.format(dt=dt))
+    np.testing.assert_array_equal(found[0], expected[0])
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_run_upto(here, scheme):
+    expected, found = end(scheme, "run 0"), end(scheme, "run 0", run="run 60 upto")
+    np.testing.assert_array_equal(found[0], expected[0])
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_clear_forgets_the_run_before(here, scheme):
+    with falling(scheme) as lmp:
+        expected = state(lmp)
+        lmp.command("clear")
+        ceiling = 5e-4 if scheme == "constant" else 2e-3
+        lmp.commands_string(fall(scheme, ceiling=ceiling) + "\nrun 30")
+        np.testing.assert_array_equal(state(lmp), expected)
+
+
+@pytest.mark.parametrize("scheme", ["constant", "global"])
+def test_rerun_of_the_last_state_changes_nothing(here, scheme):
+    rerun = f"write_dump all custom now.dump {DUMP} {EXACT}"
+    expected, found = end(scheme, "run 0"), end(scheme, rerun)
+    np.testing.assert_allclose(found[0], expected[0], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("scheme", ["individual", "block"])
+def test_rerun_and_minimize_need_forces_on_all_particles(here, scheme):
+    rerun = f"write_dump all custom now.dump {DUMP} {EXACT}"
+    for command, between in {"minimize": "minimize 0 0 1 1", "rerun": rerun}.items():
+        message = error_between(scheme, between)
+        assert f"fix step sph/integrate: with run_style sph/adaptive {scheme} {command}" in message
+        assert "use 'run_style verlet' before" in message
+
+
+def test_a_reset_behind_a_restart_file(here):
+    """The state of unequal steps in the file is that of the time in the file."""
+    settings = "neighbor 0.03 bin\nneigh_modify every 1 delay 0 check yes\n"
+    fixes = fall("individual").split("check yes\n")[1].split("\n", 1)[1]
+    with falling("individual") as lmp:
+        lmp.commands_string("write_restart half.restart\nrun 30")
+        expected = state(lmp)
+    for reset in ("", "reset_timestep 0"):
+        with instance() as lmp:
+            lmp.commands_string(
+                f"comm_modify vel yes\nread_restart half.restart\n{reset}\n{settings}{fixes}run 30"
+            )
+            np.testing.assert_allclose(state(lmp), expected, rtol=0, atol=1e-11, err_msg=reset)
+
+
+def test_a_source_goes_on_behind_a_restart_file_and_a_reset(here):
+    source = "fix pour all sph/emit 300 1 0.05 rectangle 0 0 0.9 0.2 0.2 velocity 0 0 -2 start 0\n"
+    with falling("global") as lmp:
+        lmp.commands_string(f"{source}run 30\nwrite_restart pour.restart\nrun 60")
+        expected = lmp.extract_fix("pour", 0, 0)
+    fixes = fall("global").split("check yes\n")[1].split("\n", 1)[1]
+    with instance() as lmp:
+        lmp.commands_string(
+            "comm_modify vel yes\nread_restart pour.restart\nreset_timestep 0\n"
+            f"neighbor 0.03 bin\nneigh_modify every 1 delay 0 check yes\n{fixes}{source}run 60"
+        )
+        assert lmp.extract_fix("pour", 0, 0) == expected
+
+
+def test_the_velocity_of_a_wall_does_not_feel_a_reset(here):
+    """That of a lid which goes down by the time since a moment that is reset as well."""
+    lid = "variable begin equal 0\nvariable lid equal 0.46-0.2*(time-v_begin)\n"
+
+    def behind(reset):
+        with falling("global", extra=lid, walls="zlo 0 zhi v_lid") as lmp:
+            now = lmp.get_thermo("time")
+            if reset:
+                lmp.command("reset_timestep 1000")
+                lmp.command(f"variable begin equal {lmp.get_thermo('time') - now!r}")
+            lmp.command("run 1")
+            return state(lmp)
+
+    np.testing.assert_allclose(behind(True), behind(False), rtol=0, atol=1e-11)

@@ -79,9 +79,12 @@ def test_the_list_names_cases_and_parameters(
 ) -> None:
     assert call(monkeypatch, "--list") == 0
     shown = capsys.readouterr().out
-    for case in validate.all_cases().values():
-        assert case.name in shown
-        assert case.parameters[0].name in shown
+    cases = validate.all_cases()
+    assert all(name in shown for name in cases)
+    assert call(monkeypatch, "--list", "couette") == 0
+    shown = capsys.readouterr().out
+    assert all(parameter.name in shown for parameter in cases["couette"].parameters)
+    assert call(monkeypatch, "--list", "couete") == 2
 
 
 def fake_case(value: float, folder: Path) -> Case:

@@ -130,10 +130,10 @@ def figures_of(rounds: list[Steps]) -> dict:
 def show(result: dict, console: Console) -> None:
     """Print all figures."""
     table = Table(
-        title=f"block steps, {result['particles']} particles, {result['rounds']} rounds; "
+        title=f"block steps, {result['particles']} particles, {result['rounds']} rounds;\n"
         "ns per particle of the block"
     )
-    heads = ("updated", "step", "step of all", "over that", "per particle left out")
+    heads = ("updated", "step", "step of all", "over that", "per particle\nleft out")
     for head in heads:
         table.add_column(head, justify="right")
     for corner in result["corners"]:

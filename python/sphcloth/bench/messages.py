@@ -179,7 +179,7 @@ def _expected(found: list[dict], on: Cluster) -> list[dict]:
 def show(result: dict, console: Console) -> None:
     """Print what was counted and what is expected."""
     counted = Table(title=f"{result['particles']} particles of water: a rank sends in a step")
-    for head in ("scene", "ranks", "ghosts", "messages", "bytes a ghost", "collective calls"):
+    for head in ("scene", "ranks", "ghosts", "messages", "bytes\na ghost", "collective\ncalls"):
         counted.add_column(head, justify="left" if head == "scene" else "right")
     for row in result["found"]:
         figures = (row["messages"], row["bytes"] / row["ghosts"], row["collectives"])
@@ -189,13 +189,14 @@ def show(result: dict, console: Console) -> None:
     console.print(counted)
     on = Cluster(particle=1e-9 * result["particle_ns"])
     expected = Table(
-        title=f"share of its time that a rank computes: {result['particle_ns']:.0f} ns a particle, "
-        f"{1e6 * on.latency:g} us a message, {on.bandwidth / 1e9:g} GB/s a rank"
+        title="share of its time that a rank computes:\n"
+        f"{result['particle_ns']:.0f} ns a particle, {1e6 * on.latency:g} us a message, "
+        f"{on.bandwidth / 1e9:g} GB/s a rank"
     )
     expected.add_column("scene")
     expected.add_column("particles", justify="right")
     for n in PER_RANK:
-        expected.add_column(f"{n:.0e} a rank", justify="right")
+        expected.add_column(f"{n:.0e}\na rank", justify="right")
     for row in result["expected"]:
         shares = (f"{share:.0%}" for share in row["shares"].values())
         expected.add_row(row["scene"], f"{row['particles']:.0e}", *shares)

@@ -60,10 +60,15 @@ def figure(values: list[float]) -> dict[str, float]:
 
 
 def cell(value: object) -> str:
-    """Return a figure as a table shows it."""
+    """Return a figure as a table shows it, the extremes below the median."""
     if isinstance(value, dict):
-        return str(Spread(**value))
-    return "" if value is None else f"{value:.3g}"
+        spread = Spread(**value)
+        return f"{_short(spread.value)}\n{_short(spread.least)} to {_short(spread.most)}"
+    return "" if value is None else _short(value)
+
+
+def _short(value: float) -> str:
+    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def read_timing(log: str) -> Timing:

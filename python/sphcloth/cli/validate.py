@@ -14,7 +14,7 @@ from sphcloth.errors import UserError
 EXAMPLES = """
 Examples:
 
-sphcloth validate --list
+sphcloth validate --list; sphcloth validate --list hydrostatic
 
 sphcloth validate hydrostatic --quick
 
@@ -39,17 +39,17 @@ def validate(
     ] = None,
     json_file: JsonFile = None,
     show_list: Annotated[
-        bool, typer.Option("--list", help="Show all cases and their parameters.")
+        bool, typer.Option("--list", help="Show all cases, or with CASE its parameters.")
     ] = False,
 ) -> None:
     """Compare a case with its reference solution; exit code 0 only if all limits are met."""
     from sphcloth.examples import parse_settings
-    from sphcloth.validation.validate import find_case, show_cases
+    from sphcloth.validation.validate import find_case, show_case, show_cases
     from sphcloth.validation.validate import validate as run_case
 
     console = Console()
     if show_list:
-        show_cases(console)
+        show_cases(console) if case is None else show_case(find_case(case), console)
         return
     if case is None:
         raise UserError("which case? sphcloth validate --list shows them")

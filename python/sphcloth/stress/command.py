@@ -106,9 +106,8 @@ def show_cases(console: Console) -> None:
     """Print every case with what must happen."""
     table = Table("case", "must", "schemes", "ranks")
     for case in all_cases().values():
-        table.add_row(
-            case.name, case.must, ", ".join(case.schemes), ", ".join(map(str, case.ranks))
-        )
+        schemes = "all" if set(case.schemes) == set(SCHEMES) else "\n".join(case.schemes)
+        table.add_row(case.name, case.must, schemes, ", ".join(map(str, case.ranks)))
     console.print(table)
 
 

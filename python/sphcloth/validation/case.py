@@ -107,7 +107,7 @@ class Case:
 
     Attributes:
         name: as on the command line; the script beside the case's module is ``in.<name>``.
-        summary: what is compared with what, in one line.
+        summary: what is measured, and behind a colon what it is compared with, in one line.
         parameters: all that ``--set`` may change.
         quantities: all that is measured, in the order of the table.
         measure: runs the script for some parameters and returns a value for each quantity. It

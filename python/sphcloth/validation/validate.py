@@ -125,11 +125,30 @@ def validate(
 
 
 def show_cases(console: Console) -> None:
-    """Print every case with its parameters."""
+    """Print one line for each case."""
+    table = Table("case", "what: compared with what", box=None, pad_edge=False)
     for case in all_cases().values():
-        table = Table("parameter", "default", "quick", "unit", "allowed", "what", title=case.name)
-        for parameter in case.parameters:
-            quick = parameter.default if parameter.quick is None else parameter.quick
-            fixed = str(parameter.default), str(quick), parameter.unit
-            table.add_row(parameter.name, *fixed, parameter.allowed, parameter.description)
-        console.print(table, f"{case.name}: {case.summary}\n", highlight=False)
+        table.add_row(case.name, case.summary)
+    console.print(table)
+    console.print("[dim]sphcloth validate --list CASE shows its parameters and limits[/]")
+
+
+def show_case(case: Case, console: Console) -> None:
+    """Print what a case measures and its parameters."""
+    console.print(f"{case.name}: {case.summary}\n", highlight=False)
+    measured = Table("measured", "limit", "quick", "unit", "what", box=None, pad_edge=False)
+    for quantity in case.quantities:
+        limits = (quantity.limit, quantity.quick_limit)
+        texts = ("" if limit is None else f"{limit:g}" for limit in limits)
+        measured.add_row(quantity.name, *texts, quantity.unit, quantity.description)
+    parameters = Table("parameter", "default", "quick", "unit", "what", box=None, pad_edge=False)
+    for parameter in case.parameters:
+        values = (parameter.default, parameter.quick)
+        texts = ("" if value is None else _short(value) for value in values)
+        what = f"{parameter.description}\n[dim]{parameter.allowed}[/]"
+        parameters.add_row(parameter.name, *texts, parameter.unit, what)
+    console.print(measured, "", parameters, highlight=False)
+
+
+def _short(value: Value) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -232,7 +232,7 @@ def _plot(pistons: list[Piston], swings: list[Swing], path: Path) -> None:
 
 CASE = Case(
     "added-mass-piston",
-    "period of a sheet on springs under water, light to heavy, against that of a rod on a spring",
+    "period of a sheet on springs under water: a rod on a spring",
     PARAMETERS,
     QUANTITIES,
     measure,

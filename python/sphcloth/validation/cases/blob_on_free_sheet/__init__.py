@@ -235,7 +235,7 @@ def _plot(impacts: Mapping[tuple[float, float], Impact], runner: Runner) -> None
 
 CASE = Case(
     "blob-on-free-sheet",
-    "momentum, energy and crossings as a drop hits a free sheet at up to three times c0",
+    "momentum and energy as a drop hits a sheet: conservation",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -111,7 +111,7 @@ def _plot(elastica: HeavyElastica, rows: NDArray, path: Path) -> None:
 
 CASE = Case(
     "cantilever",
-    "drop of a strip of cloth that bends under its weight against the heavy elastica",
+    "drop of a strip that bends under its weight: heavy elastica",
     PARAMETERS,
     QUANTITIES,
     measure,

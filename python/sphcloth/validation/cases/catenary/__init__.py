@@ -111,7 +111,7 @@ def _plot(polygon: HangingPolygon, joints: NDArray, path: Path) -> None:
 
 CASE = Case(
     "catenary",
-    "shape of a chain between two fixed points at rest against the exact polygon",
+    "shape of a chain between fixed points: exact polygon",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -23,7 +23,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
 
 CASE = Case(
     "couette",
-    "profiles of water set in motion by a sliding plate against the series solution",
+    "water set in motion by a sliding plate: series solution",
     PARAMETERS,
     channel.QUANTITIES,
     measure,

@@ -174,7 +174,7 @@ def _plot(column: Column, seen: Mapping[str, Front], run: Run, shift: float, pat
 
 CASE = Case(
     "dam-break",
-    "front of a collapsing column against two experiments and the finest run",
+    "front of a collapsing column: experiments, finest run",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -115,7 +115,7 @@ def _plot(run: Run, exact: NDArray, free: float, length: float, path: Path) -> N
 
 CASE = Case(
     "folded-chain",
-    "fall of a folded chain that is let go at one end against conservation of energy",
+    "fall of a folded chain: conservation of energy",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -128,7 +128,7 @@ def _plot(
 
 CASE = Case(
     "hanging-chain",
-    "stretch and force of a chain of compliant links at rest against statics",
+    "stretch and force of a chain of compliant links: statics",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -185,7 +185,7 @@ def _plot(column: TaitColumn, rest: State, run: Run, path: Path) -> None:
 
 CASE = Case(
     "hydrostatic",
-    "pressure, force on the base and rest of a column against the Tait column",
+    "pressure and force on the base of a column: Tait column",
     PARAMETERS,
     QUANTITIES,
     measure,

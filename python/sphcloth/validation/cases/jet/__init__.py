@@ -146,7 +146,7 @@ def _plot(jet: Jet, runs: Mapping[str, Run], window: tuple[float, float], path: 
 
 CASE = Case(
     "jet",
-    "force of a plane jet on a plate against the momentum that it brings",
+    "force of a plane jet on a plate: its momentum",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -220,7 +220,7 @@ def _plot(
 
 CASE = Case(
     "jet-on-sheet",
-    "force that holds a sheet under a plane jet against the momentum that it turns",
+    "force that holds a sheet under a plane jet: its momentum",
     PARAMETERS,
     QUANTITIES,
     measure,

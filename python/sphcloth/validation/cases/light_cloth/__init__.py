@@ -126,7 +126,7 @@ def _plot(
 
 CASE = Case(
     "light-cloth",
-    "fall of a light sheet held at one edge, soft to stiff, against a chain of rigid links",
+    "fall of a light sheet held at an edge: chain of rigid links",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -339,7 +339,7 @@ def _plot(exact: HeavyLintearia, pools: Mapping[str, Pool], run: Run, path: Path
 
 CASE = Case(
     "lintearia",
-    "sheet between two pins that holds a pool of water against the exact shape and tension",
+    "sheet between pins with a pool: exact shape and tension",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -178,7 +178,7 @@ def _plot(drop: EllipticDrop, seen: Mapping[str, Motion], path: Path) -> None:
 
 CASE = Case(
     "oscillating-drop",
-    "semi-axes and period of a drop in a force field against ideal fluid",
+    "semi-axes and period of a drop in a field: ideal fluid",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -144,7 +144,7 @@ def _plot(runs: list[Run], errors: list[NDArray], values: Mapping[str, Value], p
 
 CASE = Case(
     "pendulum",
-    "period of one link and path of a chain of links against the equations of motion",
+    "one link and a chain of links: equations of motion",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -169,7 +169,7 @@ def _plot(load: Load, pair: Refinement, path: Path) -> None:
 
 CASE = Case(
     "pinned-weight",
-    "forces of the pins of a sheet against the weight of water and sheet",
+    "forces of the pins of a sheet: weight of water and sheet",
     PARAMETERS,
     QUANTITIES,
     measure,

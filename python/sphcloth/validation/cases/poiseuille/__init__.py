@@ -23,7 +23,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
 
 CASE = Case(
     "poiseuille",
-    "profiles of water set in motion by a force against the series solution",
+    "water set in motion by a force: series solution",
     PARAMETERS,
     channel.QUANTITIES,
     measure,

@@ -76,7 +76,7 @@ def _plot(run: Run, angles: NDArray, rest: NDArray, path: Path) -> None:
 
 CASE = Case(
     "rest-angle",
-    "hinges hold rest angles of both signs and return to them",
+    "hinges at rest angles of both signs: the angles",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -166,7 +166,7 @@ def _plot(wave: StandingWave, seen: Mapping[str, Oscillation], path: Path) -> No
 
 CASE = Case(
     "standing-wave",
-    "period of a standing wave against linear theory",
+    "period of a standing wave: linear theory",
     PARAMETERS,
     QUANTITIES,
     measure,

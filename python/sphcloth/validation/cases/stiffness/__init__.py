@@ -118,7 +118,7 @@ def _picture(runs: Mapping[float, Run], values: Mapping[str, Value], path: Path)
 
 CASE = Case(
     "stiffness",
-    "the paper's figure 3, a sheet at several k: sag falls with k, one edge keeps k at any sweeps",
+    "sag of a sheet at several k: figure 3 of the paper",
     PARAMETERS,
     QUANTITIES,
     measure,

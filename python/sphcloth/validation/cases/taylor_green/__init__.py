@@ -148,7 +148,7 @@ def _plot(flow: TaylorGreen, seen: Mapping[str, Decay], path: Path) -> None:
 
 CASE = Case(
     "taylor-green",
-    "decay of Taylor-Green vortices against the exact solution",
+    "decay of Taylor-Green vortices: exact solution",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -107,7 +107,7 @@ def _plot(run: Run, values: Mapping[str, Value], path: Path) -> None:
 
 CASE = Case(
     "xpbd-oscillator",
-    "a mass on one compliant constraint against the eigenvalue of implicit Euler",
+    "a mass on a compliant constraint: implicit Euler",
     PARAMETERS,
     QUANTITIES,
     measure,

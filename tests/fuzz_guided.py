@@ -141,7 +141,7 @@ def follow_the_plugin() -> None:
     Raises:
         SystemExit: the plugin does not count them.
     """
-    # whoever loads the plugin needs LAMMPS around it, and it stays for those who come later
+    # the plugin needs LAMMPS around it when it is loaded, and stays loaded afterward
     with lammps(cmdargs=["-screen", "none", "-log", "none"]):
         plugin = ctypes.CDLL(f"{plugin_path()}/sphclothplugin.so")
     size = 1 << 16

@@ -26,8 +26,8 @@ from rich.table import Table
 ROOT = Path(__file__).parents[1]
 SOURCE = Path("src/USER-SPHCLOTH")
 BIN = Path(sys.executable).parent
-# s, for the tests of one bug: who goes round in circles does not pass either.  Told in looks of a
-# second each, since a machine may stop all of us for longer
+# s, for the tests of one bug: an endless loop does not pass either.  Counted in waits of a second
+# each, since a machine may stop all processes for longer
 PATIENCE = 300
 CORE = "tests/core"  # the part of it that needs no library
 TEST_FAILURE = 201  # exit code of a program of Boost.Test
@@ -54,18 +54,18 @@ PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 
 BUGS = [
-    Bug("sources: no way since the opening", "fix_sph_emit.cpp",
+    Bug("sources: layers are not moved by their age", "fix_sph_emit.cpp",
         "center + pattern[k] + age * velocity", "center + pattern[k]", SOURCES),
-    Bug("sources: each rank counts its own", "fix_sph_emit.cpp",
+    Bug("sources: each rank gives IDs of its own", "fix_sph_emit.cpp",
         "last = largest_id(atom, world)", "last = emitted * (1 + comm->me)",
         f"{SOURCES}::test_pouring_on_two_ranks_and_after_a_restart"),
-    Bug("drain: only the last is counted", "fix_sph_drain.cpp",
+    Bug("drain: only the last removal is counted", "fix_sph_drain.cpp",
         "taken[k] += all[1 + k]", "taken[k] = all[1 + k]", SOURCES),
-    Bug("watch: what left counts as lost", "fix_sph_watch.cpp",
+    Bug("watch: drained mass counts as lost", "fix_sph_watch.cpp",
         "b.mass += sink->compute_vector(0)", "b.mass -= sink->compute_vector(0)", WATCH),
     Bug("watch: kinetic energy without its half", "fix_sph_watch.cpp",
         "mine[KINETIC] += 0.5 * mass", "mine[KINETIC] += mass", WATCH),
-    Bug("cloth: ghosts of a color are old", "cloth/substepping.cpp",
+    Bug("cloth: ghosts of a color are outdated", "cloth/substepping.cpp",
         "    vertices.halo.forward_displacements(constraints.channel_of_edge_color(c), "
         "displacement,\n"
         "                                        substep_dt());\n"
@@ -77,10 +77,10 @@ BUGS = [
     Bug("cloth: as many substeps in each block step", "cloth/substepping.cpp",
         "  n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));\n", "",
         "tests/styles/test_block.py::test_steps_that_jump_do_not_feed_a_sheet"),
-    Bug("cloth: a reference is forgotten", "fix_pbd_cloth.cpp",
+    Bug("cloth: the reference step has no effect", "fix_pbd_cloth.cpp",
         "  if (reference_step > 0.0)\n", "  if (false)\n",
         f"{CLOTH}::test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step"),
-    Bug("cloth: pins pull the wrong way", "fix_pbd_cloth.cpp",
+    Bug("cloth: reaction forces of pins have the wrong sign", "fix_pbd_cloth.cpp",
         "Vec3(-holders.force_on_holder(i))", "holders.force_on_holder(i)",
         "tests/styles/test_cloth_held.py"),
     Bug("pair: ghosts without density and pressure", "pair_sph_tait.cpp",
@@ -91,11 +91,11 @@ BUGS = [
     Bug("pair: stored energy of a unit mass", "pair_sph_tait.cpp",
         "fluid.mass_or_volume[i] *\n        fluid.stored_energy(", "fluid.stored_energy(",
         f"{PAIR}::test_energy_is_what_compression_stored"),
-    Bug("step: place before velocity", "stepping/kick_drift.h",
+    Bug("step: position before velocity", "stepping/kick_drift.h",
         "      v[i][d] += kick * f[i][d];\n      x[i][d] += dt * v[i][d];",
         "      x[i][d] += dt * v[i][d];\n      v[i][d] += kick * f[i][d];",
         f"{STEPPING}::test_semi_implicit_euler"),
-    Bug("step: the first rank decides", "stepping/step_control.cpp",
+    Bug("step: only the limits of the first rank count", "stepping/step_control.cpp",
         "MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);",
         "out = in; MPI_Bcast(&out, 1, MPI_DOUBLE_INT, 0, world);", RANKS),
     Bug("block: impulses reach twice as far", "stepping/block_state.cpp",
@@ -105,7 +105,7 @@ BUGS = [
         "buf[k] = mark[first + k]", "buf[k] = mark[first + k] & ~WAKE", f"{BLOCK}::test_ranks"),
     Bug("block: the impulse of a ghost is not sent back", "stepping/block_impulses.cpp",
         "  state.reverse_marks();\n", "", f"{BLOCK}::test_ranks"),
-    Bug("block: coarse water shakes fine water", "stepping/bin_choice.cpp",
+    Bug("block: bins of coarse and fine neighbors may differ by the most", "stepping/bin_choice.cpp",
         "octaves > 0.0 ? std::clamp(2 - static_cast<int>(octaves), 0, max_difference)",
         "octaves > 0.0 ? max_difference",
         f"{BLOCK}::test_fine_water_is_not_shaken_by_the_steps_of_coarse_water"),
@@ -117,7 +117,7 @@ BUGS = [
         "atom->f[i][d] += state.columns.deferred_impulse(d)[i] / step;",
         "atom->f[i][d] += 0.0 * step;",
         f"{BLOCK}::test_restart_at_an_output_time"),
-    Bug("block: ghosts of ghosts are kicked by what is left there", "stepping/block_state.cpp",
+    Bug("block: ghosts of ghosts are kicked by outdated impulses", "stepping/block_state.cpp",
         "atom->v[i][d] += kicks[3 * i + d] = *buf++;", "atom->v[i][d] += *buf++;",
         f"{BLOCK}::test_ranks"),
     Bug("block: free flight among neighbors under pressure", "stepping/particle_limits.cpp",
@@ -126,10 +126,10 @@ BUGS = [
     Bug("restart: the time since the last change of the step is lost", "lammps_util/atom_tools.h",
         "update->update_time();", "update->beginstep += 0;",
         f"{SOURCES}::test_time_goes_on_after_a_restart_file_of_the_middle_of_a_run"),
-    Bug("restart: what pushes an obstacle is forgotten", "fix_cloth_contact.cpp",
+    Bug("restart: impulses on an obstacle are lost", "fix_cloth_contact.cpp",
         "impulses.unpack(i, record + 1);", "impulses.clear(i);",
         "tests/styles/test_obstacles.py"),
-    Bug("wall of a mesh: what is beyond the border is filled, too", "fluid/mesh_boundary.cpp",
+    Bug("wall of a mesh: the kernel is completed beyond its border, too", "fluid/mesh_boundary.cpp",
         "closest.share * closest.value.lambda * (1.0 - closest.beyond.lambda)",
         "closest.share * closest.value.lambda", "tests/styles/test_sheet_wall.py"),
     Bug("contact: a hole in every triangle", "core/contact/point_triangle.h",
@@ -150,24 +150,24 @@ BUGS = [
     Bug("lists: a cell too few is searched", "core/neighbor/cell_lists.h",
         "to[d] = grid.along(d, x + reach)",
         "to[d] = std::max(from[d], grid.along(d, x + reach) - 1)", CORE),
-    Bug("lists: fronts without their inner skin", "core/neighbor/dual_lists.h",
+    Bug("lists: inner lists without their skin", "core/neighbor/dual_lists.h",
         "near = limit[types_of_it] + now.skin", "near = limit[types_of_it]", CORE),
-    Bug("lists: not made anew where particles have come nearer", "core/neighbor/dual_lists.h",
+    Bug("lists: not rebuilt where particles have approached each other", "core/neighbor/dual_lists.h",
         "if (!outer_hold) renew(", "if (false) renew(", CORE),
-    Bug("lists: what comes from the block beside is not seen", "core/neighbor/blocks.h",
+    Bug("lists: particles from a neighboring block are not found", "core/neighbor/blocks.h",
         "if (at > 0) take(of[b], before[b - stride]);", "", CORE),
     Bug("block: neighbors may have any steps where a base step begins",
         "core/neighbor/dual_lists.h",
         "ranges_known && ranges.greatest(block[slot], other) <= limit_of_value", "ranges_known",
         BLOCK),
-    Bug("block: all count as in step where a base step begins", "core/neighbor/dual_lists.h",
+    Bug("block: all neighbors count as active where a base step begins", "core/neighbor/dual_lists.h",
         "ranges_known && ranges.all_have(same, block[slot], other)", "ranges_known", BLOCK),
-    Bug("block: who has no impulse is not given those of others", "core/sph/force_loops.h",
+    Bug("block: particles without an impulse get none from their neighbors", "core/sph/force_loops.h",
         "lists.others(0, slot, other, acts.data())", "lists.others(1, slot, other, acts.data())",
         BLOCK),
-    Bug("contact: out on the other side", "core/contact/point_triangle.h",
+    Bug("contact: a particle is put out on the other side", "core/contact/point_triangle.h",
         "gap_start >= 0.0 ? 1.0 : -1.0", "gap_start >= 0.0 ? -1.0 : 1.0", CONTACT),
-    Bug("contact: two vertices take each other's part", "core/contact/point_triangle.h",
+    Bug("contact: weights of two vertices are exchanged", "core/contact/point_triangle.h",
         "return {1.0 - w2 - w3, w2, w3}", "return {1.0 - w2 - w3, w3, w2}", CORE),
 ]  # fmt: skip
 
@@ -227,7 +227,7 @@ class Tree:
             sys.exit(f"{' '.join(map(str, command))} failed:\n{out[-4000:]}")
 
     def _run(self, *command: object, patience: float | None = None) -> tuple[int, str]:
-        """Return exit code and output; whoever is beyond patience is ended, with all it started."""
+        """Return exit code and output; a process beyond patience is ended, with all it started."""
         process = subprocess.Popen(
             [str(word) for word in command],
             cwd=self.sources,
@@ -330,8 +330,8 @@ def main() -> int:
             seen = tree.caught(bug)
             seconds = round(time.monotonic() - begin)
             found.append({"bug": bug.name, "file": bug.file, "caught": seen, "seconds": seconds})
-            table.add_row(bug.name, bug.file, seen or "[red]nobody[/]")
-            print(f"{bug.name}: {seen or 'nobody'} ({seconds} s)", flush=True)
+            table.add_row(bug.name, bug.file, seen or "[red]none[/]")
+            print(f"{bug.name}: {seen or 'none'} ({seconds} s)", flush=True)
     Console().print(table)
     if given.json is not None:
         given.json.parent.mkdir(parents=True, exist_ok=True)

@@ -42,6 +42,23 @@ def test_deliberate_bugs_fit_the_sources():
     assert {bug.name: bug.places() for bug in BUGS} == {bug.name: 1 for bug in BUGS}
 
 
+def test_the_page_has_all_deliberate_bugs():
+    """A bug that only a test of C++ sees has the name of its case there, suite/case."""
+    page = (ROOT / "docs/evidence/reliability.md").read_text()
+    table = re.search(r"<!-- table mutate -->(.*?)<!-- end -->", page, re.DOTALL)[1]
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \| [\d ]+\|$", table, re.MULTILINE)
+    assert [name for name, _ in rows] == [bug.name for bug in BUGS]
+    for (name, caught), bug in zip(rows, BUGS, strict=True):
+        if "::" not in caught and "`" not in caught:
+            suite, case = caught.split("/")
+            file, definition = f"core/test_{suite}.cpp", f"BOOST_AUTO_TEST_CASE({case})"
+        else:
+            file, definition = re.match(r"`(\w+\.py)`: `(\w+)", caught).groups()
+            assert f"/{file}" in bug.tests, f"{name}: {caught}"
+            file, definition = f"styles/{file}", f"def {definition}("
+        assert definition in (ROOT / "tests" / file).read_text(), f"{name}: {caught}"
+
+
 def test_no_environment_variable_is_needed(monkeypatch, tmp_path):
     for name in ("LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"):
         monkeypatch.delenv(name, raising=False)

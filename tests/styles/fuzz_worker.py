@@ -39,7 +39,7 @@ def answer(order):
 
 
 def main():
-    # whoever asks for more gets an error of memory, not the machine; a sanitizer has reserved more,
+    # a larger request ends with an error of memory and leaves the machine alone; a sanitizer has reserved more,
     # and a limit of its own
     if "libasan" not in os.environ.get("LD_PRELOAD", ""):
         resource.setrlimit(resource.RLIMIT_AS, (6 * GIGABYTE,) * 2)

@@ -144,19 +144,19 @@ def on_free_sheet(wall, limits):
 
 
 def momentum_with_sheet(lmp):
-    """Return it, without what substeps have lent, and the sum of its absolute values."""
+    """Return it without the half-kick correction, and the sum of its absolute values."""
     mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
     each = mass[:, None] * by_id(lmp, "v")
-    lent = [lmp.extract_fix("sheet", 0, 1, n) for n in (7, 8, 9)]
-    return each.sum(axis=0) - lent, np.abs(each).sum()
+    correction = [lmp.extract_fix("sheet", 0, 1, n) for n in (7, 8, 9)]
+    return each.sum(axis=0) - correction, np.abs(each).sum()
 
 
 @pytest.mark.parametrize("limits", ["", "output 0.01"])
 @pytest.mark.parametrize("wall", [False, True])
 def test_momentum_of_a_free_sheet_and_its_water(wall, limits):
-    """Boundary particles or meshes take their part of the impulses; substeps lend.
+    """Boundary particles or meshes take their part of the impulses.
 
-    At an output time the sheet is owed what the water has given ahead.
+    At an output time the sheet has a deferred impulse, what the water has been given ahead.
     """
     scene = on_free_sheet(wall, limits)
     lmp = instance()
@@ -174,7 +174,7 @@ def test_momentum_of_a_free_sheet_and_its_water(wall, limits):
 
 @pytest.mark.parametrize(("wall", "late"), [(False, 0.055), (True, 0.095)])
 def test_restart_at_an_output_time(wall, late, tmp_path):
-    """The sheet gets what it is owed."""
+    """The sheet gets its deferred impulse."""
     begin = on_free_sheet(wall, "output 0.02 wetted 50") + "run_style sph/adaptive block\n"
     begin = begin.replace("timestep 0.001", "timestep 0.004").replace("c0 6 nu", "c0 24 nu")
     halt = (
@@ -192,15 +192,15 @@ def test_restart_at_an_output_time(wall, late, tmp_path):
         lmp.commands_string(begin + "run 1")
         start, scale = momentum_with_sheet(lmp)
         lmp.commands_string(halt)
-        owed = lmp.extract_fix("step", 0, 1, 27), momentum_with_sheet(lmp)[0]
+        halfway = lmp.extract_fix("step", 0, 1, 27), momentum_with_sheet(lmp)[0]
         lmp.command("run 33")
         first = by_id(lmp, "x"), by_id(lmp, "v")
         end, is_output = momentum_with_sheet(lmp)[0], lmp.extract_fix("step", 0, 1, 27)
     with instance() as lmp:
         lmp.commands_string(again + "run 33")
         second = by_id(lmp, "x"), by_id(lmp, "v")
-    assert (owed[0], is_output) == (1, 0)
-    assert np.abs(owed[1] - start).max() > 1e-7 * scale
+    assert (halfway[0], is_output) == (1, 0)
+    assert np.abs(halfway[1] - start).max() > 1e-7 * scale
     assert np.abs(end - start).max() < 1e-12 * scale
     for one, other in zip(first, second, strict=True):
         assert np.array_equal(one, other)

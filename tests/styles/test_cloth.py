@@ -332,7 +332,7 @@ def test_cloth_that_crosses_a_face_that_moves_feels_nothing_of_it():
 
 
 def test_another_solver_goes_on_from_a_restart_file(tmp_path):
-    """What substeps lend is not there yet: the sheet falls on."""
+    """There is no half-kick correction yet: the sheet falls on."""
     path = tmp_path / "x.restart"
     cloth(f"run 100\nwrite_restart {path}", fix="solver gs")
     lmp = instance()

@@ -92,11 +92,11 @@ def test_contact_does_nothing_when_far():
 
 
 def momentum(lmp):
-    """Total momentum less what substeps lend, and the sum of all sizes."""
+    """Total momentum without the half-kick correction, and the sum of all sizes."""
     kind, v = by_id(lmp, "type"), by_id(lmp, "v")
     each = lmp.numpy.extract_atom("mass")[kind][:, None] * v
-    lent = [lmp.extract_fix("sheet", 0, 1, n) for n in (7, 8, 9)]
-    return each.sum(axis=0) - lent, np.abs(each).sum()
+    correction = [lmp.extract_fix("sheet", 0, 1, n) for n in (7, 8, 9)]
+    return each.sum(axis=0) - correction, np.abs(each).sum()
 
 
 @pytest.mark.parametrize("solver", ["gs", "substeps"])

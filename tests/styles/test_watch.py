@@ -117,7 +117,7 @@ def test_other_groups_do_not_balance():
 
 
 def test_momentum_and_energy_of_water_and_cloth_together():
-    """What the substeps lend is no momentum, what the cloth stores is energy."""
+    """The half-kick correction is no momentum; what the cloth stores is energy."""
     lmp = instance()
     lmp.commands_string(FREE_SHEET.replace("bond_coeff 1 0.9", "bond_coeff 1 compliance 1e-5"))
     lmp.command("fix watch all sph/watch every 1 momentum 1e-12 energy 1e3")

@@ -1,4 +1,4 @@
-"""The density of water from the positions of its particles, whoever moved them.
+"""The density of water from the positions of its particles, by whatever code.
 
 One kernel for all codes, wider than theirs: a Wendland C2 kernel of three spacings, with which a
 cubic lattice sums to 1.003 of its mass per volume. Only particles inside the water count: around

@@ -161,6 +161,16 @@ def sizes() -> Counter:
     return found
 
 
+def test_python_files_are_short() -> None:
+    long = {
+        str(path.relative_to(ROOT)): n
+        for folder in ("tests", "python")
+        for path in (ROOT / folder).rglob("*.py")
+        if (n := len(path.read_text().splitlines())) > LINES
+    }
+    assert not long, f"above {LINES} lines, to be split by subject: {long}"
+
+
 # words
 
 

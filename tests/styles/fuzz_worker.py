@@ -39,8 +39,8 @@ def answer(order):
 
 
 def main():
-    # a larger request ends with an error of memory and leaves the machine alone; a sanitizer has reserved more,
-    # and a limit of its own
+    # a larger request ends with an error of memory and leaves the machine alone; a sanitizer has
+    # reserved more, and has a limit of its own
     if "libasan" not in os.environ.get("LD_PRELOAD", ""):
         resource.setrlimit(resource.RLIMIT_AS, (6 * GIGABYTE,) * 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

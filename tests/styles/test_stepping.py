@@ -1,49 +1,25 @@
 """fix sph/integrate and run_style sph/adaptive."""
 
 import itertools
-import re
 
 import numpy as np
 import pytest
-from harness import by_id, instance, run, write
+from harness import by_id, instance
 from scenes import (
     FLUID,
     box,
     cloth_box,
     cloth_styles,
     filled,
-    gravity,
     header,
     lattice,
     neighbor,
     sheet,
     sph_tait,
 )
+from step_scenes import CEILING, DAM, FLOOR, GROWTH, dt_and_limit, free_particles, steps_by_limit
 
 VELOCITY, FORCE, ACOUSTIC, VISCOUS, DENSITY, RELATIVE, WETTED, CLOTH = range(1, 9)
-CEILING, FLOOR, GROWTH, FLUCTUATION, OUTPUT = range(9, 14)
-
-
-def free_particles(speed=0.0, options="", extra="", run="run 0", nu=0.0, timestep=0.01):
-    """Particles out of each other's reach."""
-    lmp = instance()
-    lmp.commands_string(
-        header(atoms=FLUID)
-        + box("-1 1 -1 1 -1 1")
-        + "mass 1 0.125\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 0.5 0 0\n"
-        + sph_tait(f"1 1 fluid 1000 c0 20 nu {nu}")
-        + neighbor(0.05)
-        + f"""timestep {timestep}
-        velocity all set {speed} 0 0
-        {extra}
-        fix step all sph/integrate global {options}
-        {run}"""
-    )
-    return lmp
-
-
-def dt_and_limit(lmp):
-    return lmp.extract_fix("step", 0, 0), int(lmp.extract_fix("step", 0, 1, 0))
 
 
 def test_at_rest_the_step_is_the_largest():
@@ -88,11 +64,6 @@ def test_acoustic_limit_uses_the_sound_speed_of_the_density():
     assert sound > 22
     dt, limit = dt_and_limit(lmp)
     assert (dt, limit) == (pytest.approx(0.5 * 0.05 / sound, rel=1e-9), ACOUSTIC)
-
-
-def steps_by_limit(lmp):
-    counts = {k: int(lmp.extract_fix("step", 0, 1, 4 + k)) for k in range(1, 14)}
-    return {k: n for k, n in counts.items() if n}
 
 
 def particles_by_limit(lmp):
@@ -265,25 +236,6 @@ def test_semi_implicit_euler():
     assert x == pytest.approx(0.01 + 2e-6 * 55, rel=1e-12)
 
 
-DAM = (
-    header("f p f", FLUID)
-    + box("0 1 0 0.2 0 0.6", 2)
-    + lattice()
-    + filled("water", "0.05 0.4 INF INF 0.05 0.4")
-    + filled("wall", "0.05 0.95 0.0 0.2 0.05 INF side out", 2)
-    + "mass * 0.125\ngroup fluid type 1\n"
-    + sph_tait("1 1 fluid 1000 c0 25 alpha 0.1", "2 2 boundary")
-    + neighbor(0.03)
-    + "timestep 0.002\n"
-    + gravity("fluid")
-    + """fix step fluid sph/integrate {scheme}
-fix drain fluid sph/drain
-{style}
-run 100
-"""
-)
-
-
 @pytest.mark.parametrize("scheme", ["constant", "global"])
 def test_run_style_and_fix_alone_agree_to_the_last_bit(scheme):
     results = []
@@ -382,89 +334,6 @@ def test_particles_are_counted_by_their_own_limit():
     assert steps_by_limit(lmp) == {VELOCITY: 3}
 
 
-def on_floor(options, run):
-    """What a restart file of the column does not hold."""
-    return (
-        neighbor(0.03)
-        + gravity()
-        + f"fix tank all wall/sph zlo 0\nfix step all sph/integrate global {options}\n{run}\n"
-    )
-
-
-def run_column(options, run):
-    lmp = instance()
-    lmp.commands_string(
-        header("p p f", FLUID)
-        + box("0 0.3 0 0.3 0 0.8")
-        + lattice()
-        + filled("water", "INF INF INF INF 0.0 0.5")
-        + "mass * 0.125\n"
-        + sph_tait("1 1 fluid 1000 c0 25 alpha 0.1")
-        + "timestep 0.01\n"
-        + on_floor(options, run)
-    )
-    return lmp
-
-
-OTHERS_OFF = "acoustic 0 velocity 0 force 0 density 0"
-
-
-def test_the_controller_finds_the_longest_step_that_keeps_the_compression():
-    """Far above the default step, below the limit of stability; without it the column bursts."""
-    eta, in_sound = 0.03, 25 / 0.05
-    lmp = run_column(f"{OTHERS_OFF} fluctuation {eta}", "run 0")
-    assert dt_and_limit(lmp) == (pytest.approx(0.25 / in_sound), FLUCTUATION)
-    lmp.command("run 1000")
-    steps, compressions = [], []
-    for _ in range(200):
-        lmp.command("run 10 post no")
-        steps.append(lmp.extract_global("dt") * in_sound)
-        compressions.append(lmp.extract_fix("step", 0, 1, 3))
-    assert 1.5 < max(steps) < 2.0 and np.mean(steps) > 2 * 0.5
-    # a shock halves the step at 2 eta, so that none gets to 4; 1.5 to 2.6 with other roundings
-    assert eta < max(compressions) < 4 * eta
-    assert steps_by_limit(lmp) == {FLUCTUATION: 3000}
-    with pytest.raises(Exception, match=r"Lost atoms|density"):
-        run_column(f"{OTHERS_OFF} max {2.0 / in_sound}", "run 2000")
-
-
-def test_the_controller_takes_small_paces_and_halves_in_a_shock():
-    eta = 0.005
-    lmp = run_column(f"{OTHERS_OFF} fluctuation {eta}", "run 0")
-    steps, compressions = [lmp.extract_global("dt")], [lmp.extract_fix("step", 0, 1, 3)]
-    for _ in range(300):
-        lmp.command("run 1 post no")
-        steps.append(lmp.extract_global("dt"))
-        compressions.append(lmp.extract_fix("step", 0, 1, 3))
-    factors = np.array(steps[1:]) / np.array(steps[:-1])
-    least = np.array(steps[1:]) < 0.0501 * 0.05 / 25
-    doublings = np.floor(np.log2(np.maximum(1, np.array(compressions) / eta)))
-    shock = (doublings[1:] > doublings[:-1]) & ~least
-    assert shock.any() and least.any()
-    np.testing.assert_allclose(factors[shock], 0.5)
-    calm = np.array(compressions[1:]) < eta
-    np.testing.assert_allclose(factors[~shock & ~least & calm], 1.002)
-    np.testing.assert_allclose(factors[~shock & ~least & ~calm], 0.998)
-    assert min(steps) == pytest.approx(0.05 * 0.05 / 25, rel=1e-12)
-
-
-def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(tmp_path):
-    options = f"{OTHERS_OFF} fluctuation 0.01 output 0.0101"
-    whole = run_column(options, f"run 320\nwrite_restart {tmp_path / 'stop'}")
-    # what the controller knows of the past counts: no shock now, but one from rest
-    assert whole.extract_fix("step", 0, 1, 3) > 2 * 0.01
-    assert whole.extract_global("dt") > 2 * 0.05 * 0.05 / 25
-    whole.command("run 60")
-    again = instance()
-    again.commands_string(
-        f"read_restart {tmp_path / 'stop'}\ncomm_modify vel yes\n" + on_floor(options, "run 60")
-    )
-    for quantity in ("time", "dt"):
-        assert again.get_thermo(quantity) == whole.get_thermo(quantity)
-    assert steps_by_limit(again) == steps_by_limit(whole)
-    np.testing.assert_array_equal(by_id(again, "x"), by_id(whole, "x"))
-
-
 def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
     lmp = free_particles(speed=50.0, run="run 3")
     lmp.command(f"write_restart {tmp_path / 'stop'}")
@@ -511,145 +380,3 @@ def test_inactive_particles_rest_and_cost_no_sums():
     lmp.command("run 0")
     assert by_id(lmp, "rho")[neighbor] == pytest.approx(awake, rel=1e-12)
     assert by_id(lmp, "rho")[asleep - 1] != before["rho"]
-
-
-# so that steps differ by a factor of three within a few steps
-SHAKEN = """
-variable push equal 12*sin(200*time)
-fix shake fluid addforce v_push 0 0
-"""
-
-AFTER_RESTART = """read_restart stop
-comm_modify vel yes
-"""
-
-EXACT = """
-variable next equal f_step[29]
-thermo_style custom step time dt f_step[28] press
-thermo_modify line yaml format float %.17g
-thermo v_next
-compute speed all property/atom vx
-dump plain all atom 1 plain.{part}
-dump_modify plain every/time {every} time yes first {first}
-dump computed all custom 1 computed.{part} id c_speed
-dump_modify computed every/time $(3*{every}) time yes format float %.17g
-"""
-
-
-def times_of_frames(path):
-    lines = path.read_text().splitlines()
-    return np.array([float(b) for a, b in itertools.pairwise(lines) if a == "ITEM: TIME"])
-
-
-def thermo_columns(text):
-    """Step, time, dt and the flag of every line of thermodynamic output."""
-    rows = [line.strip(" -[],").split(", ") for line in text.splitlines() if line[:5] == "  - ["]
-    return np.array(rows, dtype=float)[:, :4].T
-
-
-def multiples(interval, until):
-    return interval * np.arange(0, np.floor(until / interval + 1e-9) + 1)
-
-
-@pytest.mark.parametrize("every", [0.0173, 0.0031, 0.0004])
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
-def test_every_output_time_is_met_once(tmp_path, style, ranks, every):
-    """Two runs, then a third after a restart: frames and thermo lines at all multiples."""
-    scene = DAM.replace("run 100", SHAKEN)
-    first = scene.format(scheme=f"global output {every} acoustic 1.2", style=style)
-    text = (
-        first
-        + EXACT.format(every=every, part=1, first="yes")
-        + "run 60\nrun 61\nwrite_restart stop\n"
-    )
-    after = re.sub(r"(?s)\natom_style.*pair_coeff 2 2 boundary", "\nread_restart stop", first)
-    after = after.replace("units si", "").replace("read_restart stop", AFTER_RESTART)
-    again = after + EXACT.format(every=every, part=2, first="no") + "run 80\n"
-    logs = [
-        run(write(tmp_path, script, f"in.{k}"), ranks=ranks)
-        for k, script in enumerate((text, again))
-    ]
-    columns = [thermo_columns(log) for log in logs]
-    end = columns[1][1, -1]
-    for name, apart in (("plain", every), ("computed", 3 * every)):
-        before, after = (times_of_frames(tmp_path / f"{name}.{part}") for part in (1, 2))
-        # as always, a run that starts at such a time writes it
-        new = after > before[-1] * (1 + 1e-12)
-        frames = np.concatenate([before, after[new]])
-        np.testing.assert_allclose(frames, multiples(apart, end), rtol=2e-15)
-        assert np.sum(~new) == np.isclose(before[-1], columns[0][1, -1], rtol=1e-12)
-    dts = np.concatenate(columns, axis=1)[2]
-    assert every < 0.01 or (dts.max() > 1.5 * dts.min() and dts.max() < 0.003)
-    # thermo: at the start and the end of every run, and at all output times
-    _, time, _, flag = np.concatenate(columns, axis=1)
-    np.testing.assert_allclose(np.unique(time[flag == 1]), multiples(every, end), rtol=2e-15)
-    assert np.sum(flag == 0) <= 5
-
-
-@pytest.mark.parametrize("place", ["before", "after"])
-@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
-def test_halt_and_timeout_end_runs_where_they_say(style, place):
-    halt = "fix stop all halt 1 v_done >= 1 error continue message no"
-    lmp = instance()
-    scene = DAM.format(scheme="global output 0.0141", style=style).replace("run 100", "")
-    if place == "before":
-        scene = scene.replace(
-            "fix gravity", f"variable done equal time>=0.0423\n{halt}\nfix gravity"
-        )
-    else:
-        scene += f"variable done equal time>=0.0423\n{halt}\n"
-    lmp.commands_string(scene + "thermo_style custom time f_step[28]\nrun 100000000 post no")
-    assert lmp.get_thermo("time") == pytest.approx(3 * 0.0141, rel=1e-15)
-    assert lmp.extract_fix("step", 0, 1, 27) == 1
-    lmp.command("unfix stop")
-    lmp.command("timer timeout 1 every 1")
-    lmp.command("run 100000000 post no")
-    assert lmp.get_thermo("time") > 3 * 0.0141
-    lmp.command("timer timeout off")
-    ahead = np.ceil(lmp.get_thermo("time") / 0.0141) + 2
-    lmp.command("variable done delete")
-    lmp.command(f"variable done equal time>={ahead * 0.0141}")
-    lmp.command(halt)
-    lmp.command("run 100000000 post no")
-    assert lmp.get_thermo("time") == pytest.approx(ahead * 0.0141, rel=1e-15)
-
-
-def test_steps_before_an_output_time_are_balanced():
-    """No step is tiny, and the one after it grows from the one that was cut."""
-    lmp = free_particles(options="output 0.025 growth 1.01", run="run 0")
-    dts = []
-    for _ in range(7):
-        dts.append(lmp.extract_global("dt"))
-        lmp.command("run 1 post no")
-    expected = [0.01, 0.0075, 0.0075, 0.01, 0.0075, 0.0075, 0.01]
-    np.testing.assert_allclose(dts, expected, rtol=1e-12)
-    assert lmp.get_thermo("time") == pytest.approx(0.06, rel=1e-12)
-    assert steps_by_limit(lmp) == {CEILING: 3, OUTPUT: 4}
-
-
-def test_a_ceiling_that_divides_the_interval_is_never_cut():
-    lmp = free_particles(options="output 0.1", run="run 1000")
-    assert steps_by_limit(lmp) == {CEILING: 1000}
-    assert lmp.get_thermo("time") == pytest.approx(10, rel=1e-15)
-
-
-def test_dumps_by_time_come_with_the_first_step_that_reaches_it(tmp_path):
-    """Also where steps grow and shrink much between two frames."""
-    scene = DAM.format(scheme="global acoustic 1.2", style="").replace("run 100", SHAKEN)
-    log = run(
-        write(
-            tmp_path,
-            scene
-            + "thermo_style custom step time dt dt\nthermo_modify line yaml format float %.17g\n"
-            + "thermo 1\ndump plain all atom 1 plain\n"
-            + "dump_modify plain every/time 0.0173 time yes first yes\n"
-            + "run 200\nthermo 50",
-        )
-    )
-    _, time, dt, _ = thermo_columns(log)
-    assert dt.max() > 2.5 * dt.min()
-    wanted = multiples(0.0173, time[-1])
-    np.testing.assert_allclose(
-        times_of_frames(tmp_path / "plain"), time[np.searchsorted(time, wanted)], rtol=1e-14
-    )

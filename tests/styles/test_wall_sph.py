@@ -1,34 +1,16 @@
 """fix wall/sph against quadrature of the kernel, invariants, and exact flows."""
 
 import math
-import re
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import by_id, instance, run, write
-from scenes import FLUID, filled, gravity, header, jitter, lattice, neighbor, sph_tait
+from harness import by_id, instance
+from scenes import FLUID, filled, header, jitter, lattice, neighbor, sph_tait
 from scenes import box as a_box
+from wall_scenes import C0, GAMMA, KERNELS, RHO0, H, channel
 
-H = 0.1
-RHO0, C0, GAMMA = 1000.0, 20.0, 7.0
 NU = 1e-2
-
-KERNELS = {
-    "wendland/c2": (
-        {2: 7 / math.pi, 3: 21 / (2 * math.pi)},
-        lambda q: (1 - q) ** 4 * (1 + 4 * q),
-        lambda q: -20 * (1 - q) ** 3,
-        [0.0, 1.0],
-    ),
-    "cubic": (
-        {2: 40 / (7 * math.pi), 3: 8 / math.pi},
-        lambda q: np.where(q < 0.5, 6 * q**3 - 6 * q**2 + 1, 2 * (1 - q) ** 3),
-        lambda q: np.where(q < 0.5, 18 * q - 12, -6 * (1 - q) ** 2 / q),
-        [0.0, 0.5, 1.0],
-    ),
-}
 
 
 def behind(kernel, dim, delta, term):
@@ -233,29 +215,6 @@ def test_drho_is_the_rate_of_the_density():
         assert drho > 0
 
 
-def channel(walls, extra="", ratio=3.0, alpha=0.0, setting="tension yes", size=(8, 20)):
-    """2-D fluid between two walls in y, periodic in x; its lattice has rest density by summation"""
-    dx = H / ratio
-    n = np.arange(-5, 6)
-    q = np.hypot(n[:, None], n[None]) / ratio
-    norm, shape, _, _ = KERNELS["wendland/c2"]
-    lattice_sum = norm[2] / ratio**2 * np.where(q < 1, shape(np.minimum(q, 1)), 0).sum()
-    lx, ly = size[0] * dx, size[1] * dx
-    lmp = instance()
-    lmp.commands_string(
-        header("p f p", FLUID, dimension=2)
-        + a_box(f"0 {lx} {-H} {ly + H} {-dx} {dx}")
-        + f"mass 1 {RHO0 * dx * dx / lattice_sum}\n"
-        + lattice(dx, 2)
-        + filled("water", f"INF INF 0 {ly} INF INF")
-        + sph_tait(f"1 1 fluid {RHO0} c0 {C0} alpha {alpha}", support=H, options=setting)
-        + neighbor(0.4 * dx)
-        + f"thermo_modify norm no\nvariable ly equal {ly}\n"
-        + f"fix wall all wall/sph {walls.format(ly=ly)}\n{extra}\n"
-    )
-    return lmp, lx, ly
-
-
 def test_piston():
     """A slow piston compresses by 4 %: both walls carry the pressure that the fluid has."""
     lmp, lx, ly = channel(
@@ -431,126 +390,6 @@ def test_what_is_slower_than_sound_is_turned_back(what, speed, ratio):
 def test_a_particle_far_behind_the_wall_is_an_error():
     with pytest.raises(Exception, match=r"fix wall wall/sph: particle 1 is behind the wall xlo"):
         particle("-0.11 0 0", "xlo 0")
-
-
-# ---------------------------------------------------------------------- flows
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_the_floor_carries_the_weight(dim):
-    dx = 0.05
-    up = "y" if dim == 2 else "z"
-    lmp = instance()
-    lmp.commands_string(
-        header("p f p" if dim == 2 else "p p f", FLUID, dimension=dim)
-        + a_box("0 0.2 -0.2 0.6 -0.025 0.025" if dim == 2 else "0 0.2 0 0.2 -0.2 0.6")
-        + f"mass 1 {RHO0 * dx**dim}\n"
-        + lattice(dx, dim)
-        + filled("water", "INF INF 0 0.4 INF INF" if dim == 2 else "INF INF INF INF 0 0.4")
-        + sph_tait(f"1 1 fluid {RHO0} c0 {C0} alpha 0.5", support=3 * dx)
-        + neighbor(0.03)
-        + "timestep 0.002\n"
-        + gravity(vector="0 -1 0" if dim == 2 else "0 0 -1")
-        + f"""
-        fix step all sph/integrate global
-        fix wall all wall/sph {up}lo 0
-        fix mean all ave/time 1 1000 1000 f_wall[{dim}]
-        run 4000"""
-    )
-    weight = by_id(lmp, "x").shape[0] * RHO0 * dx**dim * 9.81
-    assert -lmp.extract_fix("mean", 0, 0) == pytest.approx(weight, rel=1e-3)
-    height = by_id(lmp, "x")[:, dim - 1]
-    # the layer may settle on the plane itself
-    assert -0.1 * dx < height.min() < 0.5 * dx
-
-
-L, NU_MORRIS, V0, BODY = 1e-3, 1e-6, 1.25e-5, 1e-4
-
-
-def couette(y, t):
-    u = V0 * y / L
-    for n in range(1, 200):
-        decay = math.exp(-NU_MORRIS * (n * math.pi / L) ** 2 * t)
-        u = u + 2 * V0 / (n * math.pi) * (-1) ** n * np.sin(n * math.pi * y / L) * decay
-    return u
-
-
-def poiseuille(y, t):
-    u = BODY / (2 * NU_MORRIS) * y * (L - y)
-    for n in range(1, 200, 2):
-        decay = math.exp(-NU_MORRIS * (n * math.pi / L) ** 2 * t)
-        u = (
-            u
-            - 4
-            * BODY
-            * L**2
-            / (NU_MORRIS * (n * math.pi) ** 3)
-            * np.sin(n * math.pi * y / L)
-            * decay
-        )
-    return u
-
-
-@pytest.mark.parametrize(("exact", "limit"), [(couette, 0.005), (poiseuille, 0.01)])
-def test_start_up_between_walls(exact, limit):
-    """Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214, with 40 particles across."""
-    dx = L / 40
-    lid = f"velocity yhi {V0} 0 0" if exact is couette else ""
-    drive = "" if exact is couette else f"fix drive all gravity {BODY} vector 1 0 0"
-    lmp = instance()
-    lmp.commands_string(
-        header("p f p", FLUID, dimension=2)
-        + a_box(f"0 {8 * dx} {-3 * dx} {L + 3 * dx} {-dx} {dx}")
-        + lattice(dx, 2)
-        + filled("water", f"INF INF 0 {L} INF INF")
-        + f"mass 1 {RHO0 * dx**2}\n"
-        + sph_tait(
-            f"1 1 fluid {RHO0} c0 {20 * V0} nu {NU_MORRIS}",
-            support=3 * dx,
-            options="tension yes",
-        )
-        + neighbor(0.5 * dx)
-        + f"""
-        timestep 1
-        fix step all sph/integrate global
-        fix wall all wall/sph ylo 0 yhi {L} {lid}
-        {drive}"""
-    )
-    for t in (0.0225, 0.045, 0.1125, 0.225, 1.0):
-        lmp.commands_string(f"""
-            variable reached equal time>={t}
-            fix stop all halt 1 v_reached >= 1 error continue message no
-            run 100000 post no
-            unfix stop""")
-        y, u = by_id(lmp, "x")[:, 1], by_id(lmp, "v")[:, 0]
-        expected = exact(y, lmp.get_thermo("time"))
-        assert np.linalg.norm(u - expected) < limit * np.linalg.norm(expected)
-
-
-@pytest.mark.parametrize("flow", [{}, {"lid": 0.0, "drive": 1e-4}])
-def test_drag_in_the_example(flow, tmp_path):
-    """The plates take up what viscosity carries: the last line of the log of in.couette."""
-    example = Path(__file__).parents[2] / "examples" / "couette" / "in.couette"
-    script = write(tmp_path, example.read_text(), "in.couette")
-    run(script, ranks=2, n=20, **flow)
-    line = re.findall(r"^  - \[(.*)\]", (tmp_path / "log.lammps").read_text(), re.MULTILINE)[-1]
-    time, _, lower, steady_lower, upper, steady_upper = map(float, line.strip(", ").split(",")[1:])
-    assert time > 0.85  # all but 2e-4 of the transient is over
-    assert lower == pytest.approx(steady_lower, rel=1e-2)
-    assert upper == pytest.approx(steady_upper, rel=1e-2)
-
-
-def test_slip_walls_leave_a_uniform_flow_alone():
-    lmp, _, _ = channel(
-        "ylo 0 yhi {ly} slip yes",
-        extra="""
-        pair_coeff 1 1 fluid 1000 c0 20 nu 0.01
-        velocity all set 1 0 0 units box
-        timestep 1e-4
-        fix step all sph/integrate constant
-        run 500""",
-    )
-    np.testing.assert_allclose(by_id(lmp, "v")[:, 0], 1.0, rtol=1e-12)
 
 
 # ---------------------------------------------------------------------- errors

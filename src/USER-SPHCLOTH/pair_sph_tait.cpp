@@ -182,13 +182,22 @@ void PairSPHTait::compute(int eflag, int vflag)
 
   core.forces(p, hooks ? Target::FLUID : Target::ALL);
   if (hooks) hooks->note_pair_forces();
-  for (FluidBoundary *boundary : fluid.boundaries)
-    fluid.for_each_fluid([&](int i, const Tait &) { boundary->push(i, fluid.pressure[i]); });
+  for (FluidBoundary *boundary : fluid.boundaries) push(*boundary);
   if (vflag_either) tally_virial(p);
   if (hooks) hooks->apply_impulses();
   for (FluidBoundary *boundary : fluid.boundaries) boundary->end();
   if (eflag_either) tally_energy();
   fluid.is_evaluated = true;
+}
+
+// Where the pressures of inactive particles follow, these act on a boundary in every step.
+
+void PairSPHTait::push(FluidBoundary &boundary)
+{
+  const auto push_one = [&](int i, const Tait &) { boundary.push(i, fluid.pressure[i]); };
+  if (!fluid.pressures_follow) return fluid.for_each_fluid(push_one);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const int t = atom->type[i]; fluid.is_fluid(t)) push_one(i, fluid.equation_of_state(t));
 }
 
 Fluid::Box PairSPHTait::box() const

@@ -59,6 +59,7 @@ class PairSPHTait : public Pair {
   void integrate_density(const sphcloth::Particles &);
   void density_rates(const sphcloth::Particles &, double back);
   void boundary_pressures(const sphcloth::Particles &);
+  void push(FluidBoundary &);
   void tally_virial(sphcloth::Particles);
   void tally_energy();
   void send_to_ghosts(Stage);

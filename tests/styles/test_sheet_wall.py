@@ -8,10 +8,12 @@ from scenes import (
     cloth_box,
     cloth_styles,
     filled,
+    gravity,
     header,
     jitter,
     lattice,
     neighbor,
+    sheet,
     sph_tait,
 )
 from scipy.integrate import quad
@@ -297,3 +299,62 @@ def test_errors(wall, words):
     )
     with pytest.raises(Exception, match=words):
         instance().commands_string(script.replace("pair_coeff 2 2 none", "pair_coeff 2 2 boundary"))
+
+
+def two_waters(scheme):
+    """Coarse water on a sheet, and elsewhere finer water, whose steps are shorter."""
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f")
+        + cloth_box("-0.6 0.6 -0.6 0.6 -0.5 1.2", 3)
+        + sheet(2, 0.2, "0.9 0.9", 0.1)
+        + "region rim block -0.44 0.44 -0.44 0.44 INF INF side out units box\n"
+        + "group rim region rim\ngroup pins intersect rim cloth\n"
+        + lattice()
+        + filled("pool", "-0.3 0.3 -0.3 0.3 0 0.2")
+        + lattice(0.0125)
+        + filled("fine", "-0.05 0.05 -0.05 0.05 -0.443 -0.4", 3)
+        + f"mass 1 0.125\nmass 2 1\nmass 3 {1.02 * 1000 * 0.0125**3}\ngroup fluid type 1 3\n"
+        + sph_tait(
+            "1 1 fluid 1000 c0 20", "3 3 fluid 1000 c0 20 support 0.025", "2 2 none", support=0.1
+        )
+        + cloth_styles()
+        + neighbor(0.03, cutoff=1.2)
+        + gravity()
+        + """timestep 4e-3
+        fix walls all wall/sph xlo -0.35 xhi 0.35 ylo -0.35 yhi 0.35 zlo -0.45
+        fix step fluid sph/integrate global gain 1 velocity 0 force 0
+        fix sheet cloth pbd/cloth pin pins
+        fix contact fluid cloth/contact 0.025 wall yes
+        """
+        + f"run_style sph/adaptive {scheme}\nrun 0 post no"
+    )
+    return lmp
+
+
+def test_a_wet_vertex_keeps_its_limit_while_the_water_beside_it_is_inactive():
+    lmp = two_waters("block")
+    place = by_id(lmp, "x")
+    wet = (by_id(lmp, "type") == 2) & (np.abs(place[:, :2]).max(axis=1) < 0.2)
+    active = []
+    for _ in range(12):
+        assert np.all(own_steps(lmp)[wet] <= 0.5 * 0.05 / 20 * (1 + 1e-9))
+        active.append(lmp.extract_fix("step", 0, 1, 1))
+        lmp.command("run 1 pre no post no")
+    lmp.close()
+    assert min(active) < 0.8
+
+
+def test_water_presses_on_a_mesh_while_it_is_inactive():
+    """With individual steps; compared with an evaluation of all particles in the same places."""
+    lmp = two_waters("individual")
+    vertex = by_id(lmp, "type") == 2
+    while lmp.extract_fix("step", 0, 1, 1) > 0.2:
+        lmp.command("run 1 post no")
+    found = by_id(lmp, "f")[vertex, 2].sum()
+    lmp.command("run_style sph/adaptive global")
+    lmp.command("run 0 post no")
+    expected = by_id(lmp, "f")[vertex, 2].sum()
+    lmp.close()
+    assert expected < -1000
+    assert abs(found / expected - 1) < 0.1

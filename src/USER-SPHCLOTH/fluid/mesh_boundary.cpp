@@ -279,7 +279,6 @@ void MeshBoundary::begin()
                 return a.distance != b.distance ? a.distance < b.distance : a.sheet < b.sheet;
               });
   first.assign(atom->nlocal, -1);
-  if (wetting_wanted) fluid_mass.assign(atom->nlocal, Vec3::Zero());
   for (std::size_t k = 0; k < closest_points.size(); k++) {
     ClosestPoint &closest = closest_points[k];
     closest.value = table(closest.distance / support(closest.particle));
@@ -289,6 +288,22 @@ void MeshBoundary::begin()
     for (std::size_t nearer = begin; nearer < k; nearer++)
       closest.share *= 1.0 - std::max(0.0, closest.normal.dot(closest_points[nearer].normal));
   }
+  if (wetting_wanted) find_wetting();
+}
+
+// All fluid moves with the mesh, also what is not active in this evaluation.
+
+void MeshBoundary::find_wetting()
+{
+  fluid_mass.assign(atom->nlocal, Vec3::Zero());
+  for (const ClosestPoint &closest : closest_points) {
+    const int i = closest.particle;
+    const double moves = 2.0 * atom_mass(atom, i) * covered(closest);
+    const double sound = fluid->equation_of_state(atom->type[i]).sound_speed();
+    sheets[closest.sheet].wet(closest, Vec3(moves, moves * sound, 0.0));
+  }
+  for (BoundaryMesh &sheet : sheets)
+    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { fluid_mass[i] += amount; });
 }
 
 template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
@@ -368,10 +383,6 @@ void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push
     if (!first_push) return;
     atom->drho[i] += rise(closest).dot(velocity);
     fluid->add_virial(i, closest.distance * closest.normal, force_on);
-    if (wetting_wanted) {
-      const double moves = 2.0 * mass * covered(closest);
-      sheets[closest.sheet].wet(closest, Vec3(moves, moves * eos.sound_speed(), 0.0));
-    }
   });
 }
 
@@ -394,9 +405,6 @@ void MeshBoundary::end()
   defer([this](int i, const Vec3 &on) {
     for (int d = 0; d < 3; d++) atom->f[i][d] += lasts * on[d];
   });
-  if (!wetting_wanted) return;
-  for (BoundaryMesh &sheet : sheets)
-    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { fluid_mass[i] += amount; });
 }
 
 Wetting MeshBoundary::wetting(int i) const

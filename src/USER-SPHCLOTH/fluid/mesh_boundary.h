@@ -142,6 +142,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   template <class Do> void for_closest_points(int i, Do something);
   void push(int i, double p_over_rho2, double times, bool first_push);
   double support(int i) const;
+  void find_wetting();
   static double covered(const ClosestPoint &);
   Vec3 rise(const ClosestPoint &) const;
   Vec3 velocity_from(const ClosestPoint &) const;

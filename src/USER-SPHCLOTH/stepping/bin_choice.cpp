@@ -112,8 +112,6 @@ void BinChoice::limit_vertices()
   vertices.n = -1;
 }
 
-// A mesh that fills the kernel knows how wet it is when the first step has been taken.
-
 const BinChoice::Vertices &BinChoice::find_vertices()
 {
   if (vertices.n >= 0) return vertices;

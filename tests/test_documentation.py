@@ -1,7 +1,7 @@
 """The documentation is complete and true: styles, commands, links, and all code that it shows.
 
 A code block without a language is LAMMPS input, `sh` is for a shell, `python` for Python and `text`
-for what nobody types: syntax, output, trees of files. A comment `<!-- run by tests/FILE -->` above
+for what is not typed: syntax, output, trees of files. A comment `<!-- run by tests/FILE -->` above
 a block says which other test runs it, `<!-- not run: REASON -->` why nothing does.
 """
 

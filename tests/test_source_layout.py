@@ -161,6 +161,20 @@ def sizes() -> Counter:
     return found
 
 
+def test_python_has_no_persons_either() -> None:
+    """In the code and comments of tests and of the package; the lists of refused words excepted."""
+    persons = re.compile(r"\b(?:who|(?:some|every|no|any)body|(?:some|every|any)one|lent|owed)\b")
+    refused = ("tests/test_source_layout.py", "tests/test_documentation_text.py")
+    found = {
+        file: words
+        for folder in ("tests", "python")
+        for path in (ROOT / folder).rglob("*.py")
+        if (file := str(path.relative_to(ROOT))) not in refused
+        and (words := persons.findall(path.read_text()))
+    }
+    assert not found
+
+
 def test_python_files_are_short() -> None:
     long = {
         str(path.relative_to(ROOT)): n

@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src/USER-SPHCLOTH"
 COLUMNS, LINES, PROTOTYPES = 100, 500, 30
+LICENSE_LINE = "SPDX-License-Identifier: GPL-2.0-or-later"
 
 # From the bottom to the top: a file includes its own folder and those before it. The top, "", are
 # the styles, which are flat. So core/ includes nothing of LAMMPS or outside of core/.
@@ -30,8 +31,35 @@ who whoever somebody everybody nobody anybody someone everyone anyone
 lend lends lent owe owes owed OWED arrears there_and_back keep_springs share_of_spring odometer
 NearLists SheetWall SheetWalls FluidWall ClothGuest Crowd Foot feet FIRM HAIR NAP
 """
-PRIVATE = re.compile(rf"\b(?:{'|'.join(PRIVATE_WORDS.split())})\b")
-BRITISH = re.compile("neighbour|colour|behaviour|centre", re.IGNORECASE)  # parts of names, too
+# whole names in code; a comment may use the word
+PRIVATE_NAMES = """
+most least far FAR MOST_\\w+ LEAST_\\w+ amount amounts own crowd sight set_sight
+look looks settle unsettle settled place places Place PLACE places_then PATIENCE in_fronts
+"""
+# British spellings: of these stems, wherever they stand, and of words with these ends
+BRITISH_STEMS = "neighbour colour behaviour centre licence catalogue travell modelle labell"
+BRITISH_ENDS = "ise ised ises ising isation isations our ours oured ouring"
+# words of the field, and names of others, that end so in American English, too
+AMERICAN_WORDS = """
+advise advised arise clockwise concise elementwise exercise likewise noise otherwise pairwise
+precise premise promise raise raised raises raising revise rise rises rising wise
+contour contours detour four hour hours our ours pour poured pouring pours your
+"""
+# where British words are data: tables of spellings, and an option of the command line
+SPELLING_TABLES = ("tests/test_documentation_text.py", "tests/test_source_layout.py")
+BRITISH_OPTION = "--colour-by"
+
+
+def whole(names: str) -> re.Pattern:
+    return re.compile(rf"\b(?:{'|'.join(names.split())})\b")
+
+
+PRIVATE, NAMES = whole(PRIVATE_WORDS), whole(PRIVATE_NAMES)
+BRITISH = re.compile(
+    rf"(?:{'|'.join(BRITISH_STEMS.split())})"
+    rf"|(?<![a-z])[a-z]+(?:{'|'.join(BRITISH_ENDS.split())})(?![a-z])",
+    re.IGNORECASE,
+)
 QUOTED = r"""(?:"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])')"""
 
 # What is left is a fix with data per atom, restart and communication, of which LAMMPS's own
@@ -188,19 +216,47 @@ def test_python_files_are_short() -> None:
 # words
 
 
+def scripts() -> dict[str, str]:
+    """What is neither C++ nor the package: build files, tests, and input of the examples."""
+    paths = [ROOT / "Makefile", ROOT / "CMakeLists.txt", *(ROOT / "cmake").iterdir()]
+    paths += [*(ROOT / "examples").glob("*/in.*"), *(ROOT / "tests").rglob("*.py")]
+    paths += [*(ROOT / "tests").rglob("*.txt"), *(ROOT / "tests").rglob("in.*")]
+    texts = {str(path.relative_to(ROOT)): path.read_text() for path in paths if path.is_file()}
+    return {file: text for file, text in texts.items() if file not in SPELLING_TABLES}
+
+
+def british(text: str) -> list[str]:
+    found = [one[0].lower() for one in BRITISH.finditer(text.replace(BRITISH_OPTION, ""))]
+    return [word for word in found if word not in AMERICAN_WORDS.split()]
+
+
 def words() -> Counter:
-    """In code and comments; the texts of messages stay, since scripts and users look for them."""
+    """Words in code and comments, names in code; the texts of messages may use all of them."""
     found: Counter = Counter()
     for file, source in sources("src").items():
-        text = re.sub(QUOTED, "", source)
-        found["private word", file] = len(PRIVATE.findall(text))
-        found["British spelling", file] = len(BRITISH.findall(text))
+        found["private word", file] = len(PRIVATE.findall(re.sub(QUOTED, "", source)))
+    for file, source in sources("src", "tests/core").items():
+        found["private name", file] = len(NAMES.findall(without_text(source)))
+        found["British spelling", file] = len(british(source))
+    for file, text in scripts().items():
+        found["British spelling", file] = len(british(text))
     return found
+
+
+def licenses() -> Counter:
+    """C++ without its license in the first line."""
+    return Counter(
+        {
+            ("no license line", file): 1
+            for file, text in sources("src", "tests/core").items()
+            if not text.startswith(f"// {LICENSE_LINE}\n")
+        }
+    )
 
 
 def findings() -> Counter:
     graph = includes()
-    return +(upward(graph) + cycles(graph) + sizes() + words())
+    return +(upward(graph) + cycles(graph) + sizes() + words() + licenses())
 
 
 FOUND = findings()
@@ -250,6 +306,19 @@ def test_what_a_prototype_is() -> None:
     };
     """
     assert prototypes(code) == {"Plain": 0, "Some": 3}
+
+
+def test_what_a_name_and_a_british_word_are() -> None:
+    assert NAMES.findall(without_text('int most = at_most(MOST_ROWS);  // most of "own"')) == [
+        "most",
+        "MOST_ROWS",
+    ]
+    assert british("n_neighbours vectorised normalisation, otherwise four noise_rise") == [
+        "neighbour",
+        "vectorised",
+        "normalisation",
+    ]
+    assert british("armour, the --colour-by of Poiseuille") == ["armour"]
 
 
 if __name__ == "__main__":

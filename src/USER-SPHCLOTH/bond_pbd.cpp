@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Bonds of cloth.  They exert no force: fix pbd/cloth projects their constraints.
 
 #include "bond_pbd.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // bond_style pbd: stiffness of the distance constraint (4), per bond type.
 
 #ifdef BOND_CLASS

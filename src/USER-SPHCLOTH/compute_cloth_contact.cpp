@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Values of fix cloth/contact under the names that the user gives.
+
 #include "compute_cloth_contact.h"
 
 using namespace LAMMPS_NS;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute cloth/contact: what fix cloth/contact knows of all contacts, by keyword.
 
 #ifdef COMPUTE_CLASS

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Strain, normal, area and mean curvature at vertices, from the edges and triangles around each.
+
 #include "compute_pbd_atom.h"
 
 #include "atom.h"
@@ -64,8 +67,8 @@ void ComputePBDAtom::compute_peratom()
   for (int i = 0; i < atom->nlocal; i++) {
     double *row = n == 1 ? vector_atom + i : array_atom[i];
     const bool vertex = atom->mask[i] & groupbit && atom->mask[i] & cloth->groupbit;
-    const Place place = vertex && in_sheet ? place_of(i) : Place();
-    for (int k = 0; k < n; k++) row[k] = vertex ? value(columns[k], i, place) : 0.0;
+    const VertexGeometry geometry = vertex && in_sheet ? geometry_of(i) : VertexGeometry();
+    for (int k = 0; k < n; k++) row[k] = vertex ? value(columns[k], i, geometry) : 0.0;
   }
 }
 
@@ -79,15 +82,16 @@ void ComputePBDAtom::make_room()
     memory->grow(array_atom, nmax, size_peratom_cols, "pbd/atom:array");
 }
 
-double ComputePBDAtom::value(Column column, int i, const Place &place) const
+double ComputePBDAtom::value(Column column, int i, const VertexGeometry &geometry) const
 {
   switch (column) {
     case Column::STRAIN: return strain(i);
-    case Column::CURVATURE: return place.curvature;
-    case Column::AREA: return place.area;
+    case Column::CURVATURE: return geometry.curvature;
+    case Column::AREA: return geometry.area;
     case Column::NX:
     case Column::NY:
-    case Column::NZ: return place.normal[static_cast<int>(column) - static_cast<int>(Column::NX)];
+    case Column::NZ:
+      return geometry.normal[static_cast<int>(column) - static_cast<int>(Column::NX)];
     default:
       return cloth->reaction_force(i)[static_cast<int>(column) - static_cast<int>(Column::FX)];
   }
@@ -127,13 +131,13 @@ static double mixed_area(const Eigen::Vector3d &b, const Eigen::Vector3d &c)
 // Mean curvature H from the gradient of the area of the triangles around, 2 H A n: the same,
 // equation (8).
 
-ComputePBDAtom::Place ComputePBDAtom::place_of(int i) const
+ComputePBDAtom::VertexGeometry ComputePBDAtom::geometry_of(int i) const
 {
   const ClothTopology &mesh = cloth->topology();
   const ClothElements<3> &t = mesh.triangles;
   const int vertex = mesh.index_of(atom->tag[i]);
   Vec3 sum = Vec3::Zero(), gradient = Vec3::Zero();
-  Place place;
+  VertexGeometry geometry;
   double mixed = 0.0;
   for (int k = t.first[vertex]; k < t.first[vertex + 1]; k++) {
     std::array<int, 3> members = t.vertices[t.incident[k]];
@@ -141,15 +145,15 @@ ComputePBDAtom::Place ComputePBDAtom::place_of(int i) const
     const Vec3 b = mesh.from(i, members[1]), c = mesh.from(i, members[2]);
     const Vec3 twice = b.cross(c);    // the area, twice
     if (twice.squaredNorm() == 0.0) continue;
-    place.area += twice.norm() / 6.0;
+    geometry.area += twice.norm() / 6.0;
     mixed += mixed_area(b, c);
     sum += twice;
     gradient += 0.5 * (b - c).cross(twice.normalized());
   }
-  if (sum.squaredNorm() == 0.0) return place;
-  place.normal = sum.normalized();
-  place.curvature = gradient.dot(place.normal) / (2.0 * mixed);
-  return place;
+  if (sum.squaredNorm() == 0.0) return geometry;
+  geometry.normal = sum.normalized();
+  geometry.curvature = gradient.dot(geometry.normal) / (2.0 * mixed);
+  return geometry;
 }
 
 double ComputePBDAtom::memory_usage()

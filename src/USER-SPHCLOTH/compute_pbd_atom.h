@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute pbd/atom: strain, curvature, area and normal of a cloth at its vertices, and the forces
 // that hold them.
 
@@ -33,7 +34,7 @@ class ComputePBDAtom : public Compute {
   using Vec3 = Eigen::Vector3d;
   enum class Column { STRAIN, CURVATURE, AREA, NX, NY, NZ, FX, FY, FZ };
 
-  struct Place {    // of a vertex in its sheet
+  struct VertexGeometry {    // of a vertex in its sheet
     double area = 0.0;    // a third of its triangles
     Vec3 normal = Vec3::Zero();    // of unit length, or 0 where there is no triangle
     double curvature = 0.0;    // mean curvature
@@ -46,9 +47,9 @@ class ComputePBDAtom : public Compute {
 
   bool asks_for(Column first, Column last) const;
   void make_room();
-  double value(Column, int i, const Place &) const;
+  double value(Column, int i, const VertexGeometry &) const;
   double strain(int i) const;
-  Place place_of(int i) const;
+  VertexGeometry geometry_of(int i) const;
 };
 
 }    // namespace LAMMPS_NS

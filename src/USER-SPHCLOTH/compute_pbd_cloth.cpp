@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Values of fix pbd/cloth under the names that the user gives.
+
 #include "compute_pbd_cloth.h"
 
 using namespace LAMMPS_NS;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute pbd/cloth: what fix pbd/cloth knows of the whole cloth, by keyword.
 
 #ifdef COMPUTE_CLASS

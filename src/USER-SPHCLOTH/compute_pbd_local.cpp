@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One row per edge or hinge of the mesh that this rank owns.
+
 #include "compute_pbd_local.h"
 
 #include "atom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute pbd/local: strain of every edge, or angle and curvature of every hinge, of a cloth.
 
 #ifdef COMPUTE_CLASS

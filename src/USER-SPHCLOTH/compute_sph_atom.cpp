@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One column per keyword, from the last evaluation of the pair style.
+
 #include "compute_sph_atom.h"
 
 #include "atom.h"

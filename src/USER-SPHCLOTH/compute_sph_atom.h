@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute sph/atom: what pair_style sph/tait and fix sph/integrate know of each particle.
 
 #ifdef COMPUTE_CLASS

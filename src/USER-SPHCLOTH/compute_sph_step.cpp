@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Values of fix sph/integrate under the names that the user gives.
+
 #include "compute_sph_step.h"
 
 #include "core/timestep/step_limits.h"
@@ -12,11 +15,16 @@ static std::vector<NamedValue> values_of_step()
   constexpr auto INTENSIVE = NamedValue::INTENSIVE, EXTENSIVE = NamedValue::EXTENSIVE;
   constexpr int STEPS = 5, PARTICLES = STEPS + N_LIMITS - 1, TIMES = PARTICLES + N_OF_PARTICLES;
   std::vector<NamedValue> values = {
-      {"dt", 0, INTENSIVE},               {"limit", 1, INTENSIVE},
-      {"active", 2, INTENSIVE},           {"updates", 3, EXTENSIVE},
-      {"compression", 4, INTENSIVE},      {"clamped", 5, INTENSIVE},
-      {"output", TIMES + 1, INTENSIVE},   {"next/output", TIMES + 2, INTENSIVE},
-      {"sleeping", TIMES + 3, EXTENSIVE}, {"updates/ideal", TIMES + 4, EXTENSIVE},
+      {"dt", 0, INTENSIVE},
+      {"limit", 1, INTENSIVE},
+      {"active", 2, INTENSIVE},
+      {"updates", 3, EXTENSIVE},
+      {"compression", 4, INTENSIVE},
+      {"clamped", 5, INTENSIVE},
+      {"output", TIMES + 1, INTENSIVE},
+      {"next/output", TIMES + 2, INTENSIVE},
+      {"sleeping", TIMES + 3, EXTENSIVE},
+      {"updates/ideal", TIMES + 4, EXTENSIVE},
   };
   for (int k = 1; k < N_LIMITS; k++)
     values.push_back({fmt::format("steps/{}", limit_name(Limit(k))), STEPS + k, INTENSIVE});

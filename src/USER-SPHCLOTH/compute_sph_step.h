@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // compute sph/step: what fix sph/integrate knows of the time step, by keyword.
 
 #ifdef COMPUTE_CLASS

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Makes atoms, bonds, angles and dihedrals of a sheet from a pattern of triangles.
+
 #include "create_cloth.h"
 
 #include "atom.h"
@@ -22,9 +25,9 @@ using namespace sphcloth;
 static const std::string STYLE = "create_cloth";
 
 // periodic images are counted in 10 bits, from -512
-static constexpr double MOST_IMAGES = 500.0;
+static constexpr double MAX_IMAGES = 500.0;
 // each has up to four edges, and these are counted by an int
-static constexpr double MOST_CELLS = 1e8;
+static constexpr double MAX_CELLS = 1e8;
 
 CreateCloth::CreateCloth(LAMMPS *lmp_) :
     Command(lmp_), itype(0), areal_mass(0.0), center(Vec3::Zero()), axis_u(Vec3::UnitX()),
@@ -136,9 +139,9 @@ void CreateCloth::check_shape() const
     error->all(FLERR, "{}: spacing {} is larger than the sheet: lower it", STYLE, spacing);
   const double cells = is_disc ? 4.0 * (radius / spacing) * (radius / spacing)
                                : (length / spacing) * (width / spacing);
-  if (cells > MOST_CELLS)
+  if (cells > MAX_CELLS)
     error->all(FLERR, "{}: spacing {} cuts the sheet into {:.3g} cells, more than {:g}: raise it",
-               STYLE, spacing, cells, MOST_CELLS);
+               STYLE, spacing, cells, MAX_CELLS);
 }
 
 Pattern CreateCloth::read_pattern(ArgReader &args) const
@@ -183,19 +186,19 @@ void CreateCloth::check_types() const
 void CreateCloth::check_box() const
 {
   for (int k = 0; k < static_cast<int>(sheet.vertices.size()); k++) {
-    Vec3 x = place(k);
+    Vec3 x = position(k);
     if (!domain->inside_nonperiodic(x.data()))
       error->all(
           FLERR,
           "{}: the sheet reaches out of the box at ({}, {}, {}): shrink it or move its center",
           STYLE, x[0], x[1], x[2]);
     for (int d = 0; d < 3; d++)
-      if (std::fabs(x[d] - domain->boxlo[d]) > MOST_IMAGES * domain->prd[d])
+      if (std::fabs(x[d] - domain->boxlo[d]) > MAX_IMAGES * domain->prd[d])
         error->all(
             FLERR,
             "{}: the sheet reaches to ({}, {}, {}), more than {} periodic boxes away: move its "
             "center into the box",
-            STYLE, x[0], x[1], x[2], MOST_IMAGES);
+            STYLE, x[0], x[1], x[2], MAX_IMAGES);
   }
 }
 
@@ -227,7 +230,7 @@ void CreateCloth::check_capacity() const
 
 /* ---------------------------------------------------------------------- */
 
-CreateCloth::Vec3 CreateCloth::place(int k) const
+CreateCloth::Vec3 CreateCloth::position(int k) const
 {
   return center + sheet.vertices[k][0] * axis_u + sheet.vertices[k][1] * axis_v;
 }
@@ -238,7 +241,7 @@ void CreateCloth::create_vertices()
 
   const int before = atom->nlocal;
   for (int k = 0; k < static_cast<int>(sheet.vertices.size()); k++) {
-    const Vec3 at = place(k);
+    const Vec3 at = position(k);
     const int i = create_owned_atom(atom, domain, first_id + k, itype, at.data(), groupbit);
     if (i < 0) continue;
     for (const auto &[region, pin_bit] : pins)

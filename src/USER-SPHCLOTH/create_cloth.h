@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // create_cloth: a rectangular or round sheet of vertices, bonds, triangles and hinges.
 
 #ifdef COMMAND_CLASS
@@ -51,7 +52,7 @@ class CreateCloth : public Command {
   void check_types() const;
   void check_box() const;
   void check_capacity() const;
-  Vec3 place(int) const;
+  Vec3 position(int) const;
   void create_vertices();
   void set_masses(int);
   void create_topology();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Hinges of cloth.  They exert no force: fix pbd/cloth projects their constraints.
 
 #include "dihedral_pbd.h"

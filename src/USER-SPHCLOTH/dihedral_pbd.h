@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // dihedral_style pbd: stiffness of the hinge constraint (5), per dihedral type.
 
 #ifdef DIHEDRAL_CLASS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact of particles with moving triangles: inside the solver of each cloth, and behind it to the
 // last digit.
 
@@ -8,12 +9,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
-#include "fluid/fluid_state.h"
 #include "update.h"
 
 #include <algorithm>
@@ -29,8 +30,8 @@ static constexpr int MAX_ROUNDS = 10;
 ------------------------------------------------------------------------- */
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)),
-    sight(0.0), vertex_bits(0)
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), view_distance(0.0),
+    vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -92,7 +93,7 @@ void FixClothContact::init()
 {
   surfaces.clear();
   obstacles.clear();
-  hard.clear();
+  obstacle_surfaces.clear();
   couplings.clear();
   vertex_bits = 0;
   std::vector<FixPBDCloth *> cloths;
@@ -124,7 +125,8 @@ void FixClothContact::init()
   if (!walls) return;
   walls->init(fluid);
   for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], &surfaces[k]->triangles);
-  for (std::size_t k = 0; k < hard.size(); k++) walls->add(obstacles[k].get(), &hard[k]->triangles);
+  for (std::size_t k = 0; k < obstacle_surfaces.size(); k++)
+    walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles);
 }
 
 std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
@@ -160,12 +162,12 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
                "{}: obstacle group {} has no triangles: they are LAMMPS angles; 'sphcloth mesh' "
                "writes them",
                label, name);
-  hard.push_back(make_surface(&obstacle, groupbits));
+  obstacle_surfaces.push_back(make_surface(&obstacle, groupbits));
   for (std::size_t k = 0; k < cloths.size(); k++) {
     couplings.push_back(std::make_unique<ObstacleCoupling>(lmp, surfaces[k]->triangles,
-                                                           hard.back()->triangles));
+                                                           obstacle_surfaces.back()->triangles));
     cloths[k]->register_coupling(couplings.back().get());
-    hard.back()->triangles.add_vertices_of(cloths[k]);
+    obstacle_surfaces.back()->triangles.add_vertices_of(cloths[k]);
   }
 }
 
@@ -219,9 +221,9 @@ void FixClothContact::post_neighbor()
 void FixClothContact::find_sides()
 {
   side.assign(atom->nmax, 0);
-  if (sight == 0.0) return;
+  if (view_distance == 0.0) return;
   for (std::size_t sheet = 0; sheet < surfaces.size(); sheet++)
-    surfaces[sheet]->sides.find(sight, static_cast<int>(sheet), side);
+    surfaces[sheet]->sides.find(view_distance, static_cast<int>(sheet), side);
   comm->forward_comm(this);
 }
 
@@ -240,7 +242,7 @@ void FixClothContact::post_integrate()
     for_all_surfaces([&any](ContactSurface &surface) {
       any = surface.stabilization.resolve_penetrations() || any;
     });
-    if (!any || surfaces.size() + hard.size() == 1) break;
+    if (!any || surfaces.size() + obstacle_surfaces.size() == 1) break;
   }
   if (!excess_velocities.empty()) subtract_excess_velocities();
   store_positions();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix cloth/contact: particles do not pass through cloth.
 
 #ifdef FIX_CLASS
@@ -73,7 +74,7 @@ class FixClothContact : public Fix, public SideSource {
     return nullptr;
   }
   // the cutoff of pair_style sph/tait
-  void set_sight(double distance) override { sight = distance; }
+  void set_view_distance(double distance) override { view_distance = distance; }
 
  private:
   std::string label;
@@ -86,11 +87,11 @@ class FixClothContact : public Fix, public SideSource {
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
-  std::vector<std::unique_ptr<ContactSurface>> hard;    // one per obstacle
+  std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
   std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
-  double sight;
+  double view_distance;
   int vertex_bits;    // group bits of the cloths
 
   std::array<ParticleColumns *, 3> columns()
@@ -109,7 +110,7 @@ class FixClothContact : public Fix, public SideSource {
   template <class Do> void for_all_surfaces(Do something)
   {
     for (auto &surface : surfaces) something(*surface);
-    for (auto &surface : hard) something(*surface);
+    for (auto &surface : obstacle_surfaces) something(*surface);
   }
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Position-based dynamics of cloth: (4) to (9) and lines 19 to 29 of Algorithm 1.  The sweeps over
 // constraints are in cloth/substepping.cpp.
 

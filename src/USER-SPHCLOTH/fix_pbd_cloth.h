@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix pbd/cloth: position-based dynamics of cloth, (7) to (9) and lines 19 to 29 of Algorithm 1.
 
 #ifdef FIX_CLASS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // An outflow.  It works just before LAMMPS would lose what left the box: at list builds, and when
 // commands set up the system to move atoms to other ranks, as write_restart does.
 
@@ -87,15 +88,15 @@ bool FixSPHDrain::leaves(int i) const
                "forces on it, or take a smaller time step",
                label, atom->tag[i], x[0], x[1], x[2]);
   double lamda[3];
-  const double *place = x, *lo = domain->boxlo, *hi = domain->boxhi;
+  const double *position = x, *lo = domain->boxlo, *hi = domain->boxhi;
   if (domain->triclinic) {
     domain->x2lamda(atom->x[i], lamda);
-    place = lamda;
+    position = lamda;
     lo = domain->boxlo_lamda;
     hi = domain->boxhi_lamda;
   }
   for (int d = 0; d < 3; d++)
-    if (!domain->periodicity[d] && (place[d] < lo[d] || place[d] >= hi[d])) return true;
+    if (!domain->periodicity[d] && (position[d] < lo[d] || position[d] >= hi[d])) return true;
   return region && region->match(x[0], x[1], x[2]);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix sph/drain: takes fluid particles out that leave the scene.
 
 #ifdef FIX_CLASS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A source of fluid: layers of a square lattice, one behind the other at the spacing, so that the
 // jet has the density of water at rest.  Layers follow physical time and not steps; every rank
 // computes the same layer and makes the particles that it owns.
@@ -24,7 +25,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 // their places are kept by every rank
-static constexpr double MOST_IN_LAYER = 1e8;
+static constexpr double MAX_IN_LAYER = 1e8;
 
 /* ----------------------------------------------------------------------
    fix ID group sph/emit N type spacing keyword values ...
@@ -64,11 +65,11 @@ void FixSPHEmit::read_options(ArgReader &args)
     const std::string keyword = args.word("keyword");
     if (keyword == "disc") {
       disc = true;
-      center = vector("disc centre");
+      center = vector("disc center");
       extent[0] = args.positive("disc radius");
     } else if (keyword == "rectangle") {
       disc = false;
-      center = vector("rectangle centre");
+      center = vector("rectangle center");
       extent[0] = args.positive("rectangle first side");
       extent[1] = args.positive("rectangle second side");
     } else if (keyword == "velocity")
@@ -102,9 +103,9 @@ void FixSPHEmit::make_pattern()
   const double reach_a = disc ? 2.0 * extent[0] : extent[0];
   const double reach_b = disc ? 2.0 * extent[0] : extent[1];
   const double cells = (reach_a / spacing) * (reach_b / spacing);
-  if (cells > MOST_IN_LAYER)
+  if (cells > MAX_IN_LAYER)
     error->all(FLERR, "{}: spacing {} makes {:.3g} particles in a layer, more than {:g}: raise it",
-               label, spacing, cells, MOST_IN_LAYER);
+               label, spacing, cells, MAX_IN_LAYER);
   const int na = std::max(1, static_cast<int>(std::lround(reach_a / spacing)));
   const int nb = std::max(1, static_cast<int>(std::lround(reach_b / spacing)));
   for (int b = 0; b < nb; b++)
@@ -139,11 +140,11 @@ void FixSPHEmit::init()
         "{:.6g}",
         label, 100.0 * excess, at_rest);
   for (const Vec3 &x : pattern) {
-    Vec3 place = center + x;
-    if (!domain->inside(place.data()))
+    Vec3 position = center + x;
+    if (!domain->inside(position.data()))
       error->all(FLERR,
                  "{}: the opening reaches out of the box at ({}, {}, {}): move it or shrink it",
-                 label, place[0], place[1], place[2]);
+                 label, position[0], position[1], position[2]);
   }
 }
 
@@ -227,9 +228,9 @@ void FixSPHEmit::warn_of_backwater(bigint particles)
                    label, particles, physical_time(update));
 }
 
-void FixSPHEmit::add_particle(const Vec3 &place, tagint tag)
+void FixSPHEmit::add_particle(const Vec3 &position, tagint tag)
 {
-  const int i = create_owned_atom(atom, domain, tag, itype, place.data(), groupbit);
+  const int i = create_owned_atom(atom, domain, tag, itype, position.data(), groupbit);
   if (i < 0) return;
   for (int d = 0; d < 3; d++) atom->v[i][d] = velocity[d];
   if (atom->rmass) atom->rmass[i] = mass;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix sph/emit: pours fluid particles through a disc or a rectangle.
 
 #ifdef FIX_CLASS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The adapter of stepping schemes to LAMMPS.
 
 #include "fix_sph_integrate.h"
@@ -11,6 +12,7 @@
 #include "integrate.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -204,6 +206,7 @@ struct FixSPHIntegrate::Record {
   double time;
   std::array<double, N_LIMITS> steps_by_limit;
   BlockClock clock;
+  SteppingScheme scheme;
 };
 
 void FixSPHIntegrate::write_restart(FILE *fp)
@@ -222,7 +225,8 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       state.steps,
                       state.time,
                       report.steps_by_limit,
-                      stepper->clock() ? *stepper->clock() : BlockClock()};
+                      stepper->clock() ? *stepper->clock() : BlockClock(),
+                      scheme};
   write_record(fp, record);
 }
 
@@ -237,7 +241,9 @@ void FixSPHIntegrate::restart(char *buf)
   report.updates = comm->me == 0 ? record.updates : 0.0;
   report.ideal_updates = comm->me == 0 ? record.ideal_updates : 0.0;
   report.steps_by_limit = record.steps_by_limit;
-  if (record.clock.begun()) use_scheme(SteppingScheme::BLOCK, record.clock);
+  // what each scheme keeps of the atoms follows, see unpack_restart(): a uniform step keeps nothing
+  if (record.scheme == SteppingScheme::INDIVIDUAL || record.scheme == SteppingScheme::BLOCK)
+    use_scheme(record.scheme, record.clock);
 }
 
 /* ----------------------------------------------------------------------
@@ -278,8 +284,8 @@ int FixSPHIntegrate::unpack_exchange(int i, double *buf)
   return UpdateRows::N_COLUMNS + stepper->columns().count();
 }
 
-// The first value of a record is its length.  A uniform step keeps nothing; of the other schemes
-// the number of columns tells which one has written them.
+// The first value of a record is its length.  A uniform step keeps nothing; restart() has read the
+// scheme that has written the columns.
 
 int FixSPHIntegrate::pack_restart(int i, double *buf)
 {
@@ -292,8 +298,11 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
   if (*record == 1.0) return;
-  const int columns = static_cast<int>(*record) - 1 - UpdateRows::N_COLUMNS;
-  use_scheme(scheme_with_columns(columns), BlockClock());
+  if (static_cast<int>(*record) != maxsize_restart())
+    rank_error(lmp, FLERR,
+               "{}: atom {} has {} numbers in the restart file, {} are kept here: its record is "
+               "damaged, or of another release of sphcloth: take another file",
+               label, atom->tag[i], *record, maxsize_restart());
   std::copy(record + 1, record + 1 + UpdateRows::N_COLUMNS, rows[i]);
   stepper->columns().unpack(i, record + 1 + UpdateRows::N_COLUMNS);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix sph/integrate: integrates fluid, and limits the time step.  The schemes, the limits of
 // particles, the choice of the step and the outputs are in stepping/; this is their adapter to
 // LAMMPS.

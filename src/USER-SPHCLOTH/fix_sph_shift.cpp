@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Particle shifting, core/sph/shifting.h.  What is measured where the forces are, with ghosts in
 // place, is applied when the next step moves the particles: a restart between the two measures it
 // again.
@@ -73,7 +74,7 @@ void FixSPHShift::init()
 {
   fluid = FluidState::find(force);
   if (!fluid)
-    error->all(FLERR, "{}: pair_style {} has no neighbours to shift by: use 'pair_style sph/tait'",
+    error->all(FLERR, "{}: pair_style {} has no neighbors to shift by: use 'pair_style sph/tait'",
                label, force->pair_style ? force->pair_style : "none");
   if (modify->get_fix_by_style("^sph/shift$").size() > 1)
     error->all(FLERR, "{}: there is another fix sph/shift: keep one, with a group of all fluid",
@@ -99,7 +100,7 @@ void FixSPHShift::init()
 void FixSPHShift::post_force(int)
 {
   const int n = atom->nlocal, n_types = atom->ntypes + 1;
-  crowd.assign(n, ConcentrationGradient());
+  concentration.assign(n, ConcentrationGradient());
   open.assign(n + atom->nghost, 0.0);
   volumes.resize(n + atom->nghost);
   for (int i = 0; i < n + atom->nghost; i++) volumes[i] = volume(i);
@@ -133,7 +134,7 @@ template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScal
   const int dim = domain->dimension, n_types = atom->ntypes + 1, type = atom->type[i];
   const double spacing = spacing_of(volumes[i].at_rest, dim);
   const double *x = atom->x[i], *v = atom->v[i];
-  ConcentrationGradient &mine = crowd[i];
+  ConcentrationGradient &mine = concentration[i];
   for (int t = 1; t < n_types; t++) {
     const KernelScale &s = scale[type * n_types + t];
     const double at_spacing = K::shape(std::min(spacing * s.inv_support, 0.9));
@@ -214,13 +215,13 @@ void FixSPHShift::shift(int i)
   const double spacing = spacing_of(volumes[i].at_rest, domain->dimension);
   const double u = speed == Speed::OWN ? own_speed[i] : reference;
   const double scale = -coefficients.strength * fluid->support(atom->type[i]) * u * update->dt;
-  std::array<double, 3> move = crowd[i].gradient;
+  std::array<double, 3> move = concentration[i].gradient;
   for (double &m : move) m *= scale;
   if (cut_to(move, coefficients.largest * spacing)) counts[CUT]++;
   for (int a = 0; a < 3; a++) atom->x[i][a] += move[a];
   if (correct_velocity)
     for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++) atom->v[i][a] += crowd[i].grad_v[3 * a + b] * move[b];
+      for (int b = 0; b < 3; b++) atom->v[i][a] += concentration[i].grad_v[3 * a + b] * move[b];
 
   const double length = std::sqrt(move[0] * move[0] + move[1] * move[1] + move[2] * move[2]);
   largest = std::max(largest, length / spacing);
@@ -260,4 +261,7 @@ void FixSPHShift::restart(char *buf)
   counts[MOVED] = comm->me == 0 ? moved : 0.0;
 }
 
-double FixSPHShift::memory_usage() { return bytes_of(crowd, open, own_speed, volumes, left); }
+double FixSPHShift::memory_usage()
+{
+  return bytes_of(concentration, open, own_speed, volumes, left);
+}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix sph/shift: moves fluid particles from where they are crowded to where they are sparse.
 
 #ifdef FIX_CLASS
@@ -56,7 +57,7 @@ class FixSPHShift : public Fix {
   int cloth_bits;    // groups of cloth vertices
 
   // between the evaluation and the next step, during which no particle changes its place in memory
-  std::vector<sphcloth::ConcentrationGradient> crowd;
+  std::vector<sphcloth::ConcentrationGradient> concentration;
   std::vector<Volume> volumes;    // owned and ghost
   std::vector<double> open;    // owned and ghost: 1 at a free surface
   std::vector<char> left;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A watchdog.  It looks every so many steps, and in every step at whose end LAMMPS writes a restart
 // file, before it does: a state that has left the limits is never written over one that was within.
 
@@ -28,10 +29,10 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 // atoms that an error names
-static constexpr int MOST_SUSPECTS = 5;
+static constexpr int MAX_SUSPECTS = 5;
 
 // what is not finite
-static constexpr int PLACE = 1, VELOCITY = 2, FORCE = 4, RHO = 8;
+static constexpr int POSITION = 1, VELOCITY = 2, FORCE = 4, RHO = 8;
 
 /* ----------------------------------------------------------------------
    fix ID group sph/watch keyword value ...
@@ -64,8 +65,8 @@ FixSPHWatch::FixSPHWatch(LAMMPS *lmp_, int narg, char **arg) :
 void FixSPHWatch::read_options(ArgReader &args)
 {
   const auto limit = [&](Limit which, const std::string &keyword) {
-    const double most = args.at_least(keyword, 0.0);
-    allowed[which] = most > 0.0 ? most : -1.0;
+    const double max_value = args.at_least(keyword, 0.0);
+    allowed[which] = max_value > 0.0 ? max_value : -1.0;
   };
   while (args.more()) {
     const std::string keyword = args.word("keyword");
@@ -207,7 +208,7 @@ int FixSPHWatch::wrong(int i) const
   const auto infinite = [](const double *a) {
     return !std::isfinite(0.0 * a[0] + 0.0 * a[1] + 0.0 * a[2]);
   };
-  return (infinite(atom->x[i]) ? PLACE : 0) | (infinite(atom->v[i]) ? VELOCITY : 0) |
+  return (infinite(atom->x[i]) ? POSITION : 0) | (infinite(atom->v[i]) ? VELOCITY : 0) |
       (infinite(atom->f[i]) ? FORCE : 0) |
       (atom->rho_flag && !std::isfinite(atom->rho[i]) ? RHO : 0);
 }
@@ -348,21 +349,21 @@ void FixSPHWatch::keep_worst(std::vector<Suspect> &list)
   std::sort(list.begin(), list.end(), [&](const Suspect &a, const Suspect &b) {
     return badness(a) != badness(b) ? badness(a) > badness(b) : a.tag < b.tag;
   });
-  if (list.size() > MOST_SUSPECTS) list.resize(MOST_SUSPECTS);
+  if (list.size() > MAX_SUSPECTS) list.resize(MAX_SUSPECTS);
 }
 
 std::string FixSPHWatch::describe(const Suspect &s, Limit limit) const
 {
-  const std::string place =
+  const std::string atom_at =
       fmt::format("atom {} at ({:.6g}, {:.6g}, {:.6g})", s.tag, s.x[0], s.x[1], s.x[2]);
-  if (limit == DENSITY) return fmt::format("{} with {:.6g}", place, s.value);
-  if (limit != FINITE) return fmt::format("{} of speed {:.6g}", place, s.value);
+  if (limit == DENSITY) return fmt::format("{} with {:.6g}", atom_at, s.value);
+  if (limit != FINITE) return fmt::format("{} of speed {:.6g}", atom_at, s.value);
   std::string names;
   const int bits = static_cast<int>(s.value);
   for (const auto &[bit, name] :
-       {std::pair{PLACE, "x"}, {VELOCITY, "v"}, {FORCE, "f"}, {RHO, "rho"}})
+       {std::pair{POSITION, "x"}, {VELOCITY, "v"}, {FORCE, "f"}, {RHO, "rho"}})
     if (bits & bit) names += (names.empty() ? "" : " ") + std::string(name);
-  return fmt::format("{} in {}", place, names);
+  return fmt::format("{} in {}", atom_at, names);
 }
 
 /* ----------------------------------------------------------------------

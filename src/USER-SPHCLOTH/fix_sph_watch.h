@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix sph/watch: ends a run that leaves its limits, with a restart file of a state within them.
 
 #ifdef FIX_CLASS

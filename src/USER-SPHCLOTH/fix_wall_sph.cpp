@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Plane walls as half-spaces of fluid at rest density, core/sph/plane_wall.h.  pair_style sph/tait
 // calls this fix while it evaluates, since densities must be complete before the equation of state.
 
@@ -80,14 +81,14 @@ void FixWallSPH::read_walls(ArgReader &args)
     if (!args.more()) args.word(position);
     const std::string value = args.peek();
     if (value == "EDGE") {
-      wall.place = Place::EDGE;
+      wall.position_kind = PositionKind::EDGE;
       args.word(position);
     } else if (utils::strmatch(value, "^v_")) {
-      wall.place = Place::VARIABLE;
+      wall.position_kind = PositionKind::VARIABLE;
       wall.variable = args.word(position).substr(2);
       any_variable = true;
     } else {
-      wall.place = Place::NUMBER;
+      wall.position_kind = PositionKind::NUMBER;
       wall.position = args.number(position);
     }
     walls.push_back(wall);
@@ -130,7 +131,7 @@ void FixWallSPH::init()
   found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
-    if (wall.place != Place::VARIABLE) continue;
+    if (wall.position_kind != PositionKind::VARIABLE) continue;
     wall.variable_index = input->variable->find(wall.variable.c_str());
     if (wall.variable_index < 0 || !input->variable->equalstyle(wall.variable_index))
       error->all(FLERR, "{}: position of {} is 'v_{}': define an equal-style variable of this name",
@@ -146,7 +147,7 @@ void FixWallSPH::check_face(const Wall &wall) const
   if (domain->periodicity[axis])
     error->all(FLERR, "{}: {} is a wall across a periodic dimension: use 'boundary f' there", label,
                FACES[wall.face]);
-  if (wall.place == Place::EDGE && domain->boundary[axis][wall.face % 2] != 1)
+  if (wall.position_kind == PositionKind::EDGE && domain->boundary[axis][wall.face % 2] != 1)
     error->all(FLERR,
                "{}: position of {} is 'EDGE', which follows the particles at a shrink-wrapped "
                "face: use 'boundary f' there, or a number",
@@ -203,12 +204,12 @@ void FixWallSPH::find_open_space()
 void FixWallSPH::locate(Wall &wall, double elapsed)
 {
   const double before = wall.position;
-  switch (wall.place) {
-    case Place::NUMBER: return;
-    case Place::EDGE:
+  switch (wall.position_kind) {
+    case PositionKind::NUMBER: return;
+    case PositionKind::EDGE:
       wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
       break;
-    case Place::VARIABLE:
+    case PositionKind::VARIABLE:
       wall.position = input->variable->compute_equal(wall.variable_index);
       if (!std::isfinite(wall.position))
         error->all(FLERR, "{}: position of {} is '{}' at step {}: correct variable {}", label,
@@ -363,17 +364,17 @@ bool FixWallSPH::moves_beside(int i)
   });
 }
 
-void FixWallSPH::add_to(ConcentrationGradient &crowd, int i)
+void FixWallSPH::add_to(ConcentrationGradient &concentration, int i)
 {
   if (!query(i)) return;
   const double support = fluid->support(atom->type[i]);
   const int dim = domain->dimension;
-  crowd.cover += joint_lambda(near);
+  concentration.cover += joint_lambda(near);
   for (std::size_t k = 0; k < walls.size(); k++) {
     const int axis = walls[k].axis();
     const double share = joint_share(near, k), delta = walls[k].distance(atom->x[i]) / support;
-    crowd.gradient[axis] += walls[k].inwards() * share * near[k].slope / support;
-    crowd.cover += share * (wall_cover(near[k], delta, dim) - near[k].lambda);
+    concentration.gradient[axis] += walls[k].inwards() * share * near[k].slope / support;
+    concentration.cover += share * (wall_cover(near[k], delta, dim) - near[k].lambda);
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix wall/sph: plane walls without wall particles.
 
 #ifdef FIX_CLASS
@@ -51,11 +52,11 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
-  enum class Place { NUMBER, EDGE, VARIABLE };
+  enum class PositionKind { NUMBER, EDGE, VARIABLE };
 
   struct Wall {
     int face;             // 0 to 5: xlo, xhi, ylo, yhi, zlo, zhi
-    Place place;
+    PositionKind position_kind;
     std::string variable;
     int variable_index;
     double position;

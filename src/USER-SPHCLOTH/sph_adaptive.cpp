@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The time loop: move, communicate, evaluate, choose the next step.
 
 #include "sph_adaptive.h"
@@ -10,6 +11,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_sph_integrate.h"
+#include "fluid/fluid_state.h"
 #include "force.h"
 #include "improper.h"
 #include "kspace.h"
@@ -17,7 +19,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
-#include "pair_sph_tait.h"
+#include "pair.h"
 #include "timer.h"
 #include "update.h"
 
@@ -28,7 +30,8 @@ static const std::string STYLE = "run_style sph/adaptive";
 // run_style sph/adaptive constant|global|individual|block
 
 SPHAdaptive::SPHAdaptive(LAMMPS *lmp_, int narg, char **arg) :
-    Verlet(lmp_, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr)
+    Verlet(lmp_, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr),
+    fluid_alone(false)
 {
   ArgReader args(lmp, STYLE, narg, arg);
   stepping = static_cast<SteppingScheme>(
@@ -48,6 +51,8 @@ void SPHAdaptive::init()
   delete[] update->integrate_style;
   update->integrate_style = utils::strdup("verlet/sph/adaptive");
   Verlet::init();
+  const FluidState *fluid = FluidState::find(force);
+  fluid_alone = fluid && fluid->is_of(force->pair);
 }
 
 void SPHAdaptive::run(int n)
@@ -158,13 +163,13 @@ void SPHAdaptive::evaluate()
   timer->stamp(Timer::MODIFY);
 }
 
-// The pair style gives no forces to ghosts.
+// pair_style sph/tait gives no forces to ghosts.
 
 bool SPHAdaptive::ghosts_have_forces() const
 {
   if (!force->newton) return false;
   return atom->molecular != Atom::ATOMIC || kspace_compute_flag || modify->n_pre_force ||
-      modify->n_pre_reverse || !dynamic_cast<PairSPHTait *>(force->pair);
+      modify->n_pre_reverse || !fluid_alone;
 }
 
 // lines 17, 18 and 34: the step is booked and the next one chosen

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // run_style sph/adaptive: the time loop of Algorithm 1.
 
 #ifdef INTEGRATE_CLASS
@@ -25,6 +26,7 @@ class SPHAdaptive : public Verlet, public HasSteppingScheme {
  private:
   SteppingScheme stepping;
   class FixSPHIntegrate *particles;
+  bool fluid_alone;    // pair_style sph/tait without others
 
   void move();
   void communicate();

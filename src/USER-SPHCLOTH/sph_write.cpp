@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Writes tables of the kernel W and of the equation of state (3).
+
 #include "sph_write.h"
 
 #include "atom.h"
@@ -16,7 +19,7 @@ using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 static const std::string STYLE = "sph_write";
-static constexpr int MOST_ROWS = 1000000;
+static constexpr int MAX_ROWS = 1000000;
 
 /* ----------------------------------------------------------------------
    sph_write kernel I J N FILE | sph_write state I N FILE rho_lo rho_hi
@@ -41,7 +44,7 @@ void SPHWrite::command(int narg, char **arg)
 void SPHWrite::write_kernel(ArgReader &args)
 {
   const int i = read_type(args, "first type"), j = read_type(args, "second type");
-  const int n = args.integer("number of rows", 2, MOST_ROWS);
+  const int n = args.integer("number of rows", 2, MAX_ROWS);
   const std::string file = args.word("file");
   args.end();
   if (!(fluid->reach(i, j) > 0.0))
@@ -70,7 +73,7 @@ void SPHWrite::write_kernel(ArgReader &args)
 void SPHWrite::write_state(ArgReader &args)
 {
   const int i = read_type(args, "type");
-  const int n = args.integer("number of rows", 2, MOST_ROWS);
+  const int n = args.integer("number of rows", 2, MAX_ROWS);
   const std::string file = args.word("file");
   const double low = args.positive("lowest density"), high = args.positive("highest density");
   args.end();

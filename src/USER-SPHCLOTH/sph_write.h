@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // sph_write: tables of a kernel or of an equation of state, as the pair style uses them.
 
 #ifdef COMMAND_CLASS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Counts what a program sends through MPI: preloaded before it, by `sphcloth bench messages`.
 //
 // Every call is passed on to MPI's profiling interface.  When MPI ends, each rank writes one line
@@ -70,11 +71,12 @@ int MPI_Isend(const void *buf, int n, MPI_Datatype type, int to, int tag, MPI_Co
   return PMPI_Isend(buf, n, type, to, tag, comm, request);
 }
 
-int MPI_Sendrecv(const void *buf, int n, MPI_Datatype type, int to, int tag, void *into, int most,
-                 MPI_Datatype type_in, int from, int tag_in, MPI_Comm comm, MPI_Status *status)
+int MPI_Sendrecv(const void *buf, int n, MPI_Datatype type, int to, int tag, void *into,
+                 int max_count, MPI_Datatype type_in, int from, int tag_in, MPI_Comm comm,
+                 MPI_Status *status)
 {
   note_message(n, type, to, comm);
-  return PMPI_Sendrecv(buf, n, type, to, tag, into, most, type_in, from, tag_in, comm, status);
+  return PMPI_Sendrecv(buf, n, type, to, tag, into, max_count, type_in, from, tag_in, comm, status);
 }
 
 int MPI_Allreduce(const void *buf, void *into, int n, MPI_Datatype type, MPI_Op op, MPI_Comm comm)

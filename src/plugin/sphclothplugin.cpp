@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What LAMMPS calls when it loads the plugin: every style is registered under its name.
 
 #include "lammpsplugin.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Plugin interface of LAMMPS 22 Jul 2025; see README.md in this folder.
 
 #ifndef LMP_LAMMPSPLUGIN_H

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/neighbor/cell_lists.h"
 
 #include <boost/test/unit_test.hpp>
@@ -42,7 +44,7 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
       seen.insert(i);
       BOOST_CHECK(p.type[i] == t && i < n_owned);
       for (int other = 1; other <= n_types; other++) {
-        const double far = reach[t * (n_types + 1) + other];
+        const double cutoff = reach[t * (n_types + 1) + other];
         std::multiset<int> listed;
         const NeighborSpan s = lists(slot, other);
         listed.insert(s.of, s.of + s.n);
@@ -50,10 +52,10 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
           double r_sq = 0.0;
           for (int d = 0; d < 3; d++) r_sq += std::pow(p.x[3 * i + d] - p.x[3 * j + d], 2);
           const std::size_t count = listed.count(j);
-          const bool candidate = j != i && p.type[j] == other && far > 0.0;
-          if (candidate && std::sqrt(r_sq) < far)
+          const bool candidate = j != i && p.type[j] == other && cutoff > 0.0;
+          if (candidate && std::sqrt(r_sq) < cutoff)
             BOOST_CHECK(count == 1);
-          else if (!candidate || std::sqrt(r_sq) > far * 1.0001 + 1e-5)
+          else if (!candidate || std::sqrt(r_sq) > cutoff * 1.0001 + 1e-5)
             BOOST_CHECK(count == 0);
         }
       }

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/pbd/coloring.h"
 #include "core/pbd/sheet_mesh.h"
 

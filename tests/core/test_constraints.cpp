@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/pbd/cloth_solver.h"
 
 #include <boost/test/unit_test.hpp>
@@ -27,7 +29,7 @@ std::array<Vec3, 4> folded(double angle)
           Vec3(0.6, -0.8 * std::cos(angle), 0.8 * std::sin(angle))};
 }
 
-Vec3 place(const Vertex &v) { return {v.x, v.y, v.z}; }
+Vec3 position(const Vertex &v) { return {v.x, v.y, v.z}; }
 
 constexpr double FREE = std::numeric_limits<double>::infinity();
 
@@ -67,15 +69,15 @@ void project_distance(Vec3 &a, Vec3 &b, double wa, double wb, double rest, doubl
 {
   Alone<2> one({a, b}, {wa, wb}, {rest, k, 0.0, FREE});
   one.sweep();
-  a = place(one.p[0]);
-  b = place(one.p[1]);
+  a = position(one.p[0]);
+  b = position(one.p[1]);
 }
 
 void project_hinge(std::array<Vec3, 4> &x, const std::array<double, 4> &w, double rest, double k)
 {
   Alone<4> one(x, w, {rest, k, 0.0, FREE});
   one.sweep();
-  for (int q = 0; q < 4; q++) x[q] = place(one.p[q]);
+  for (int q = 0; q < 4; q++) x[q] = position(one.p[q]);
 }
 
 // the gradient of a hinge's angle, from what a small step of it moves
@@ -298,13 +300,13 @@ BOOST_AUTO_TEST_CASE(along_the_first_edge_is_exact_and_keeps_angular_momentum)
     one.p[1] = {end[0], end[1], end[2], 2.0};
     one.along_start = true;
     one.sweep();
-    const Vec3 moved = place(one.p[0]);
+    const Vec3 moved = position(one.p[0]);
     const bool along = std::cos(turn) / std::sqrt(1.01) >= 0.5;
     BOOST_CHECK((moved.cross(before[1]).norm() < 1e-15) == (along || turn == 0.0));
     if (!along) BOOST_CHECK(moved.cross(end).norm() < 1e-15);
-    BOOST_CHECK_SMALL((moved + 0.5 * (place(one.p[1]) - end)).norm(), 1e-15);
+    BOOST_CHECK_SMALL((moved + 0.5 * (position(one.p[1]) - end)).norm(), 1e-15);
     one.sweep(20);
-    BOOST_CHECK_SMALL((place(one.p[1]) - place(one.p[0])).norm() - 1.0, 1e-9);
+    BOOST_CHECK_SMALL((position(one.p[1]) - position(one.p[0])).norm() - 1.0, 1e-9);
   }
 }
 
@@ -317,8 +319,8 @@ BOOST_AUTO_TEST_CASE(jacobi_sweep_adds_up_and_agrees_with_gauss_seidel_for_one)
   project(summed.c, 0,
           {summed.p.data(), summed.displacement.data(), false, summed.change.data(), 1.0});
   for (int q = 0; q < 2; q++) {
-    BOOST_CHECK(place(summed.displacement[q]) == Vec3(0, 0, 0));
-    BOOST_CHECK_SMALL((x[q] + place(summed.change[q]) - place(direct.p[q])).norm(), 1e-15);
+    BOOST_CHECK(position(summed.displacement[q]) == Vec3(0, 0, 0));
+    BOOST_CHECK_SMALL((x[q] + position(summed.change[q]) - position(direct.p[q])).norm(), 1e-15);
   }
 }
 
@@ -340,11 +342,11 @@ BOOST_AUTO_TEST_CASE(place_in_a_group_does_not_matter_and_groups_are_filled_up)
   BOOST_CHECK(c.size() == 12 && c.colors() == 2 && c.begin[1] == 8);
   project(c, 0, {p.data(), displacement.data(), false, nullptr, 1.0});
   for (int m = 0; m < 7; m++) {
-    Alone<2> one({place(p[2 * m]), place(p[2 * m + 1])}, {p[2 * m].w, p[2 * m + 1].w},
+    Alone<2> one({position(p[2 * m]), position(p[2 * m + 1])}, {p[2 * m].w, p[2 * m + 1].w},
                  {0.6, 1.0, 1e-3, FREE});
     one.sweep();
-    BOOST_CHECK(place(one.displacement[0]) == place(displacement[2 * m]) &&
-                place(one.displacement[1]) == place(displacement[2 * m + 1]));
+    BOOST_CHECK(position(one.displacement[0]) == position(displacement[2 * m]) &&
+                position(one.displacement[1]) == position(displacement[2 * m + 1]));
   }
   BOOST_CHECK(displacement[14].x == 0.0 && displacement[14].y == 0.0 && displacement[14].z == 0.0);
 }
@@ -361,7 +363,7 @@ BOOST_AUTO_TEST_CASE(rescaled_stiffness_is_a_compliance_in_any_step_and_comes_ba
     one.c.rescale_stiffness(ratio);
     one.sweep();
     compliant.sweep();
-    BOOST_CHECK_SMALL((place(one.p[0]) - place(compliant.p[0])).norm(), 1e-15);
+    BOOST_CHECK_SMALL((position(one.p[0]) - position(compliant.p[0])).norm(), 1e-15);
   }
   kept.c.rescale_stiffness(7.0);
   BOOST_CHECK(kept.c.k[0] < k);
@@ -375,16 +377,17 @@ BOOST_AUTO_TEST_CASE(rescaled_stiffness_is_a_compliance_in_any_step_and_comes_ba
 BOOST_AUTO_TEST_CASE(edge_damping_takes_stretching_and_keeps_momentum_and_rigid_motion)
 {
   Alone<2> edge({random_vec(), random_vec()}, {0.5, 2.0}, {1.0, 1.0, 0.0, FREE});
-  const Vec3 along = place(edge.p[0]) - place(edge.p[1]);
+  const Vec3 along = position(edge.p[0]) - position(edge.p[1]);
   const Vec3 v1 = random_vec(), v2 = random_vec();
   std::array<Vertex, 3> v{Vertex{v1[0], v1[1], v1[2], 0.5}, Vertex{v2[0], v2[1], v2[2], 2.0}};
   damp(edge.c, 0, edge.p.data(), v.data(), 1.0);
-  BOOST_CHECK_SMALL((place(v[0]) - place(v[1])).dot(along), 1e-14);
-  BOOST_CHECK_SMALL((place(v[0]) / 0.5 + place(v[1]) / 2.0 - v1 / 0.5 - v2 / 2.0).norm(), 1e-14);
+  BOOST_CHECK_SMALL((position(v[0]) - position(v[1])).dot(along), 1e-14);
+  BOOST_CHECK_SMALL((position(v[0]) / 0.5 + position(v[1]) / 2.0 - v1 / 0.5 - v2 / 2.0).norm(),
+                    1e-14);
   v[0] = {0.0, 0.0, -3.0, 0.5};
   v[1] = {0.0, 0.0, -3.0, 2.0};
   damp(edge.c, 0, edge.p.data(), v.data(), 0.7);
-  for (int q = 0; q < 2; q++) BOOST_CHECK(place(v[q]) == Vec3(0.0, 0.0, -3.0));
+  for (int q = 0; q < 2; q++) BOOST_CHECK(position(v[q]) == Vec3(0.0, 0.0, -3.0));
 }
 
 BOOST_AUTO_TEST_CASE(edge_damping_is_finite_down_to_the_smallest_numbers)
@@ -394,7 +397,8 @@ BOOST_AUTO_TEST_CASE(edge_damping_is_finite_down_to_the_smallest_numbers)
       Alone<2> edge({length * Vec3(1.0, 1.0, 1.0), Vec3::Zero()}, {w, w}, {1.0, 1.0, 0.0, FREE});
       std::array<Vertex, 3> v{Vertex{1.0, 2.0, 3.0, w}, Vertex{-1.0, 0.5, 2.0, w}};
       damp(edge.c, 0, edge.p.data(), v.data(), 1.0);
-      for (int q = 0; q < 2; q++) BOOST_CHECK(place(v[q]).allFinite() && place(v[q]).norm() < 10.0);
+      for (int q = 0; q < 2; q++)
+        BOOST_CHECK(position(v[q]).allFinite() && position(v[q]).norm() < 10.0);
     }
 }
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/contact/point_triangle.h"
 #include "core/geometry/disc_grid.h"
 
@@ -27,14 +29,14 @@ BOOST_AUTO_TEST_CASE(finds_the_triangles_near_a_point_and_the_nearest)
     triangles.push_back({at, at + size * vec(), at + (k == 7 ? 0.0 : size) * vec()});
     discs.push_back(disc_around(triangles[k][0], triangles[k][1], triangles[k][2]));
   }
-  const double far = 0.2, slack = 0.01, room = 0.1;
+  const double max_distance = 0.2, slack = 0.01, room = 0.1;
   for (const Disc &disc : discs) {
     moving.push_back(disc);
     moving.back().room = room;
   }
   DiscGrid grid, roomy;
-  grid.build(discs, far);
-  roomy.build(moving, far);
+  grid.build(discs, max_distance);
+  roomy.build(moving, max_distance);
   int looked = 0, seen = 0;
   for (int k = 0; k < 500; k++) {
     const Eigen::Vector3d p = 1.3 * vec();
@@ -45,31 +47,31 @@ BOOST_AUTO_TEST_CASE(finds_the_triangles_near_a_point_and_the_nearest)
     }
     const double nearest = *std::min_element(distance.begin(), distance.end());
     std::set<int> near, all, more;
-    grid.nearest(p, far, slack, [&](int t) { BOOST_CHECK(near.insert(t).second); });
-    grid.within(p, far, [&](int t) { BOOST_CHECK(all.insert(t).second); });
-    roomy.within(p, far, [&](int t) { BOOST_CHECK(more.insert(t).second); });
+    grid.nearest(p, max_distance, slack, [&](int t) { BOOST_CHECK(near.insert(t).second); });
+    grid.within(p, max_distance, [&](int t) { BOOST_CHECK(all.insert(t).second); });
+    roomy.within(p, max_distance, [&](int t) { BOOST_CHECK(more.insert(t).second); });
     for (int t = 0; t < 500; t++) {
-      if (distance[t] <= std::min(far, nearest + slack)) BOOST_CHECK(near.count(t) == 1);
-      if (distance[t] <= far) BOOST_CHECK(all.count(t) == 1);
-      if (distance[t] <= far + room) BOOST_CHECK(more.count(t) == 1);
+      if (distance[t] <= std::min(max_distance, nearest + slack)) BOOST_CHECK(near.count(t) == 1);
+      if (distance[t] <= max_distance) BOOST_CHECK(all.count(t) == 1);
+      if (distance[t] <= max_distance + room) BOOST_CHECK(more.count(t) == 1);
     }
-    if (nearest < far) looked++;
+    if (nearest < max_distance) looked++;
     seen += static_cast<int>(near.size());
   }
   BOOST_CHECK(looked > 100);
   BOOST_CHECK(seen < 6 * 500);    // hardly more than have to
   const double none = std::numeric_limits<double>::quiet_NaN(),
                infinite = std::numeric_limits<double>::infinity();
-  grid.nearest(Eigen::Vector3d(none, 0, 0), far, slack, [](int) { BOOST_CHECK(false); });
+  grid.nearest(Eigen::Vector3d(none, 0, 0), max_distance, slack, [](int) { BOOST_CHECK(false); });
   grid.within(Eigen::Vector3d(none, 0, 0), none, [](int) { BOOST_CHECK(false); });
   int found = 0;
   grid.within(Eigen::Vector3d(0, 0, infinite), infinite, [&](int) { found++; });
   BOOST_CHECK(found <= 500);
   moving[3].center[0] = infinite;
-  roomy.build(moving, far);
-  roomy.within(vec(), far, [](int t) { BOOST_CHECK(t != 3); });
-  grid.build({}, far);
-  grid.nearest(vec(), far, slack, [](int) { BOOST_CHECK(false); });
+  roomy.build(moving, max_distance);
+  roomy.within(vec(), max_distance, [](int t) { BOOST_CHECK(t != 3); });
+  grid.build({}, max_distance);
+  grid.nearest(vec(), max_distance, slack, [](int) { BOOST_CHECK(false); });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/neighbor/dual_lists.h"
 
 #include <boost/test/unit_test.hpp>
@@ -71,11 +73,11 @@ struct Watched {
   }
   void follow() { lists.follow(points()); }
   Points points() const { return {walk.x.data(), walk.type.data(), owned, walk.n, 2}; }
-  double inner_skin(int own, int t) { return lists.inner_skin(lists.slot(own - 1), t); }
-  int in_fronts(int own, int t)
+  double inner_skin(int id, int t) { return lists.inner_skin(lists.slot(id - 1), t); }
+  int total_inner_neighbors(int id, int t)
   {
     int n = 0;
-    for (int i = own - 1; i < owned; i += 2) {
+    for (int i = id - 1; i < owned; i += 2) {
       lists.refresh(lists.slot(i));
       n += lists(lists.slot(i), t).n;
     }
@@ -156,7 +158,7 @@ BOOST_AUTO_TEST_CASE(inner_list_is_right_as_soon_as_lists_are_built)
   slow.check(1);
   BOOST_CHECK(slow.inner_skin(1, 1) > 0.0);
   BOOST_CHECK(fast.inner_skin(1, 1) > slow.inner_skin(1, 1));
-  BOOST_CHECK(fast.in_fronts(1, 1) > slow.in_fronts(1, 1));
+  BOOST_CHECK(fast.total_inner_neighbors(1, 1) > slow.total_inner_neighbors(1, 1));
 }
 
 BOOST_AUTO_TEST_CASE(inner_skin_is_wider_for_particles_that_are_evaluated_seldom)
@@ -170,12 +172,12 @@ BOOST_AUTO_TEST_CASE(particles_that_move_together_keep_their_lists)
 {
   Watched w(0.5 * SUPPORT);
   const double resting = w.inner_skin(1, 1);
-  const int fronts = w.in_fronts(1, 1);
+  const int fronts = w.total_inner_neighbors(1, 1);
   for (int step = 0; step < 40; step++) {
     for (double &x : w.walk.x) x += 0.01;
     w.follow();
     w.check(5);
-    BOOST_CHECK(w.in_fronts(1, 1) == fronts);
+    BOOST_CHECK(w.total_inner_neighbors(1, 1) == fronts);
   }
   BOOST_CHECK(w.inner_skin(1, 1) == resting);
 }
@@ -224,13 +226,13 @@ BOOST_AUTO_TEST_CASE(inner_lists_of_particles_at_rest_stay_while_others_move)
 {
   Watched w;
   const double resting = w.inner_skin(1, 1);
-  const int among_each_other = w.in_fronts(1, 1);
+  const int among_each_other = w.total_inner_neighbors(1, 1);
   for (int step = 0; step < 60; step++) {
     if (step)
       for (int i = 1; i < w.walk.n; i += 2) w.walk.x[3 * i] += 4e-4;
     w.follow();
     w.check(1 + step % 3);
-    BOOST_CHECK(w.in_fronts(1, 1) == among_each_other);
+    BOOST_CHECK(w.total_inner_neighbors(1, 1) == among_each_other);
   }
   BOOST_CHECK(w.inner_skin(1, 1) == resting);
 }

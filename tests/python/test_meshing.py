@@ -53,7 +53,7 @@ def grid(across: int, along: int, width: float = 1.0, height: float = 1.0) -> tr
 def shirt(gap: float) -> list[trimesh.Trimesh]:
     """Front and back of a tube-like shirt: they meet at the sides, and bulge apart elsewhere.
 
-    The back is wound like the front, as a modeller draws both from outside of the page.
+    The back is wound like the front, as a modeler draws both from outside of the page.
     """
     front = grid(8, 10, 0.6, 0.8)
     x = front.vertices[:, 0]

@@ -271,7 +271,7 @@ fix contact water cloth/contact 0.01
 @pytest.mark.parametrize(
     ("rate", "steps", "words"),
     [
-        (10, 85, "or its neighbours move apart from others and crush what is between them, pa"),
+        (10, 85, "or its neighbors move apart from others and crush what is between them, pa"),
         (150, 5, r"moves 0.01\d* away from others in one step and crushes what is between them"),
     ],
 )

@@ -336,7 +336,7 @@ CASES = [
         EMIT + "10 1 1e-6 disc 0 0 0 10 velocity 0 0 -1",
         r"fix pour sph/emit: spacing 1e-06 makes 4e\+14 particles in a layer, more than 1e\+08",
     ),
-    case("emit: short", EMIT + "10 1 0.05 disc 0 0", r"disc centre z is missing"),
+    case("emit: short", EMIT + "10 1 0.05 disc 0 0", r"disc center z is missing"),
     case(
         "emit: boundary type",
         EMIT + "10 2 0.05 disc 0 0 0 0.1 velocity 0 0 -1\nrun 0",

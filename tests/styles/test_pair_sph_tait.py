@@ -269,5 +269,5 @@ except Exception as error:
 def test_lists_that_do_not_fit_the_memory_are_named():
     command = [sys.executable, "-c", CROWDED]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
-    words = "pair_style sph/tait: not enough memory for the neighbours of 12000 particles within"
+    words = "pair_style sph/tait: not enough memory for the neighbors of 12000 particles within"
     assert words in done.stdout, done.stdout + done.stderr

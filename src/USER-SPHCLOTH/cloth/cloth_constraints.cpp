@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Constraints (4) to (6) of a cloth.
 //
 // The colors follow from the global IDs alone and every rank projects each constraint that touches
@@ -60,9 +61,9 @@ void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x)
   int missing = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const Vec3 own(rest_x[0][i], rest_x[1][i], rest_x[2][i]);
-    if (!std::isfinite(own[0] + own[1] + own[2])) missing = static_cast<int>(atom->tag[i]);
-    mine[mesh.index_of(atom->tag[i])] = own;
+    const Vec3 x(rest_x[0][i], rest_x[1][i], rest_x[2][i]);
+    if (!std::isfinite(x[0] + x[1] + x[2])) missing = static_cast<int>(atom->tag[i]);
+    mine[mesh.index_of(atom->tag[i])] = x;
   }
   int any_missing = 0;
   MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);

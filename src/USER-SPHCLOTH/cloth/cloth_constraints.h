@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The constraints of one cloth: what its mesh, its rest positions and the coefficients of its types
 // say, the same on every rank, and after each list build those that this rank projects.
 

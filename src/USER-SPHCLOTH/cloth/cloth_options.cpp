@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Reads the arguments of fix pbd/cloth.
+
 #include "cloth/cloth_options.h"
 
 #include "atom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the arguments of fix pbd/cloth say.
 
 #ifndef SPHCLOTH_CLOTH_CLOTH_OPTIONS_H

@@ -1,3 +1,7 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Gathers the bonds, angles and dihedrals of all ranks into one mesh, in an order that does not
+// depend on the ranks.
+
 #include "cloth/cloth_topology.h"
 
 #include "atom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The mesh of one cloth, the same on every rank: vertices by global ID, edges (LAMMPS bonds),
 // triangles (angles) and hinges (dihedrals).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The vertices of a cloth that a rank owns or needs, as arrays by slot of their halo.
 
 #ifndef SPHCLOTH_CLOTH_CLOTH_VERTICES_H

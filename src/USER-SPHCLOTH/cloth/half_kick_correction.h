@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Substeps spread the forces of the start of a step evenly over it, so that what hangs at rest
 // hangs exactly, but they come half a step, less half a substep, late.  That much is given ahead at
 // the start of each step, and what the last one gave ahead is taken back: that makes the step

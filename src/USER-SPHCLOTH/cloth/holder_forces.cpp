@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Reactions of pins, and impulses on attached vertices, from the multipliers of (7) and (8) there.
+
 #include "cloth/holder_forces.h"
 
 #include "atom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a cloth and the holders of its vertices do to each other: pins, whose motion is given, and
 // bodies that vertices are attached to, which another fix integrates.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What bond_coeff and dihedral_coeff say of a constraint, and the springs it is made of.
 
 #ifndef SPHCLOTH_CLOTH_PBD_MATERIAL_H
@@ -55,11 +56,11 @@ struct PBDMaterial {    // plain and without gaps, for the restart file
         1e200;    // does nothing, and is still finite over a time step squared
     std::vector<sphcloth::Spring> all;
     if (no_rest) rest = 0.0;
-    const auto add = [&](double share, double most) {
+    const auto add = [&](double share, double max_lambda) {
       if (compliant)
-        all.push_back({rest, 1.0, std::min(compliance / share, SOFTEST), most});
+        all.push_back({rest, 1.0, std::min(compliance / share, SOFTEST), max_lambda});
       else
-        all.push_back({rest, sphcloth::stiffness_per_iteration(k, n), 0.0, most});
+        all.push_back({rest, sphcloth::stiffness_per_iteration(k, n), 0.0, max_lambda});
     };
     // two parallel springs: one of them slack in compression
     if (compliant || k > 0.0) {

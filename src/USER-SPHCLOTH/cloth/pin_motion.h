@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Velocities that the user gives to pinned vertices: numbers, or equal- or atom-style variables.
 
 #ifndef SPHCLOTH_CLOTH_PIN_MOTION_H

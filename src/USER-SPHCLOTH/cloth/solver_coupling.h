@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What meets a cloth while it is solved: fix pbd/cloth calls it between the sweeps over its own
 // constraints, so that both are met together.  Owned vertices are those of the fix, in its order.
 

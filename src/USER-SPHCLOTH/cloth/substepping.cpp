@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Constraints (cloth/cloth_constraints.h) are projected color by color; after a color only the
 // vertices that it moved are forwarded to other ranks.
 
@@ -110,8 +111,7 @@ void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
   const double dt = substep_dt();
   Vertex *displacement = vertices.displacement.data();
   const ClothState state{vertices.start.data(), displacement, options.from_start,
-                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
-                         inv_dt_sq()};
+                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr, inv_dt_sq()};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations;

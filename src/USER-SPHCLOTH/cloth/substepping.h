@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How a step of a cloth is solved: into how many substeps it is cut, and the sweeps over the
 // constraints in each of them, (7) to (9) and lines 19 to 29 of Algorithm 1.
 //

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Connects the ranks that share a cloth, and sends and adds up the data of their vertices.
+
 #include "cloth/vertex_halo.h"
 
 #include "atom.h"
@@ -63,8 +66,7 @@ void VertexHalo::find_images()
 {
   image.resize(n_slots() - owned);
   for (int s = owned; s < n_slots(); s++) {
-    const double *x = atom->x[atoms[s]],
-                 *x_owner = link_rows[atoms[s]] + 2;
+    const double *x = atom->x[atoms[s]], *x_owner = link_rows[atoms[s]] + 2;
     double dx = x[0] - x_owner[0], dy = x[1] - x_owner[1], dz = x[2] - x_owner[2];
     const auto count = [](double distance, double period) {
       return static_cast<int>(std::lround(distance / period));

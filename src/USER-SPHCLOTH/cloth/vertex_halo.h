@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A rank's vertices of a cloth in one compact numbering, and the exchange of their data.
 //
 // Slots 0 .. n_owned-1 are owned vertices, the slots behind are those ghost images that the rank
 // asked for.  Data travels in channels: a channel forwards only the vertices that were asked for
 // in it, so that one color of constraints costs one small message per neighboring rank.
+// Comm::forward_comm() would send all ghosts for each color, the fluid among them.
 
 #ifndef SPHCLOTH_CLOTH_VERTEX_HALO_H
 #define SPHCLOTH_CLOTH_VERTEX_HALO_H
@@ -67,15 +69,15 @@ class VertexHalo : protected Pointers {
     std::vector<int> slots;
   };
   struct Channel {
-    std::vector<Message> from, to;            // ghosts filled here, owned vertices sent
-    std::vector<int> self_from, self_to;      // images of this rank's own vertices
+    std::vector<Message> from, to;    // ghosts filled here, owned vertices sent
+    std::vector<int> self_from, self_to;    // images of this rank's own vertices
   };
 
   int owned = 0;
-  std::vector<int> atoms;            // atom index of a slot
-  std::vector<int> slot_by_atom;     // -1: none
-  std::vector<std::vector<int>> asked;               // ghost slots by channel
-  std::vector<std::array<int, 3>> image;             // of a ghost slot, by slot - owned
+  std::vector<int> atoms;    // atom index of a slot
+  std::vector<int> slot_by_atom;    // -1: none
+  std::vector<std::vector<int>> asked;    // ghost slots by channel
+  std::vector<std::array<int, 3>> image;    // of a ghost slot, by slot - owned
   static constexpr int LINK = 5;
   std::vector<double> link;    // of each atom, ghosts have that of their owner: rank, slot, x, y, z
   std::vector<double *> link_rows;

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the swept boxes of triangles and particles that overlap, with a margin.
+
 #include "contact/candidate_pairs.h"
 
 #include "atom.h"
@@ -108,6 +111,5 @@ const Box &CandidatePairs::swept_box(int t)
 
 double CandidatePairs::memory_usage() const
 {
-  return discs.bytes() +
-      bytes_of(candidates, positions_then, start_then, end_then, boxes, has_box);
+  return discs.bytes() + bytes_of(candidates, positions_then, start_then, end_then, boxes, has_box);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Broad phase: the particles and triangles of a mesh that may collide in a step.
 // The list is made with a margin, and holds until a particle or a vertex has moved that far, or
 // until the next list build of LAMMPS; update() makes it anew where it holds no longer.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Whose triangles fix cloth/contact guards: a cloth's, or an obstacle's.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_MESH_H

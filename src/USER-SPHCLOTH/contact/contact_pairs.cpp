@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Splits masses over simultaneous contacts, and applies their impulses.
+
 #include "contact/contact_pairs.h"
 
 #include "atom.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Particles and triangles in contact, and the impulses that they exchange.
 // Simultaneous contacts are solved together by splitting the mass of a vertex, or of a particle,
 // over its contacts, which keeps momentum and always converges: Tonge, Benevolenski & Voroshilov,
@@ -52,7 +53,7 @@ class ContactPairs : protected Pointers {
 
   std::vector<ContactParticle> particles;
   std::vector<ContactPair> pairs;
-  std::vector<Vec3> impulse;     // on vertices in one pass, by slot
+  std::vector<Vec3> impulse;    // on vertices in one pass, by slot
   std::vector<Vec3> velocity;    // of vertices, by slot
 
   void clear();

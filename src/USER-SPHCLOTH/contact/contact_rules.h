@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the user of fix cloth/contact asks for, and what it counts.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_RULES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact of particles with one mesh: its triangles, and the phases of a step.
 // Phases: candidates (broad phase), solver (between the sweeps over the constraints of a cloth),
 // stabilization (behind the solver), and, at list builds, sides.

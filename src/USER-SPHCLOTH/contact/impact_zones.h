@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Rigid impact zones: sets of atoms that move as one, the same on all ranks.
 // Provot, Graphics Interface 1997.
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Loads positions and inverse masses of a mesh for a step, and gives impulses back to atoms.
+
 #include "contact/moving_triangles.h"
 
 #include "atom.h"
@@ -11,10 +14,10 @@ using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &label_,
-                                 int groupbits_, const ContactRules &rules_,
-                                 ContactCounts &counts_, const ParticleColumns &last_positions_) :
-    TriangleSet(lmp_, mesh_, label_),
-    groupbits(groupbits_), rules(rules_), counts(counts_), last_positions(last_positions_)
+                                 int groupbits_, const ContactRules &rules_, ContactCounts &counts_,
+                                 const ParticleColumns &last_positions_) :
+    TriangleSet(lmp_, mesh_, label_), groupbits(groupbits_), rules(rules_), counts(counts_),
+    last_positions(last_positions_)
 {
 }
 
@@ -47,7 +50,7 @@ void MovingTriangles::load_step()
 
 void MovingTriangles::load_positions()
 {
-  for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = place(s);
+  for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
 }
 
 bool MovingTriangles::can_move(int i) const

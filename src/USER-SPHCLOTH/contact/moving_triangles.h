@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The triangles of one mesh during a step: positions of their vertices at its start and end,
 // inverse masses, and the sweeps of the particles that may collide with them.
 // All phases of contact share it; each of them moves `end`, and the atoms, in its turn.
@@ -27,9 +28,9 @@ class MovingTriangles : public TriangleSet {
   const ContactRules &rules;
   ContactCounts &counts;
   std::vector<Vec3> start, end;    // of the step so far, by slot
-  std::vector<double> w;           // inverse masses by slot, 0 of vertices that are held
+  std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but attached vertices take part
-  std::vector<int> moved;          // own particles that contact moved in this step, some repeated
+  std::vector<int> moved;    // own particles that contact moved in this step, some repeated
 
   // after each list build; whole triangles are seen as far as this
   void rebuild(double max_distance);

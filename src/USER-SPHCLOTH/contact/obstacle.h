@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A mesh of atoms that no cloth solver moves: they are fixed, or another fix moves them, which
 // finds the forces of contact in f.
 

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Puts the vertices of a cloth back out of an obstacle, sweep by sweep.
+
 #include "contact/obstacle_coupling.h"
 
 #include "core/contact/contact_impulse.h"
@@ -35,8 +38,7 @@ void ObstacleCoupling::load_obstacle()
 {
   obstacle.load_step();
   boxes.resize(obstacle.triangles.size());
-  for (std::size_t t = 0; t < boxes.size(); t++)
-    boxes[t] = obstacle.swept_box(static_cast<int>(t));
+  for (std::size_t t = 0; t < boxes.size(); t++) boxes[t] = obstacle.swept_box(static_cast<int>(t));
   grid.build(boxes);
   impulse.assign(obstacle.halo.n_slots(), Vec3::Zero());
 }
@@ -132,11 +134,11 @@ void ObstacleCoupling::end_substep(Vertex *v, double dt)
     if (c.triangle < 0) continue;
     Vertex &vertex = v[c.slot];
     // per mass of the vertex
-    const ContactMotion motion{relative_velocity(vector_of(vertex), c.triangle, c.weight),
-                               c.normal, c.speed_before};
+    const ContactMotion motion{relative_velocity(vector_of(vertex), c.triangle, c.weight), c.normal,
+                               c.speed_before};
     const double so_far = c.correction / dt;
-    const Vec3 by = contact_impulse(motion, {so_far}, obstacle.rules.restitution,
-                                    obstacle.rules.friction);
+    const Vec3 by =
+        contact_impulse(motion, {so_far}, obstacle.rules.restitution, obstacle.rules.friction);
     add(vertex, by);
     const Vec3 on_vertex = (so_far * c.normal + by) / vertex.w;
     received[c.slot] += on_vertex;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The vertices of a cloth against the triangles of an obstacle, while the cloth is solved.
 // After each sweep over the constraints of the cloth its vertices are put back out of the obstacle,
 // and at the end of a substep their velocities follow; the obstacle takes the impulses.
@@ -53,7 +54,7 @@ class ObstacleCoupling : public SolverCoupling, protected Pointers {
   std::vector<int> candidates;
   std::vector<VertexContact> contacts;
   std::vector<Vec3> received;    // by slot of the cloth
-  std::vector<Vec3> impulse;     // on the obstacle, by slot
+  std::vector<Vec3> impulse;    // on the obstacle, by slot
 
   void load_obstacle();
   void find_candidates(int slot, const sphcloth::Sweep &);

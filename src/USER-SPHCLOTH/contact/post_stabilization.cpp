@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds what still penetrates behind the solver, and puts it back.
+
 #include "contact/post_stabilization.h"
 
 #include "atom.h"
@@ -140,8 +143,8 @@ void PostStabilization::solve_velocities()
     const double mass = contacts.split_mass(pair, mesh.w);
     const double step = (1.0 + restitution) * removed * mass;
     const Vec3 sliding = mass * (velocity - speed * pair.normal);
-    contacts.apply_impulse(
-        pair, step * pair.normal - clamp_length(sliding, mesh.rules.friction * step));
+    contacts.apply_impulse(pair,
+                           step * pair.normal - clamp_length(sliding, mesh.rules.friction * step));
   }
   apply_velocity_changes();
 }
@@ -200,7 +203,7 @@ void PostStabilization::freeze_zones()
     // a zone keeps its shape, unless it holds vertices that do not move alike
     if (!zones.join(groups))
       error->all(FLERR,
-                 "{}: held vertex {} or its neighbours move apart from others and crush what is "
+                 "{}: held vertex {} or its neighbors move apart from others and crush what is "
                  "between them, particle {}: move pins slower or lower the time step",
                  mesh.label, groups[1], groups[0]);
     move_zones(zones);

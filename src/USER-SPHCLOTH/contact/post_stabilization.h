@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact behind the solver of a cloth: the guarantee that no particle passes a triangle.
 // What still crosses, or is too near, is put back pass after pass, and loses its approach; what is
 // caught between moving triangles moves with them as a rigid zone.

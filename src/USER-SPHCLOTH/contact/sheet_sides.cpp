@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the side of a particle from the triangle of a sheet that is nearest to it.
+
 #include "contact/sheet_sides.h"
 
 #include "atom.h"

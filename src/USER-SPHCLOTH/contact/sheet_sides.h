@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // On which side of a sheet each particle near it is: above, from where its triangles run
 // counter-clockwise, or below.
 // Made at each list build; it holds until the next one, since particles do not pass.

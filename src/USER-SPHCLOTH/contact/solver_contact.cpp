@@ -1,3 +1,7 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Projects contacts after each sweep: the constraint of no penetration in lines 24 to 28 of
+// Algorithm 1.
+
 #include "contact/solver_contact.h"
 
 #include "atom.h"
@@ -81,8 +85,8 @@ void SolverContact::project(Vertex *displacement)
   const WallTimer clock(mesh.counts.seconds);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vertex &start = substep_start[s];
-    mesh.end[s] = Vec3(start.x + displacement[s].x, start.y + displacement[s].y,
-                       start.z + displacement[s].z);
+    mesh.end[s] =
+        Vec3(start.x + displacement[s].x, start.y + displacement[s].y, start.z + displacement[s].z);
   }
   mesh.halo.forward_positions(0, mesh.end.data(), remaining);
   contacts.clear_impulses();
@@ -196,8 +200,7 @@ void SolverContact::solve_velocity(const ContactPair &pair, double dt)
 void SolverContact::load_velocities(const Vertex *v)
 {
   contacts.velocity.resize(mesh.halo.n_slots());
-  for (int s = 0; s < mesh.halo.n_owned(); s++)
-    contacts.velocity[s] = Vec3(v[s].x, v[s].y, v[s].z);
+  for (int s = 0; s < mesh.halo.n_owned(); s++) contacts.velocity[s] = Vec3(v[s].x, v[s].y, v[s].z);
   mesh.halo.forward_velocities(0, contacts.velocity.data());
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact inside the solver of a cloth: a constraint of each particle with each triangle near it,
 // projected after each sweep over the edges and hinges, mass-weighted, both ways, and only pushing.
 // Friction follows from the normal correction; the end of a substep solves velocities.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A grid of discs around the triangles of a mesh, for those within a distance of a point.
 
 #ifndef SPHCLOTH_CONTACT_TRIANGLE_DISCS_H
@@ -24,8 +25,7 @@ class TriangleDiscs {
       discs[t] = sphcloth::disc_around(mesh.end[a], mesh.end[b], mesh.end[c]);
       double displacement_sq = 0.0;
       for (int s : mesh.triangles[t])
-        displacement_sq =
-            std::max(displacement_sq, (mesh.end[s] - mesh.start[s]).squaredNorm());
+        displacement_sq = std::max(displacement_sq, (mesh.end[s] - mesh.start[s]).squaredNorm());
       discs[t].room = std::sqrt(displacement_sq);
     }
     grid.build(discs, distance);

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Collects the triangles in reach of a rank, and checks their winding.
+
 #include "contact/triangle_set.h"
 
 #include "atom.h"
@@ -17,7 +20,7 @@ TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &la
 {
 }
 
-Eigen::Vector3d TriangleSet::place(int slot) const
+Eigen::Vector3d TriangleSet::position(int slot) const
 {
   const double *x = atom->x[halo.atom_of(slot)];
   return {x[0], x[1], x[2]};

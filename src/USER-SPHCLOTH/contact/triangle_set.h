@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The triangles of one mesh that are within reach of a rank, and where their vertices are.
 
 #ifndef SPHCLOTH_CONTACT_TRIANGLE_SET_H
@@ -33,7 +34,7 @@ class TriangleSet : protected Pointers {
   ContactMesh *const mesh;
   VertexHalo halo;
   std::vector<std::array<int, 3>> triangles;    // slots
-  std::vector<int> element;                     // of the mesh, of each triangle
+  std::vector<int> element;    // of the mesh, of each triangle
 
   // nothing is beyond the edge of an element that is opposite to a vertex
   bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
@@ -47,7 +48,7 @@ class TriangleSet : protected Pointers {
   }
 
   // vertices as they are now, ghosts too
-  Vec3 place(int slot) const;
+  Vec3 position(int slot) const;
 
  private:
   std::vector<std::array<bool, 3>> at_border;    // of each element

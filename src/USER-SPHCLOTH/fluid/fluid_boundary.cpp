@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the fixes that are boundaries to the fluid.
+
 #include "fluid/fluid_boundary.h"
 
 #include "fix.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What completes the kernel of fluid particles beside other particles: the planes of fix wall/sph
 // and the meshes of fix cloth/contact.  pair_style sph/tait calls these functions in this order
 // while it evaluates.

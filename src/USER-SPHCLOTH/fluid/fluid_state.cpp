@@ -1,28 +1,18 @@
-// What the fluid is made of on one rank, and what was found in the last evaluation.
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the loops over particles read and write, and what was found in the last evaluation.
 
 #include "fluid/fluid_state.h"
 
-#include "core/util/bytes.h"
-#include "domain.h"
-#include "error.h"
-#include "fix.h"
 #include "fluid/side_source.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
-#include "lammps_util/rank_error.h"
-#include "modify.h"
-#include "neighbor.h"
 #include "pair.h"
-#include "timer.h"
 
 #include <cmath>
 #include <limits>
-#include <new>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
-
-static const std::string STYLE = "pair_style sph/tait";
 
 FluidState *FluidState::find(Force *force)
 {
@@ -34,62 +24,6 @@ FluidState *FluidState::find(Force *force)
 bool FluidState::has_role(int itype) const
 {
   return pair->allocated && pair->setflag[itype][itype];
-}
-
-/* ----------------------------------------------------------------------
-   before a run
-------------------------------------------------------------------------- */
-
-void FluidState::forget()
-{
-  core.reset();
-  unsettle();
-  is_evaluated = false;
-}
-
-// Lists outlive init(): 'run pre no' goes on with them.
-
-void FluidState::begin_run()
-{
-  active = nullptr;    // until a fix sets the active particles
-  hooks = nullptr;
-  pressures_follow = false;
-  boundaries = find_fluid_boundaries(modify);
-  find_sides();
-  settle();
-  if (!core) core = Fluid::create(options.kernel, options.precision);
-  FluidModel &model = core->model;
-  const int n = atom->ntypes + 1;
-  model.dimension = domain->dimension;
-  model.n_types = atom->ntypes;
-  model.friction = Friction::NONE;
-  model.outputs = Outputs::NOTHING;
-  model.role.assign(n, Role::NONE);
-  model.mass.resize(n, 0.0);
-  model.terms.assign(n * n, PairTerms());
-  for (int i = 1; i < n; i++) model.role[i] = type(i).role;
-}
-
-void FluidState::find_sides()
-{
-  sides = nullptr;
-  const Fix *owner = nullptr;
-  for (Fix *fix : modify->get_fix_list()) {
-    int dim = 0;
-    void *found = fix->extract(SideSource::EXTRACT, dim);
-    if (!found) continue;
-    if (sides)
-      error->all(FLERR,
-                 "{}: fix {} and fix {} cloth/contact both part the fluid: give one of them "
-                 "'sides no'",
-                 STYLE, owner->id, fix->id);
-    sides = static_cast<SideSource *>(found);
-    owner = fix;
-  }
-  double longest = 0.0;
-  for (int i = 1; i <= atom->ntypes; i++)
-    if (is_fluid(i)) longest = std::max(longest, support(i));
-  if (sides) sides->set_sight(longest + neighbor->skin);
 }
 
 void FluidState::want_density_rate()
@@ -105,7 +39,7 @@ void FluidState::set_active(double **array, int column, bool interpolated)
 }
 
 /* ----------------------------------------------------------------------
-   one evaluation
+   what the loops read and write
 ------------------------------------------------------------------------- */
 
 Particles FluidState::particles()
@@ -118,7 +52,7 @@ Particles FluidState::particles()
   p.x = atom->x[0];
   p.v = atom->v[0];
   p.mass_or_volume = mass_or_volume.data();
-  p.pressure = pressure.data();
+  p.p_over_rho2 = p_over_rho2.data();
   p.rho = atom->rho;
   p.drho = atom->drho;
   p.f = atom->f[0];
@@ -130,108 +64,13 @@ Particles FluidState::particles()
   return p;
 }
 
-void FluidState::begin_lists()
-{
-  mass_or_volume.resize(atom->nmax);
-  pressure.assign(atom->nmax, 0.0);
-  if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
-  if (core->model.outputs == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int itype = atom->type[i];
-    if (!is_boundary(itype))
-      mass_or_volume[i] = atom_mass(atom, i);
-    else if (type(itype).volume > 0.0)
-      mass_or_volume[i] = type(itype).volume;
-    const double *v = atom->v[i];
-    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
-      rank_error(lmp, FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
-                 atom->tag[i], v[0], v[1], v[2]);
-  }
-  evaluated_order = order_of_atoms(atom);
-}
-
-// Lists as wide as LAMMPS's hold until LAMMPS renews its own, which follows the fastest particle.
-// Narrower ones are rebuilt where particles have approached each other.
-
-void FluidState::update_lists(const Particles &p, const double *reach, const Motion *motion)
-{
-  try {
-    if (motion)
-      core->list(p, reach, neighbor->skin, *motion);
-    else
-      core->follow(p);
-  } catch (const std::bad_alloc &) {
-    rank_error(
-        lmp, FLERR,
-        "{}: not enough memory for the neighbours of {} particles within the support {}: are "
-        "particles or vertices much nearer to each other than that?",
-        STYLE, atom->nlocal, options.support);
-  }
-  timer->stamp(Timer::NEIGH);
-}
-
-void FluidState::select(const Particles &p)
-{
-  if (!core->select(p)) return;
-  if (!hooks) return;
-  active_fluid.clear();
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (is_fluid(t))
-      for (const int slot : core->active().of(t)) active_fluid.push_back(core->order().at(slot));
-}
-
-// A mass that all particles of a type share leaves the sums.
-
-void FluidState::find_equal_masses(const Particles &p)
-{
-  std::vector<double> &mass = core->model.mass;
-  std::fill(mass.begin(), mass.end(), -1.0);
-  for (int i = 0; i < p.n_all; i++) {
-    const int t = p.type[i];
-    if (mass[t] < 0.0) mass[t] = is_fluid(t) ? mass_or_volume[i] : 0.0;
-    if (mass[t] != mass_or_volume[i]) mass[t] = 0.0;
-  }
-}
-
-void FluidState::check_densities() const
-{
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is_fluid(atom->type[i]) && !(atom->rho[i] > 0.0))
-      rank_error(lmp, FLERR,
-                 "{}: particle {} has density {}: give every fluid particle one, 'set group all "
-                 "sph/rho RHO0', or use 'density summation'",
-                 STYLE, atom->tag[i], atom->rho[i]);
-}
-
-// Inactive particles keep their pressure until lists are built: then it follows from the density.
-
-void FluidState::find_pressures(const Particles &p, bool of_all)
-{
-  const double min = options.tension ? -std::numeric_limits<double>::max() : 0.0;
-  const auto find = [&](int i, const Tait &eos) {
-    const double rho = p.rho[i];
-    double &term = pressure[i];
-    term = std::max(eos.pressure(rho), min) / (rho * rho);
-    // a density that is renormalized has a gradient that is
-    for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
-    // neither true of what is not a number
-    if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
-      rank_error(lmp, FLERR,
-                 "{}: particle {} has density {}: particles overlap or the time step is too large",
-                 STYLE, atom->tag[i], rho);
-  };
-  if (!of_all || !active) return for_each_fluid(find);
-  for (int i = 0; i < p.n_owned; i++)
-    if (is_fluid(p.type[i])) find(i, equation_of_state(p.type[i]));
-}
-
 /* ----------------------------------------------------------------------
    for step hooks and boundaries
 ------------------------------------------------------------------------- */
 
-void FluidState::push_walls_more(int i, double p_over_rho2, double times)
+void FluidState::push_walls_more(int i, double p_over_rho2_of_i, double times)
 {
-  for (FluidBoundary *boundary : boundaries) boundary->push_more(i, p_over_rho2, times);
+  for (FluidBoundary *boundary : boundaries) boundary->push_more(i, p_over_rho2_of_i, times);
 }
 
 void FluidState::prolong_walls(double times)
@@ -286,7 +125,7 @@ bool FluidState::evaluated() const
 
 double FluidState::pressure_of(int i) const
 {
-  double p = pressure[i] * atom->rho[i] * atom->rho[i];
+  double p = p_over_rho2[i] * atom->rho[i] * atom->rho[i];
   if (is_fluid(atom->type[i]))
     for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
   return p;
@@ -323,8 +162,8 @@ double FluidState::p_over_rho2_beside(int i)
     const double reach = support(atom->type[i], t), reach_sq = reach * reach;
     const NeighborSpan near = neighbors(i, t);
     for (int k = 0; k < near.n; k++)
-      if (const int j = near.of[k]; pressure[j] > max && distance_sq(x[i], x[j]) < reach_sq)
-        max = pressure[j];
+      if (const int j = near.of[k]; p_over_rho2[j] > max && distance_sq(x[i], x[j]) < reach_sq)
+        max = p_over_rho2[j];
   }
   return max;
 }
@@ -357,10 +196,4 @@ Wetting FluidState::wetting(int i)
     w.sound = std::max(w.sound, eos.sound_speed());
   }
   return w;
-}
-
-double FluidState::bytes() const
-{
-  return (core ? core->bytes() : 0.0) +
-      bytes_of(mass_or_volume, pressure, rate, gradient, approach, active_fluid);
 }

@@ -1,6 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The fluid of pair_style sph/tait on one rank: arrays, lists and the active particles, written by
-// the pair style while it evaluates, and what fixes, computes and stepping schemes ask of the last
-// evaluation.
+// FluidEvaluation, and what fixes, computes and stepping schemes ask of the last evaluation.
 
 #ifndef SPHCLOTH_FLUID_FLUID_STATE_H
 #define SPHCLOTH_FLUID_FLUID_STATE_H
@@ -30,6 +30,8 @@ class FluidState : public SPHMaterials {
   // of the pair style in use; null if it is not sph/tait
   static FluidState *find(Force *);
 
+  // is this the pair style of the run, without others beside it?
+  bool is_of(const Pair *style) const { return style == pair; }
   // has pair_coeff given the type a role?
   bool has_role(int itype) const;
   // are the owned atoms those of the last evaluation?  All that follows needs it.
@@ -46,7 +48,7 @@ class FluidState : public SPHMaterials {
   }
   double pressure_of(int i) const;
   // pressure over density squared, of all atoms
-  const double *p_over_rho2() const { return pressure.data(); }
+  const double *p_over_rho2_of_all() const { return p_over_rho2.data(); }
   // its maximum among the neighbors inside the support, at least 0
   double p_over_rho2_beside(int i);
 
@@ -86,16 +88,14 @@ class FluidState : public SPHMaterials {
   // What the hooks call once the forces on the active fluid are known: FluidBoundary::push_more(),
   // prolong() and defer() of all boundaries; the forces on boundary particles, if all steps are
   // equal; otherwise the impulses of Fluid::record_impulses() on these owned particles.
-  void push_walls_more(int i, double p_over_rho2, double times);
+  void push_walls_more(int i, double p_over_rho2_of_i, double times);
   void prolong_walls(double times);
   void hand_over_pushes(const FluidBoundary::Take &take);
   void push_boundaries() { core->forces(particles(), sphcloth::Target::BOUNDARIES); }
   void give_impulses(const std::vector<int> &slots, const double *pressure_time,
                      const double *span);
 
- private:
-  friend class PairSPHTait;
-
+ protected:
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;
@@ -110,35 +110,11 @@ class FluidState : public SPHMaterials {
   double elapsed = 0.0;
   std::vector<int> active_fluid;    // in the order of the lists
 
-  std::vector<double> mass_or_volume, pressure;    // of all atoms; p/rho^2
-  std::vector<double> rate;
+  std::vector<double> mass_or_volume, p_over_rho2;    // of all atoms
   std::vector<double> approach;    // empty unless wanted
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
 
-  // for the pair style, in the order of an evaluation
-
-  void forget();    // other settings: lists, kernel and materials
-  void begin_run();
-  void find_sides();
-  void begin_lists();    // new atoms: masses, and arrays as large
-  // new ones if the motion is given
-  void update_lists(const sphcloth::Particles &, const double *reach, const sphcloth::Motion *);
-  void select(const sphcloth::Particles &);
-  void find_equal_masses(const sphcloth::Particles &);
-  void check_densities() const;
-  void find_pressures(const sphcloth::Particles &, bool of_all);
   sphcloth::Particles particles();
-  double bytes() const;
-
-  // act(i, equation of state) for active fluid particles
-  template <class Act> void for_each_fluid(Act &&act) const
-  {
-    for (int t = 1; t <= atom->ntypes; t++) {
-      if (!is_fluid(t)) continue;
-      const sphcloth::Tait eos = type(t).eos;
-      for (const int slot : core->active().of(t)) act(core->order().at(slot), eos);
-    }
-  }
 };
 
 }    // namespace LAMMPS_NS

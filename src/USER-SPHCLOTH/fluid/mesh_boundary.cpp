@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the points of meshes nearest to fluid particles, and exchanges forces with them.
+
 #include "fluid/mesh_boundary.h"
 
 #include "atom.h"
@@ -20,7 +23,7 @@ using namespace sphcloth;
 // Triangles that are equally near, at an edge or a vertex, but for rounding.
 static constexpr double TIE = 1e-9;
 
-static Eigen::Vector3d place_of(const double *x) { return {x[0], x[1], x[2]}; }
+static Eigen::Vector3d position_of(const double *x) { return {x[0], x[1], x[2]}; }
 
 // from the nearest point of the line from a to b to p
 
@@ -36,12 +39,13 @@ static Eigen::Vector3d gap_to_line(const Eigen::Vector3d &p, const Eigen::Vector
 Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
 {
   const std::array<int, 3> &s = set->triangles[t];
-  return distance_vector(p, places[s[0]], places[s[1]], places[s[2]], weight);
+  return distance_vector(p, positions[s[0]], positions[s[1]], positions[s[2]], weight);
 }
 
-void BoundaryMesh::find_places()
+void BoundaryMesh::find_positions()
 {
-  for (std::size_t s = 0; s < places.size(); s++) places[s] = set->place(static_cast<int>(s));
+  for (std::size_t s = 0; s < positions.size(); s++)
+    positions[s] = set->position(static_cast<int>(s));
 }
 
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.
@@ -52,9 +56,9 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
   wetting = forces;
-  places.resize(forces.size());
-  find_places();
-  places_then = places;
+  positions.resize(forces.size());
+  find_positions();
+  list_positions = positions;
   candidates.clear();
   borders.clear();
   seekers.clear();
@@ -66,7 +70,7 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
   std::vector<std::array<int, 2>> edges;    // of the border
   const auto box_of = [&](const auto &slots) {
     Box box;
-    for (int s : slots) box.extend(places[s]);
+    for (int s : slots) box.extend(positions[s]);
     return box;
   };
   const auto widened = [&](Box box) {
@@ -89,20 +93,20 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
   border_grid.build(border_boxes);
   std::vector<Candidate> near;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double own = reach(i);
-    if (own == 0.0) continue;
-    const Vec3 p = place_of(atom->x[i]);
+    const double support = reach(i);
+    if (support == 0.0) continue;
+    const Vec3 p = position_of(atom->x[i]);
     near.clear();
     grid.query(Box(p), [&](int t) {
-      if (const double bound = boxes[t].exteriorDistance(p); bound <= own + skin)
+      if (const double bound = boxes[t].exteriorDistance(p); bound <= support + skin)
         near.push_back({t, bound});
     });
-    keep_nearest(p, own + skin, near);
+    keep_nearest(p, support + skin, near);
     if (near.empty() || is_beyond(p, near)) continue;
-    Seeker seeker{i, own, p, candidates.size(), 0, borders.size(), 0};
+    Seeker seeker{i, support, p, candidates.size(), 0, borders.size(), 0};
     candidates.insert(candidates.end(), near.begin(), near.end());
     border_grid.query(Box(p), [&](int b) {
-      if (gap_to_line(p, places[edges[b][0]], places[edges[b][1]]).norm() <= own + skin)
+      if (gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]).norm() <= support + skin)
         borders.push_back(edges[b]);
     });
     seeker.last = candidates.size();
@@ -149,13 +153,13 @@ bool BoundaryMesh::is_beyond(const Vec3 &p, const std::vector<Candidate> &neares
 void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points)
 {
   if (seekers.empty()) return;
-  find_places();
+  find_positions();
   double moved_sq = 0.0;
-  for (std::size_t s = 0; s < places.size(); s++)
-    moved_sq = std::max(moved_sq, (places[s] - places_then[s]).squaredNorm());
+  for (std::size_t s = 0; s < positions.size(); s++)
+    moved_sq = std::max(moved_sq, (positions[s] - list_positions[s]).squaredNorm());
   const double moved = std::sqrt(moved_sq);
   for (const Seeker &seeker : seekers) {
-    const Vec3 p = place_of(atom->x[seeker.particle]);
+    const Vec3 p = position_of(atom->x[seeker.particle]);
     const double nearer = moved + (p - seeker.at).norm();    // at most, than at the list build
     ClosestPoint closest;
     closest.distance = seeker.reach;
@@ -189,7 +193,7 @@ void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoin
 {
   closest.border_distance = seeker.reach;
   for (std::size_t b = seeker.first_border; b < seeker.last_border; b++) {
-    const Vec3 gap = gap_to_line(at, places[borders[b][0]], places[borders[b][1]]);
+    const Vec3 gap = gap_to_line(at, positions[borders[b][0]], positions[borders[b][1]]);
     const double distance = gap.norm();
     if (distance >= closest.border_distance) continue;
     closest.border_distance = distance;
@@ -202,22 +206,23 @@ Eigen::Vector3d BoundaryMesh::velocity_at(const ClosestPoint &closest) const
 {
   Vec3 velocity = Vec3::Zero();
   for (int q = 0; q < 3; q++)
-    velocity += closest.weight[q] * place_of(atom->v[set->halo.atom_of(closest.vertices[q])]);
+    velocity += closest.weight[q] * position_of(atom->v[set->halo.atom_of(closest.vertices[q])]);
   return velocity;
 }
 
-void BoundaryMesh::spread(const ClosestPoint &closest, const Vec3 &amount, std::vector<Vec3> &over)
+void BoundaryMesh::spread(const ClosestPoint &closest, const Vec3 &quantity,
+                          std::vector<Vec3> &over)
 {
-  for (int q = 0; q < 3; q++) over[closest.vertices[q]] += closest.weight[q] * amount;
+  for (int q = 0; q < 3; q++) over[closest.vertices[q]] += closest.weight[q] * quantity;
 }
 
-void BoundaryMesh::sum_up(std::vector<Vec3> &amounts,
+void BoundaryMesh::sum_up(std::vector<Vec3> &quantities,
                           const std::function<void(int, const Vec3 &)> &take)
 {
-  set->halo.reverse_add(0, amounts.data());
+  set->halo.reverse_add(0, quantities.data());
   for (int s = 0; s < set->halo.n_owned(); s++)
-    if (!amounts[s].isZero(0.0)) take(set->halo.atom_of(s), amounts[s]);
-  std::fill(amounts.begin(), amounts.end(), Vec3::Zero());
+    if (!quantities[s].isZero(0.0)) take(set->halo.atom_of(s), quantities[s]);
+  std::fill(quantities.begin(), quantities.end(), Vec3::Zero());
 }
 
 /* ----------------------------------------------------------------------
@@ -303,7 +308,7 @@ void MeshBoundary::find_wetting()
     sheets[closest.sheet].wet(closest, Vec3(moves, moves * sound, 0.0));
   }
   for (BoundaryMesh &sheet : sheets)
-    sheet.hand_over_wetting([this](int i, const Vec3 &amount) { fluid_mass[i] += amount; });
+    sheet.hand_over_wetting([this](int i, const Vec3 &quantity) { fluid_mass[i] += quantity; });
 }
 
 template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
@@ -350,7 +355,7 @@ Eigen::Vector3d MeshBoundary::rise(const ClosestPoint &closest) const
 
 Eigen::Vector3d MeshBoundary::velocity_from(const ClosestPoint &closest) const
 {
-  return place_of(atom->v[closest.particle]) - sheets[closest.sheet].velocity_at(closest);
+  return position_of(atom->v[closest.particle]) - sheets[closest.sheet].velocity_at(closest);
 }
 
 // Pressure, and friction as of a plane wall, fix wall/sph.  The mesh gets the opposite.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A mesh as a wall to the fluid beside it: what the kernel of a particle misses behind the nearest
 // point of the mesh is filled as behind a plane there, core/sph/plane_wall.h.  The mesh may be
 // coarser than the fluid: what a particle pushes is spread over the triangle by the weights of that
@@ -54,7 +55,10 @@ class BoundaryMesh : protected Pointers {
   void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
 
   // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
-  void wet(const ClosestPoint &closest, const Vec3 &amount) { spread(closest, amount, wetting); }
+  void wet(const ClosestPoint &closest, const Vec3 &quantity)
+  {
+    spread(closest, quantity, wetting);
+  }
   void hand_over_wetting(const std::function<void(int, const Vec3 &)> &take)
   {
     sum_up(wetting, take);
@@ -77,10 +81,10 @@ class BoundaryMesh : protected Pointers {
   std::vector<Candidate> candidates;
   std::vector<std::array<int, 2>> borders;    // slots of the ends
   std::vector<Seeker> seekers;
-  std::vector<Vec3> places, places_then;    // by slot, now and at the list build
+  std::vector<Vec3> positions, list_positions;    // by slot, now and at the list build
   std::vector<Vec3> forces, wetting;    // by slot
 
-  void find_places();
+  void find_positions();
   void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What knows on which side of sheets particles are, so that fluid on two sides does not interact:
 // fix cloth/contact.
 
@@ -16,7 +17,7 @@ class SideSource {
   // of all particles, owned and ghost
   virtual const sphcloth::Sides *sides() const = 0;
   // sheets matter up to this distance from a particle
-  virtual void set_sight(double distance) = 0;
+  virtual void set_view_distance(double distance) = 0;
 
  protected:
   ~SideSource() noexcept(false) = default;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // pair_style sph/tait and its pair_coeff: reading, mixing, restart.
 
 #include "fluid/sph_materials.h"
@@ -25,7 +26,7 @@ void SPHMaterials::allocate()
   const int n = atom->ntypes + 1;
   types.assign(n, TypeData());
   pairs.assign(n * n, PairData());
-  unsettle();
+  forget_pair_values();
 }
 
 const SPHMaterials::PairData &SPHMaterials::given(int i, int j) const
@@ -40,7 +41,7 @@ const SPHMaterials::PairData &SPHMaterials::given(int i, int j) const
 void SPHMaterials::read_options(int narg, char **arg)
 {
   ArgReader args(lmp, STYLE, narg, arg);
-  unsettle();
+  forget_pair_values();
   options = Options();
   options.support = args.positive("support radius H");
   while (args.more()) {
@@ -71,7 +72,7 @@ void SPHMaterials::read_options(int narg, char **arg)
 
 void SPHMaterials::read(int narg, char **arg, int **setflag)
 {
-  unsettle();
+  forget_pair_values();
   if (narg < 3) utils::missing_cmd_args(FLERR, COEFF, error);
   const int n = atom->ntypes + 1;
   ArgReader args(lmp, COEFF, narg, arg);
@@ -112,7 +113,7 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
       COEFF, arg[0], arg[1]);
 }
 
-SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &own) const
+SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &pair) const
 {
   TypeData t;
   t.role = Role::FLUID;
@@ -130,7 +131,7 @@ SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &own) 
     else if (keyword == "alpha")
       t.alpha = args.at_least("alpha", 0.0);
     else if (keyword == "support")
-      own.support = args.positive("support");
+      pair.support = args.positive("support");
     else if (keyword == "spacing")
       t.spacing = args.positive("spacing");
     else
@@ -256,9 +257,9 @@ double SPHMaterials::find_viscosity(int i) const
   return t.nu + artificial;
 }
 
-void SPHMaterials::settle()
+void SPHMaterials::cache_pair_values()
 {
-  unsettle();
+  forget_pair_values();
   const int n = static_cast<int>(types.size());
   std::vector<double> radii(n * n, 0.0), nus(n, 0.0);
   for (int i = 1; i < n; i++) {
@@ -269,7 +270,7 @@ void SPHMaterials::settle()
   viscosities = std::move(nus);
 }
 
-void SPHMaterials::unsettle()
+void SPHMaterials::forget_pair_values()
 {
   supports.clear();
   viscosities.clear();
@@ -279,21 +280,21 @@ void SPHMaterials::unsettle()
 
 double SPHMaterials::nu(int i, int j) const
 {
-  const double own = given(i, j).nu;
-  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).nu + fluid_of(j, i).nu);
+  const double nu = given(i, j).nu;
+  return nu >= 0.0 ? nu : 0.5 * (fluid_of(i, j).nu + fluid_of(j, i).nu);
 }
 
 double SPHMaterials::alpha(int i, int j) const
 {
-  const double own = given(i, j).alpha;
-  return own >= 0.0 ? own : 0.5 * (fluid_of(i, j).alpha + fluid_of(j, i).alpha);
+  const double alpha = given(i, j).alpha;
+  return alpha >= 0.0 ? alpha : 0.5 * (fluid_of(i, j).alpha + fluid_of(j, i).alpha);
 }
 
 PairTerms SPHMaterials::mix(int i, int j) const
 {
-  const PairData &own = given(i, j);
+  const PairData &of_pair = given(i, j);
   const TypeData &a = fluid_of(i, j), &b = fluid_of(j, i);
-  if (own.stiffness > 0.0 && types[i].role == types[j].role)
+  if (of_pair.stiffness > 0.0 && types[i].role == types[j].role)
     error->all(FLERR,
                "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
                "own with I = J",
@@ -308,7 +309,7 @@ PairTerms SPHMaterials::mix(int i, int j) const
   t.monaghan = alpha(i, j) * sound * smoothing;
   t.soft = 0.01 * smoothing * smoothing;
   t.rho0 = a.eos.rho0;
-  t.stiffness = own.stiffness > 0.0 ? own.stiffness / a.eos.k : 1.0;
+  t.stiffness = of_pair.stiffness > 0.0 ? of_pair.stiffness / a.eos.k : 1.0;
   for (int k : {i, j})
     if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;
   return t;
@@ -357,7 +358,7 @@ void SPHMaterials::read_options(FILE *fp)
                "{}: its settings in the restart file are damaged, or of another release of "
                "sphcloth: take another file",
                STYLE);
-  unsettle();
+  forget_pair_values();
 }
 
 void SPHMaterials::write_restart(FILE *fp) const
@@ -386,15 +387,15 @@ std::string SPHMaterials::words(int i, int j) const
     return value > 0.0 ? fmt::format(" {} {}", keyword, value) : "";
   };
   const TypeData &t = types[i];
-  const PairData &own = given(i, j);
+  const PairData &of_pair = given(i, j);
   if (i != j)
     return fmt::format("support {} nu {} alpha {}", support(i, j), nu(i, j), alpha(i, j)) +
-        only_if(own.stiffness, "k");
+        only_if(of_pair.stiffness, "k");
   if (t.role == Role::NONE) return "none";
   if (is_boundary(i))
     return "boundary pressure " + PRESSURES[static_cast<int>(t.pressure)] +
         only_if(t.volume, "volume");
   return fmt::format("fluid {} k {} gamma {} nu {} alpha {}", t.eos.rho0, t.eos.k, t.eos.gamma,
                      t.nu, t.alpha) +
-      only_if(own.support, "support");
+      only_if(of_pair.support, "support");
 }

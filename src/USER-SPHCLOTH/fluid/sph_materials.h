@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Options of pair_style sph/tait and coefficients of its types, and what follows from them for a
 // pair.
 
@@ -42,7 +43,7 @@ class SPHMaterials : protected Pointers {
     double nu = 0.0, alpha = 0.0;
     double volume = 0.0;    // of a boundary particle; 0: from the particles around it
     Pressure pressure = Pressure::EXTRAPOLATE;
-    double spacing = 0.0;         // of the lattice whose mass a fluid has; 0: 'mass' says it
+    double spacing = 0.0;    // of the lattice whose mass a fluid has; 0: 'mass' says it
     double lattice_mass = 0.0;    // and that mass, once it is set
   };
 
@@ -69,9 +70,9 @@ class SPHMaterials : protected Pointers {
   }
   // laminar and artificial together
   double viscosity(int i) const { return viscosities.empty() ? find_viscosity(i) : viscosities[i]; }
-  // caches both until the next read()
-  void settle();
-  void unsettle();
+  // both until the next read()
+  void cache_pair_values();
+  void forget_pair_values();
   // number density of a square or cubic lattice by summation (1)
   double lattice_sum(int i, double spacing) const;
   // gives the types with a spacing the mass with which such a lattice has the rest density
@@ -103,7 +104,7 @@ class SPHMaterials : protected Pointers {
   std::vector<TypeData> types;
   std::vector<PairData> pairs;    // (ntypes+1)^2, I <= J
 
-  std::vector<double> supports, viscosities;    // empty unless settled
+  std::vector<double> supports, viscosities;    // empty unless cached
 
   double find_support(int i, int j) const;
   double find_viscosity(int i) const;

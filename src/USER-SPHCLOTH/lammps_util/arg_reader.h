@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Arguments of a style, read one after the other.  Every error names the style, the keyword, the
-// value and the remedy.
+// value and the remedy; those of utils::numeric() and its like name the value alone.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_ARG_READER_H
 #define SPHCLOTH_LAMMPS_UTIL_ARG_READER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What several styles ask of atoms and of the clock.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_ATOM_TOOLS_H
@@ -79,10 +80,10 @@ inline std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs
 // An atom of this rank, in group all and in those of groupbits; its local index, or -1 if the place
 // belongs to another rank.
 
-inline int create_owned_atom(Atom *atom, Domain *domain, tagint tag, int type, const double *place,
-                             int groupbits)
+inline int create_owned_atom(Atom *atom, Domain *domain, tagint tag, int type,
+                             const double *position, int groupbits)
 {
-  double x[3] = {place[0], place[1], place[2]};
+  double x[3] = {position[0], position[1], position[2]};
   imageint image = (imageint(IMGMAX) << IMG2BITS) | (imageint(IMGMAX) << IMGBITS) | IMGMAX;
   if (!domain->ownatom(static_cast<int>(tag), x, &image, 0)) return -1;
   atom->avec->create_atom(type, x);

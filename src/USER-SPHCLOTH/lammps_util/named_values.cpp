@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Values of a fix by keyword, see named_values.h.
 
 #include "lammps_util/named_values.h"
 
-#include "lammps_util/arg_reader.h"
 #include "error.h"
 #include "fix.h"
+#include "lammps_util/arg_reader.h"
 #include "memory.h"
 #include "modify.h"
 #include "update.h"

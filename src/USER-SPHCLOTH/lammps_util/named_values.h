@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A compute that gives values of a fix by keyword: what f_ID and f_ID[n] are, without counting.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_NAMED_VALUES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a fix keeps for each particle, column by column: a pass over all particles that needs one
 // number of each reads nothing else.
 

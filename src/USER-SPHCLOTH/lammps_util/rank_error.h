@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // An error that one rank finds, while the others go on.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_RANK_ERROR_H
@@ -20,11 +21,11 @@ template <class... Words>
 [[noreturn]] void rank_error(LAMMPS *lmp, const char *file, int line, const std::string &format,
                              Words &&...words)
 {
-  constexpr double PATIENCE = 1.0;    // in s of wall time
+  constexpr double TIMEOUT = 1.0;    // in s of wall time
   try {
     lmp->error->one(file, line, format, std::forward<Words>(words)...);
   } catch (...) {
-    if (lmp->universe->nprocs > 1) platform::usleep(static_cast<int>(PATIENCE * 1e6));
+    if (lmp->universe->nprocs > 1) platform::usleep(static_cast<int>(TIMEOUT * 1e6));
     throw;
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a fix keeps in restart files: one plain record behind its length and a mark.  LAMMPS hands
 // it back by ID and style, without its length; a record of another release is told by these two.
 

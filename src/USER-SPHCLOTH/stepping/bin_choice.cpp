@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The time bin of each particle.
 
 #include "stepping/bin_choice.h"
@@ -105,9 +106,9 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
 
 void BinChoice::limit_vertices()
 {
-  parts.limits.for_vertices([&](int i, const StepLimit &own) {
-    parts.rows[i][UpdateRows::OWN_STEP] = own.dt;
-    state.columns[Columns::BY][i] = static_cast<double>(own.by);
+  parts.limits.for_vertices([&](int i, const StepLimit &limit) {
+    parts.rows[i][UpdateRows::OWN_STEP] = limit.dt;
+    state.columns[Columns::BY][i] = static_cast<double>(limit.by);
   });
   vertices.n = -1;
 }
@@ -141,7 +142,7 @@ void BinChoice::begin_base_step()
   if (!base.uniform) {
     in_flight.clear();
     for (const int i : active)
-      if (fluid->p_over_rho2()[i] == 0.0) in_flight.push_back(i);
+      if (fluid->p_over_rho2_of_all()[i] == 0.0) in_flight.push_back(i);
     const StepLimit among_neighbors = want_steps(in_flight, true);
     tightest.tighten(among_neighbors.dt, among_neighbors.by);
     base = find_base_step(tightest);
@@ -220,7 +221,7 @@ void BinChoice::find_bins()
 {
   constexpr int LIMITS = 64;
   const auto rank = [](int bin, int by) { return LIMITS * bin + LIMITS - 1 - by; };
-  constexpr double FAR = std::numeric_limits<double>::max();
+  constexpr double MAX = std::numeric_limits<double>::max();
   static_assert(N_LIMITS < LIMITS);
   BlockClock &clock = state.clock;
   BlockColumns &columns = state.columns;
@@ -228,7 +229,7 @@ void BinChoice::find_bins()
   const int of_vertices = std::max(state.coarsest, clock.line.bin_of(vertex.dt));
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeBins::DEEPEST;
-  double reach[2] = {-FAR, -FAR};    // -least, greatest
+  double reach[2] = {-MAX, -MAX};    // -min, max
   const double *by = columns[Columns::BY], *event = columns[Columns::EVENT];
   const double *its_reach = columns[Columns::REACH];
   double *its_bin = columns[Columns::BIN], *before = columns[Columns::BIN_BEFORE];
@@ -236,10 +237,10 @@ void BinChoice::find_bins()
     before[i] = event[i] == Columns::NEW ? StepKey::FIRST
         : event[i] == Columns::WOKEN     ? StepKey::BROKEN
                                          : its_bin[i];
-    const int own = std::max(state.coarsest, clock.line.bin_of(wanted[i]));
-    its_bin[i] = own;
-    slowest = std::min(slowest, own);
-    finest = std::max(finest, rank(own, static_cast<int>(by[i])));
+    const int wanted_bin = std::max(state.coarsest, clock.line.bin_of(wanted[i]));
+    its_bin[i] = wanted_bin;
+    slowest = std::min(slowest, wanted_bin);
+    finest = std::max(finest, rank(wanted_bin, static_cast<int>(by[i])));
     reach[0] = std::max(reach[0], -its_reach[i]);
     reach[1] = std::max(reach[1], its_reach[i]);
   }
@@ -282,9 +283,9 @@ void BinChoice::limit_differences()
 bool BinChoice::is_too_coarse(int i) const
 {
   DualLists &lists = fluid->order();
-  const int slot = lists.slot(i), own = atom->type[i];
+  const int slot = lists.slot(i), type_i = atom->type[i];
   for (int t = 1; t <= atom->ntypes; t++)
-    if (lists.any_above(state.bin[i] + allowed_difference(own, t), slot, t, state.bin.data(),
+    if (lists.any_above(state.bin[i] + allowed_difference(type_i, t), slot, t, state.bin.data(),
                         state.clock.all_synchronized()))
       return true;
   return false;
@@ -293,15 +294,15 @@ bool BinChoice::is_too_coarse(int i) const
 int BinChoice::bin_beside(int i) const
 {
   const std::vector<int> &bin = state.bin;
-  int own = bin[i];
+  int bin_i = bin[i];
   for (int t = 1; t <= atom->ntypes; t++) {
     const int allowed = allowed_difference(atom->type[i], t);
     const NeighborSpan near = fluid->neighbors(i, t);
     for (int k = 0; k < near.n; k++)
-      if (const int j = near.of[k]; bin[j] - allowed > own && fluid->inside_support(i, j))
-        own = bin[j] - allowed;
+      if (const int j = near.of[k]; bin[j] - allowed > bin_i && fluid->inside_support(i, j))
+        bin_i = bin[j] - allowed;
   }
-  return own;
+  return bin_i;
 }
 
 // of a vertex of cloth, raised by the difference that the limiter allows, since no neighbor may
@@ -318,7 +319,7 @@ void BinChoice::begin_steps()
 {
   const double now = physical_time(update);
   BlockColumns &columns = state.columns;
-  const double *p_over_rho2 = fluid->p_over_rho2(), *its_bin = columns[Columns::BIN];
+  const double *p_over_rho2 = fluid->p_over_rho2_of_all(), *its_bin = columns[Columns::BIN];
   const double half_of_all = 0.5 * state.clock.smallest_ticks();
   double *last = columns[Columns::P_OVER_RHO2], *reach = columns[Columns::REACH];
   double *event = columns[Columns::EVENT];
@@ -329,10 +330,10 @@ void BinChoice::begin_steps()
     } else
       state.begin_own_step(i);
     last[i] = p_over_rho2[i];
-    const double own = state.clock.line.step(static_cast<int>(its_bin[i]));
-    parts.rows[i][UpdateRows::OWN_STEP] = own;
+    const double step = state.clock.line.step(static_cast<int>(its_bin[i]));
+    parts.rows[i][UpdateRows::OWN_STEP] = step;
     parts.rows[i][UpdateRows::LAST_UPDATE] = now;
-    parts.report.ideal_updates += own / wanted[i];
+    parts.report.ideal_updates += step / wanted[i];
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The time bin of each particle: how long is the base step, what does each particle want, and which
 // bins do its neighbors allow?
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Forces become impulses.
 
 #include "stepping/block_impulses.h"
@@ -106,7 +107,7 @@ void BlockImpulses::apply_by_bin()
 void BlockImpulses::find_spans()
 {
   const double smallest = state.clock.smallest_ticks();
-  const double *p_over_rho2 = state.fluid->p_over_rho2();
+  const double *p_over_rho2 = state.fluid->p_over_rho2_of_all();
   const BlockColumns &columns = state.columns;
   state.select_impelled();
   for (const int i : state.fluid->active_particles()) {
@@ -129,7 +130,7 @@ void BlockImpulses::add_pair_force(int i, double times)
 {
   if (times != 0.0)
     for (int d = 0; d < 3; d++) atom->f[i][d] += times * pair_forces[3 * i + d];
-  const double p_over_rho2 = state.fluid->p_over_rho2()[i];
+  const double p_over_rho2 = state.fluid->p_over_rho2_of_all()[i];
   if (state.span[i] != 1.0 || state.impulse[i] != p_over_rho2)
     state.fluid->push_walls_more(i, state.impulse[i] - p_over_rho2, state.span[i] - 1.0);
 }
@@ -140,11 +141,11 @@ void BlockImpulses::add_pair_force(int i, double times)
 bool BlockImpulses::neighbors_share_step(int i)
 {
   DualLists &lists = state.fluid->order();
-  const int slot = lists.slot(i), own = state.key[i];
-  bool share = StepKey::before(own) != StepKey::BROKEN;
+  const int slot = lists.slot(i), key_i = state.key[i];
+  bool share = StepKey::before(key_i) != StepKey::BROKEN;
   for (int t = 1; t <= atom->ntypes; t++) {
     const NeighborSpan others =
-        lists.others(own, slot, t, state.key.data(), state.clock.all_synchronized());
+        lists.others(key_i, slot, t, state.key.data(), state.clock.all_synchronized());
     if (others.n > 0) share = examine(i, t, others) && share;
   }
   return share;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Forces become impulses: what acts on each particle in the coming smallest step, with the time of
 // either partner of a pair.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the parts of block steps share.
 
 #include "stepping/block_state.h"
@@ -105,7 +106,7 @@ void BlockState::set_inactive(int i)
 {
   const bool is_fluid = fluid->is_fluid(atom->type[i]), asleep = is_fluid && is_asleep(i);
   span[i] = asleep ? -1.0 : 0.0;
-  impulse[i] = is_fluid && !asleep ? 0.0 : fluid->p_over_rho2()[i];
+  impulse[i] = is_fluid && !asleep ? 0.0 : fluid->p_over_rho2_of_all()[i];
   key[i] = asleep ? StepKey::of(0, StepKey::SLEEPING)
       : is_fluid  ? StepKey::of(columns.bin(i), StepKey::INACTIVE)
                   : StepKey::BOUNDARY;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the parts of block steps share: where time is in the base step, what each particle carries,
 // and the copies of that on ghosts.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Steps of individual particles in powers of two.
 
 #include "stepping/block_steps.h"
@@ -156,8 +157,8 @@ void BlockSteps::count_limits() const
   if (!state.clock.begun()) return;
   parts.report.forget_particles();
   for (int i = 0; i < atom->nlocal; i++)
-    if (const double own = parts.rows[i][UpdateRows::OWN_STEP]; own > 0.0)
-      parts.report.count_particle({own, limit_of(state.columns[Columns::BY][i])});
+    if (const double step = parts.rows[i][UpdateRows::OWN_STEP]; step > 0.0)
+      parts.report.count_particle({step, limit_of(state.columns[Columns::BY][i])});
 }
 
 int BlockSteps::pack_forward(int n, const int *list, double *buf) const

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Scheme block: steps of individual particles in powers of two.
 //
 // A particle's energy, compressed as it is, acts for its own step: density and pressure are found
@@ -13,12 +14,12 @@
 #ifndef SPHCLOTH_STEPPING_BLOCK_STEPS_H
 #define SPHCLOTH_STEPPING_BLOCK_STEPS_H
 
+#include "fluid/step_hooks.h"
 #include "stepping/bin_choice.h"
 #include "stepping/block_impulses.h"
 #include "stepping/block_state.h"
 #include "stepping/half_kick.h"
 #include "stepping/sleeping_water.h"
-#include "stepping/step_hooks.h"
 #include "stepping/stepper.h"
 
 #include <vector>

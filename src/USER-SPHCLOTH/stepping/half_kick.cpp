@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Half-kick correction at output times.
 
 #include "stepping/half_kick.h"
@@ -47,7 +48,7 @@ void HalfKick::find_spans()
     const bool is_new = state.columns[Columns::EVENT][i] == Columns::NEW;
     const double behind = integrated && !is_new ? until - reach[i] : 0.0;
     state.span[i] = std::max(0.0, behind) / smallest;
-    state.impulse[i] = state.span[i] * state.fluid->p_over_rho2()[i];
+    state.impulse[i] = state.span[i] * state.fluid->p_over_rho2_of_all()[i];
     if (behind > 0.0) reach[i] = until;
   }
 }

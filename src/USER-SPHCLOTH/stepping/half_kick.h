@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Half-kick correction: with block steps a velocity is that of the middle of a particle's last
 // step, with a uniform step that of half a step ago.  Where output is due all are brought to the
 // latter.  Vertices get the impulse that belongs to it in the coming step, deferred: the velocity

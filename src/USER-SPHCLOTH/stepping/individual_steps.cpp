@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Steps of individual particles as in (13) to (15) of the paper.
 
 #include "stepping/individual_steps.h"
@@ -68,9 +69,9 @@ StepLimit IndividualSteps::tightest_limit()
   const double now = physical_time(update);
   StepLimit tightest;
   parts.report.forget_particles();
-  const auto take = [&](const StepLimit &own) {
-    parts.report.count_particle(own);
-    tightest.tighten(own.dt, own.by);
+  const auto take = [&](const StepLimit &limit) {
+    parts.report.count_particle(limit);
+    tightest.tighten(limit.dt, limit.by);
   };
   updated.clear();
   for (int i = 0; i < atom->nlocal; i++) {
@@ -81,25 +82,25 @@ StepLimit IndividualSteps::tightest_limit()
     else
       take({row[UpdateRows::OWN_STEP], limit_of(kept[IndividualColumns::LIMITED_BY][i])});
   }
-  parts.limits.for_particles(updated, nullptr, [&](int i, const StepLimit &own) {
-    keep(i, own, now);
-    take(own);
+  parts.limits.for_particles(updated, nullptr, [&](int i, const StepLimit &limit) {
+    keep(i, limit, now);
+    take(limit);
   });
-  parts.limits.for_vertices([&](int, const StepLimit &own) { take(own); });
+  parts.limits.for_vertices([&](int, const StepLimit &limit) { take(limit); });
   return tightest;
 }
 
 // until the next update
 
-void IndividualSteps::keep(int i, const StepLimit &own, double now)
+void IndividualSteps::keep(int i, const StepLimit &limit, double now)
 {
-  parts.rows[i][UpdateRows::OWN_STEP] = std::min(own.dt, parts.options.ceiling);
+  parts.rows[i][UpdateRows::OWN_STEP] = std::min(limit.dt, parts.options.ceiling);
   parts.rows[i][UpdateRows::LAST_UPDATE] = now;
   const double to_accel = force->ftm2v / atom_mass(atom, i);
   for (int d = 0; d < 3; d++)
     kept[IndividualColumns::ACCELERATION + d][i] = to_accel * atom->f[i][d];
   kept[IndividualColumns::DENSITY_RATE][i] = atom->drho[i];
-  kept[IndividualColumns::LIMITED_BY][i] = static_cast<double>(own.by);
+  kept[IndividualColumns::LIMITED_BY][i] = static_cast<double>(limit.by);
 }
 
 double IndividualSteps::bytes() const { return kept.bytes() + bytes_of(updated); }

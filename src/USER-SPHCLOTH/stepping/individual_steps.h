@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Scheme individual, (13) to (15): all particles drift in each step of the run, and a particle is
 // updated every time that its own step, in whole steps of the run, has passed.
 
@@ -36,7 +37,7 @@ class IndividualSteps : public Stepper {
   void drift();
   void select_active();
   sphcloth::StepLimit tightest_limit();
-  void keep(int i, const sphcloth::StepLimit &own, double now);
+  void keep(int i, const sphcloth::StepLimit &limit, double now);
 };
 
 }    // namespace LAMMPS_NS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Lines 30 to 33 of Algorithm 1, semi-implicit Euler: velocity first, then position with the new
 // velocity.
 

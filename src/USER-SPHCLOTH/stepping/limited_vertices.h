@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the limits of the time step ask of a fix that moves the vertices of a cloth.
 
 #ifndef SPHCLOTH_STEPPING_LIMITED_VERTICES_H

@@ -1,4 +1,5 @@
-// Which stepping scheme a name, or a restart file, stands for.
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which stepping scheme a name stands for.
 
 #include "stepping/make_stepper.h"
 
@@ -19,9 +20,4 @@ std::unique_ptr<Stepper> LAMMPS_NS::make_stepper(LAMMPS *lmp, SteppingScheme sch
     case SteppingScheme::BLOCK: return std::make_unique<BlockSteps>(lmp, parts, clock);
   }
   return nullptr;
-}
-
-SteppingScheme LAMMPS_NS::scheme_with_columns(int n)
-{
-  return n == IndividualColumns::N_COLUMNS ? SteppingScheme::INDIVIDUAL : SteppingScheme::BLOCK;
 }

@@ -1,4 +1,5 @@
-// Which stepping scheme a name, or a restart file, stands for.
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which stepping scheme a name stands for.
 
 #ifndef SPHCLOTH_STEPPING_MAKE_STEPPER_H
 #define SPHCLOTH_STEPPING_MAKE_STEPPER_H
@@ -14,8 +15,6 @@ namespace LAMMPS_NS {
 // clock: where block steps begin or go on
 std::unique_ptr<Stepper> make_stepper(LAMMPS *, SteppingScheme, const SteppingParts &,
                                       const BlockClock &clock);
-// the scheme that keeps so many columns
-SteppingScheme scheme_with_columns(int n);
 
 }    // namespace LAMMPS_NS
 

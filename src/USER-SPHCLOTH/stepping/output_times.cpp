@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Exact times, see output_times.h.
 
 #include "stepping/output_times.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Exact times: steps that end at multiples of an interval, where output is due, and at the end of a
 // run.
 

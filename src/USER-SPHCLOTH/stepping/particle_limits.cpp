@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The longest time step that each fluid particle and each vertex of a cloth allows.
 
 #include "stepping/particle_limits.h"
@@ -97,7 +98,7 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   s.nu = type.viscosity;
   s.sound = type.sound * type.eos.stiffening(s.rho);
   if (options.lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
-  const bool in_flight = fluid->p_over_rho2()[i] == 0.0;
+  const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
   if (in_flight) s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!in_flight || interpolates_density) s.drho = atom->drho[i];

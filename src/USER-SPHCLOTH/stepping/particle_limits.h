@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The longest time step that each fluid particle and each vertex of a cloth allows: gathers from
 // atoms and styles what the formulas of core/timestep/step_limits.h need.
 

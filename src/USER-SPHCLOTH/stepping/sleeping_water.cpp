@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sleeping particles.
 
 #include "stepping/sleeping_water.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sleeping particles: water at rest keeps its place, density and pressure, and is a wall for its
 // neighbors, until something disturbs it.
 

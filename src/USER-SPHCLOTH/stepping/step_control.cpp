@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Equations (10) to (12): the step of the run.
 
 #include "stepping/step_control.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The step that all ranks take next: chosen from the tightest limit anywhere, (12) of the paper, or
 // told by a scheme that has chosen it; cut at output times; made known to the whole of LAMMPS.
 

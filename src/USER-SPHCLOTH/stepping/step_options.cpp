@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Keywords of fix sph/integrate.
 
 #include "stepping/step_options.h"

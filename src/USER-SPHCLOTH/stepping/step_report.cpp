@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Counters and outputs of fix sph/integrate.
 
 #include "stepping/step_report.h"
@@ -9,9 +10,9 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void StepReport::count_particle(const StepLimit &own)
+void StepReport::count_particle(const StepLimit &limit)
 {
-  const Limit by = own.dt < options.ceiling ? own.by : Limit::CEILING;
+  const Limit by = limit.dt < options.ceiling ? limit.by : Limit::CEILING;
   // with block steps floor and growth bound a particle as well: then none of its own limits does
   if (by <= Limit::CEILING) particles_by_limit[static_cast<int>(by)]++;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[31].
 
 #ifndef SPHCLOTH_STEPPING_STEP_REPORT_H
@@ -48,7 +49,7 @@ class StepReport : protected Pointers {
   void count_step(sphcloth::Limit by) { steps_by_limit[static_cast<int>(by)]++; }
   // particles by their own limit at its last choice
   void forget_particles() { particles_by_limit.fill(0.0); }
-  void count_particle(const sphcloth::StepLimit &own);
+  void count_particle(const sphcloth::StepLimit &limit);
 
   // collective
   double output(int n, Stepper &, StepControl &, const UpdateRows &) const;

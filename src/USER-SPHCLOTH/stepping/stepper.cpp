@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What stepping schemes have in common.
 
 #include "stepping/stepper.h"

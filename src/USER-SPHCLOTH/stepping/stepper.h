@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A stepping scheme: which particles move and which are updated, and how long the next step is.
 // Fix sph/integrate has one of three, UniformSteps (constant and global), IndividualSteps and
 // BlockSteps, and the parts that they share: the limit of each particle (ParticleLimits), the step

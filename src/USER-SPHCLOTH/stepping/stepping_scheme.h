@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The stepping schemes, and what the cloth asks the styles that have them, without knowing these.
 
 #ifndef SPHCLOTH_STEPPING_STEPPING_SCHEME_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One step for all particles, constant or by the tightest limit anywhere.
 
 #include "stepping/uniform_steps.h"
@@ -30,20 +31,20 @@ StepLimit UniformSteps::tightest_limit()
   const double now = physical_time(update);
   StepLimit tightest;
   parts.report.forget_particles();
-  const auto take = [&](const StepLimit &own) {
-    parts.report.count_particle(own);
-    tightest.tighten(own.dt, own.by);
+  const auto take = [&](const StepLimit &limit) {
+    parts.report.count_particle(limit);
+    tightest.tighten(limit.dt, limit.by);
   };
   integrated.clear();
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & parts.fix->groupbit) integrated.push_back(i);
-  parts.limits.for_particles(integrated, nullptr, [&](int i, const StepLimit &own) {
+  parts.limits.for_particles(integrated, nullptr, [&](int i, const StepLimit &limit) {
     double *row = parts.rows[i];
-    row[UpdateRows::OWN_STEP] = std::min(own.dt, parts.options.ceiling);
+    row[UpdateRows::OWN_STEP] = std::min(limit.dt, parts.options.ceiling);
     row[UpdateRows::LAST_UPDATE] = now;
-    take(own);
+    take(limit);
   });
-  parts.limits.for_vertices([&](int, const StepLimit &own) { take(own); });
+  parts.limits.for_vertices([&](int, const StepLimit &limit) { take(limit); });
   return tightest;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Schemes constant and global: all particles take the same step.
 
 #ifndef SPHCLOTH_STEPPING_UNIFORM_STEPS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The impulse between two bodies in contact: restitution along the normal, Coulomb friction across.
 
 #ifndef SPHCLOTH_CORE_CONTACT_CONTACT_IMPULSE_H
@@ -17,8 +18,8 @@ inline Eigen::Vector3d clamp_length(const Eigen::Vector3d &v, double max)
 
 struct ContactMotion {
   Eigen::Vector3d velocity, normal;    // of the first body relative to the second, and towards it
-  double speed_before = 0.0;           // along the normal, before the contact
-  double mass = 1.0;                   // effective
+  double speed_before = 0.0;    // along the normal, before the contact
+  double mass = 1.0;    // effective
 };
 
 // what has been exchanged so far, by the projection of positions

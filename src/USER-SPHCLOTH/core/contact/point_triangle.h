@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Continuous contact of a moving point with a moving triangle.
 //
 // Both move on straight lines during the step.  The point crosses the triangle's plane where
@@ -188,8 +189,8 @@ inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Swe
   if (distance >= result.gap * (1.0 - slack)) return result;
   result.hit = true;
   result.weight = weight;
-  result.normal =
-      distance > 0.0 ? Vec3(vector / distance) : Vec3(side / double_area_end * normal_end);
+  result.normal = distance > 0.0 ? Vec3(vector / distance)
+                                 : Vec3(side / double_area_end * normal_end);
   result.depth = result.gap - distance;
   return result;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // On which side of each sheet a particle is, for sheets that are near it.
 
 #ifndef SPHCLOTH_CORE_CONTACT_SHEET_SIDES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Uniform grid over axis-aligned boxes: which boxes may hold a point?  Boxes enter every cell
 // that they overlap, so a query reads one cell.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Counting sort of items into buckets, for grids, blocks and topologies.
 
 #ifndef SPHCLOTH_CORE_GEOMETRY_BUCKETS_H

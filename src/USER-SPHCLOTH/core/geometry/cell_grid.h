@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A box cut into equal cells, which are numbered with x fastest.
 
 #ifndef SPHCLOTH_CORE_GEOMETRY_CELL_GRID_H

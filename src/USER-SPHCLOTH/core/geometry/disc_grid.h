@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Discs around triangles, sorted by their centers into cells: which triangles may be near a point,
 // which may be the nearest?  No triangle is nearer than its disc, nor farther than the center.
 //
-// A query looks around the point as far as the largest disc may reach, so small ones and large ones
-// have grids of their own.
+// A query visits all cells from which the largest disc may reach the point, so small ones and
+// large ones have grids of their own.
 
 #ifndef SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
 #define SPHCLOTH_CORE_GEOMETRY_DISC_GRID_H
@@ -38,7 +39,7 @@ inline Disc disc_around(const Eigen::Vector3d &a, const Eigen::Vector3d &b,
 
 class DiscGrid {
  public:
-  // for queries that look about as far as `reach`; buffers are kept from build to build
+  // for queries of about the distance `reach`; buffers are kept from build to build
 
   void build(const std::vector<Disc> &discs, double reach)
   {
@@ -46,34 +47,34 @@ class DiscGrid {
     for (std::size_t d = 0; d < discs.size(); d++) {
       std::size_t n = 0;
       const double size = discs[d].radius + discs[d].room;
-      for (double most = reach; size > most && n < MOST_SIZES - 1; most *= 2.0) n++;
+      for (double max = reach; size > max && n < MAX_SIZES - 1; max *= 2.0) n++;
       if (n >= sizes.size()) sizes.resize(n + 1);
       sizes[n].members.push_back(static_cast<int>(d));
     }
     for (Size &size : sizes) size.sort(discs, reach);
   }
 
-  // calls visit(d) for every disc d that is not farther from p than `far`
+  // calls visit(d) for every disc d that is not farther from p than `max_distance`
 
-  template <class Visit> void within(const Eigen::Vector3d &p, double far, Visit visit)
+  template <class Visit> void within(const Eigen::Vector3d &p, double max_distance, Visit visit)
   {
     for (Size &size : sizes)
-      if (size.look(p, far)) {
+      if (size.query(p, max_distance)) {
         size.measure(p, std::numeric_limits<double>::infinity());
-        size.visit_near(p, far, visit);
+        size.visit_near(p, max_distance, visit);
       }
   }
 
   // of those the ones that are not farther than the nearest center of all, and `slack`
 
   template <class Visit>
-  void nearest(const Eigen::Vector3d &p, double far, double slack, Visit visit)
+  void nearest(const Eigen::Vector3d &p, double max_distance, double slack, Visit visit)
   {
-    double least_sq = far * far;
+    double min_sq = max_distance * max_distance;
     for (Size &size : sizes)
-      if (size.look(p, far)) least_sq = size.measure(p, least_sq);
-    const double most = std::min(far, std::sqrt(least_sq) + slack);
-    for (Size &size : sizes) size.visit_near(p, most, visit);
+      if (size.query(p, max_distance)) min_sq = size.measure(p, min_sq);
+    const double max = std::min(max_distance, std::sqrt(min_sq) + slack);
+    for (Size &size : sizes) size.visit_near(p, max, visit);
   }
 
   double bytes() const
@@ -85,7 +86,7 @@ class DiscGrid {
   }
 
  private:
-  static constexpr std::size_t MOST_SIZES = 32;
+  static constexpr std::size_t MAX_SIZES = 32;
 
   struct Size {
     std::vector<int> members;
@@ -128,10 +129,10 @@ class DiscGrid {
       }
     }
 
-    // Which cells hold the centers of those within `far`?  None: false.
-    bool look(const Eigen::Vector3d &p, double far)
+    // Which cells hold the centers of those within `max_distance`?  None: false.
+    bool query(const Eigen::Vector3d &p, double max_distance)
     {
-      const double room = far + largest;
+      const double room = max_distance + largest;
       lo = CellGrid::Cell::Zero();
       hi = CellGrid::Cell::Constant(-1);
       if (grid.empty() || !(grid.bounds.squaredExteriorDistance(p) <= room * room)) return false;
@@ -140,12 +141,12 @@ class DiscGrid {
       return true;
     }
 
-    // the least distance of a center, squared, if it is below what is known
+    // the minimum distance of a center, squared, if it is below what is known
     SPHCLOTH_MULTIVERSION double measure(const Eigen::Vector3d &p, double known)
     {
       const double px = p[0], py = p[1], pz = p[2];
-      double least[LANES];    // lane by lane, so that none waits for the one before
-      for (double &lane : least) lane = known;
+      double min_sq[LANES];    // lane by lane, so that none waits for the one before
+      for (double &lane : min_sq) lane = known;
       for (int k = lo[2]; k <= hi[2]; k++)
         for (int j = lo[1]; j <= hi[1]; j++)
           for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
@@ -155,29 +156,30 @@ class DiscGrid {
             for (int l = 0; l < LANES; l++) {
               const double dx = px - cx[l], dy = py - cy[l], dz = pz - cz[l];
               to[l] = dx * dx + dy * dy + dz * dz;
-              least[l] = to[l] < least[l] ? to[l] : least[l];
+              min_sq[l] = to[l] < min_sq[l] ? to[l] : min_sq[l];
             }
           }
-      return *std::min_element(least, least + LANES);
+      return *std::min_element(min_sq, min_sq + LANES);
     }
 
-    template <class Visit> void visit_near(const Eigen::Vector3d &p, double far, Visit visit) const
+    template <class Visit>
+    void visit_near(const Eigen::Vector3d &p, double max_distance, Visit visit) const
     {
-      const double room = far + largest;
+      const double room = max_distance + largest;
       for (int k = lo[2]; k <= hi[2]; k++)
         for (int j = lo[1]; j <= hi[1]; j++)
           for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n++)
-            if (distance_sq[n] <= room * room && reaches(n, p, far)) visit(items[n]);
+            if (distance_sq[n] <= room * room && reaches(n, p, max_distance)) visit(items[n]);
     }
 
-    // is a disc within `far` of p?
-    bool reaches(int n, const Eigen::Vector3d &p, double far) const
+    // is a disc within `max_distance` of p?
+    bool reaches(int n, const Eigen::Vector3d &p, double max_distance) const
     {
       const Disc &d = disc[n];
       const double height = d.normal.dot(p - d.center), height_sq = height * height;
       const double aside = std::sqrt(std::max(0.0, distance_sq[n] - height_sq)) - d.radius;
-      const double most = far + d.room;
-      return height_sq + (aside > 0.0 ? aside * aside : 0.0) <= most * most;
+      const double max = max_distance + d.room;
+      return height_sq + (aside > 0.0 ? aside * aside : 0.0) <= max * max;
     }
 
     // cells of a row along x lie one behind the other

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How much nearer particles may have come to each other, from place to place.
 //
 // The displacements of the particles of a block of space lie in a box.  The farthest corners of the
@@ -19,7 +20,7 @@ namespace sphcloth {
 
 class ApproachBounds {
  public:
-  struct Place {
+  struct Position {
     float x, y, z;
   };
 
@@ -28,7 +29,7 @@ class ApproachBounds {
   // Takes in displacements: now - center - held; held may be
   // null.
   SPHCLOTH_MULTIVERSION void measure(const double *now, const std::array<double, 3> &center,
-                                     const Place *held)
+                                     const Position *held)
   {
     held ? measure_all<true>(now, center, held) : measure_all<false>(now, center, held);
     blocks.spread(boxes, [](Box &box, const Box &more) { take(box, more); });
@@ -38,7 +39,7 @@ class ApproachBounds {
   // of velocities: the fastest
   float between(int b, int t, int other) const
   {
-    const Box &one = boxes.own[blocks.row(b, t)], &two = boxes.around[blocks.row(b, other)];
+    const Box &one = boxes.single[blocks.row(b, t)], &two = boxes.around[blocks.row(b, other)];
     const Lanes gap = larger(larger(one.hi - two.lo, two.hi - one.lo), Lanes{});
     const float corners = gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2];
     const float longest_sq = std::max(one.hi[3], 0.0F), other_sq = std::max(two.hi[3], 0.0F);
@@ -49,11 +50,11 @@ class ApproachBounds {
 
  private:
   typedef float Lanes __attribute__((vector_size(16)));
-  static constexpr float FAR = std::numeric_limits<float>::max();
+  static constexpr float MAX = std::numeric_limits<float>::max();
 
   // x, y, z, and the squared length; empty at first
   struct Box {
-    Lanes lo{FAR, FAR, FAR, 0.0F}, hi{-FAR, -FAR, -FAR, 0.0F};
+    Lanes lo{MAX, MAX, MAX, 0.0F}, hi{-MAX, -MAX, -MAX, 0.0F};
   };
 
   const Blocks &blocks;
@@ -69,10 +70,10 @@ class ApproachBounds {
 
   template <bool HELD>
   SPHCLOTH_INLINE void measure_all(const double *now, const std::array<double, 3> &center,
-                                   const Place *held)
+                                   const Position *held)
   {
     const double cx = center[0], cy = center[1], cz = center[2];
-    boxes.own.resize(blocks.rows());
+    boxes.single.resize(blocks.rows());
     for (std::size_t r = 0; r < blocks.rows(); r++) {
       Box box;
       for (const int i : blocks.in(r)) {
@@ -83,7 +84,7 @@ class ApproachBounds {
         at[3] = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
         take(box, {at, at});
       }
-      boxes.own[r] = box;
+      boxes.single[r] = box;
     }
   }
 };

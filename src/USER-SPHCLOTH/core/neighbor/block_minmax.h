@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Minimum and maximum of a value of the particles around a block of space: where all have the same,
 // no neighbor needs to be tested.
 
@@ -18,11 +19,11 @@ class BlockMinMax {
   // value: of each particle, owned and ghost
   void take(const int *value)
   {
-    ranges.own.resize(blocks.rows());
+    ranges.single.resize(blocks.rows());
     for (std::size_t r = 0; r < blocks.rows(); r++) {
       Range range;
       for (const int i : blocks.in(r)) widen(range, {value[i], value[i]});
-      ranges.own[r] = range;
+      ranges.single[r] = range;
     }
     blocks.spread(ranges, [](Range &range, const Range &more) { widen(range, more); });
   }

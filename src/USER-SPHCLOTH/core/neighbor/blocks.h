@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Blocks of space, at least as wide as lists reach: the neighbors of a particle are in its block
 // or in those around.  What all particles of a type in a block have in common is found once, and
 // spread to the blocks around.
@@ -50,11 +51,11 @@ class Blocks {
     return {member.data() + first[r], member.data() + first[r + 1]};
   }
 
-  // What is found of a row: own takes in what particles have, around what the rows of its type in
-  // the blocks around have, itself included.  take(T &, const T &)
+  // What is found of a row: `single` takes in what particles have, `around` what the rows of its
+  // type in the blocks around have, itself included.  take(T &, const T &)
   template <class T> struct Found {
-    AlignedVector<T> own, around, spare;
-    double bytes() const { return bytes_of(own, around, spare); }
+    AlignedVector<T> single, around, spare;
+    double bytes() const { return bytes_of(single, around, spare); }
   };
   template <class T, class Take> SPHCLOTH_INLINE void spread(Found<T> &found, Take take) const
   {
@@ -62,7 +63,7 @@ class Blocks {
     found.spare.resize(n_blocks);
     for (int t = 1; t <= types; t++) {
       T *of = found.around.data() + row(0, t), *before = found.spare.data();
-      std::copy_n(found.own.data() + row(0, t), n_blocks, of);
+      std::copy_n(found.single.data() + row(0, t), n_blocks, of);
       for (int d = 0, stride = 1; d < 3; stride *= n[d++]) {    // along one axis after the other
         if (n[d] == 1) continue;
         std::copy_n(of, n_blocks, before);

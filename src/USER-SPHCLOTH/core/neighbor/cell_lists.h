@@ -1,10 +1,13 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Neighbor lists of short-ranged particles, by type of the neighbor.
 //
 // Particles are sorted by type and then by cell, cells in rows along x, so that the neighbors of a
-// particle lie in a few contiguous runs of single-precision coordinates: lists are built several
-// times faster than over linked bins.  Each type has a grid of its own, as fine as its particles
-// interact among each other.  A pair of types without a reach costs nothing, and the neighbors of a
-// particle come grouped by their type, so that a loop over one group has one set of coefficients.
+// particle lie in a few contiguous runs of single-precision coordinates.  With lists from LAMMPS's
+// bins an evaluation takes twice as long (docs/evidence/speed.md, "Where the time goes").
+//
+// Each type has a grid of its own, as fine as its particles interact among each other.  A pair of
+// types without a reach costs nothing, and the neighbors of a particle come grouped by their type,
+// so that a loop over one group has one set of coefficients.
 
 #ifndef SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
 #define SPHCLOTH_CORE_NEIGHBOR_CELL_LISTS_H
@@ -74,7 +77,7 @@ struct NeighborSpan {
   int n = 0;
 };
 
-// For each slot and type a stretch, all in one long array.  Those that are replaced by longer ones
+// For each slot and type a segment, all in one long array.  Those that are replaced by longer ones
 // lie in others behind it: nothing else moves.
 
 class NeighborSpans {
@@ -111,7 +114,7 @@ class NeighborSpans {
     pieces.push_back({nullptr, n, n});
     end += n;
   }
-  // all are closed: what loops over whole groups read behind the last stretch
+  // all are closed: what loops over whole groups read behind the last segment
   void finish()
   {
     int *last = room(0);
@@ -225,7 +228,7 @@ class CellLists {
     const int n_types = p.n_types;
     sides = p.sides;
     sort_into_cells(p, reach);
-    find_places(p.n_owned);
+    find_sorted_indices(p.n_owned);
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
@@ -244,11 +247,12 @@ class CellLists {
   int slots() const { return static_cast<int>(order.size()); }
   int at(int slot) const { return order[slot]; }
   NeighborSpan operator()(int slot, int t) const { return lists(slot, t); }
-  // a stretch whose order may be changed
+  // a segment whose order may be changed
   int *open(int slot, int t) { return lists.open(slot, t); }
   double bytes() const
   {
-    return lists.bytes() + bytes_of(px, py, pz, key, id, order, place, cell_start, cell, candidate);
+    return lists.bytes() +
+        bytes_of(px, py, pz, key, id, order, sorted_index, cell_start, cell, candidate);
   }
 
  private:
@@ -280,8 +284,8 @@ class CellLists {
   std::array<double, 3> center;
   double slack = 0.0;    // what rounding to single precision may do to a distance
   std::vector<int> slots_of, order;
-  std::vector<int> place;    // of a slot among the sorted particles
-  std::vector<int> cell;    // of each particle, or its place
+  std::vector<int> sorted_index;    // of a slot among the sorted particles
+  std::vector<int> cell;    // of each particle, or its index among the sorted
   int sorted = 0;    // particles
   std::vector<int> cell_start;    // of all types, and one more
   std::vector<int> id;    // sorted particles: index, position
@@ -295,7 +299,7 @@ class CellLists {
 
   static double cell_side(int t, int n_types, const double *reach)
   {
-    if (const double own = reach[t * (n_types + 1) + t]; own > 0.0) return 0.5 * own;
+    if (const double same = reach[t * (n_types + 1) + t]; same > 0.0) return 0.5 * same;
     double min = std::numeric_limits<double>::max();
     for (int other = 1; other <= n_types; other++)
       if (const double of_other = reach[other * (n_types + 1) + t]; of_other > 0.0)
@@ -375,33 +379,33 @@ class CellLists {
   void find_slots(const Points &p)
   {
     order.clear();
-    place.clear();
+    sorted_index.clear();
     slots_of.assign(p.n_types + 2, 0);
     for (int k = 0; k < sorted; k++) {
       const int i = id[k];
       if (i >= p.n_owned) continue;
       order.push_back(i);
-      place.push_back(k);
+      sorted_index.push_back(k);
       slots_of[p.type[i] + 1]++;
     }
     for (int t = 1; t <= p.n_types + 1; t++) slots_of[t] += slots_of[t - 1];
   }
 
   // of the slots that there are
-  void find_places(int n_owned)
+  void find_sorted_indices(int n_owned)
   {
     cell.resize(n_owned);
-    place.resize(order.size());
+    sorted_index.resize(order.size());
     for (int p = 0; p < sorted; p++)
       if (id[p] < n_owned) cell[id[p]] = p;
-    for (std::size_t slot = 0; slot < order.size(); slot++) place[slot] = cell[order[slot]];
+    for (std::size_t slot = 0; slot < order.size(); slot++) sorted_index[slot] = cell[order[slot]];
   }
 
   // lists live long, what they are made of need not
   void finish()
   {
     for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
-    for (auto *list : {&cell, &cell_start, &place, &id}) give_back(*list);
+    for (auto *list : {&cell, &cell_start, &sorted_index, &id}) give_back(*list);
   }
 
   // Behind all lists; returns how many are listed.  Their squared distances are in `key`.
@@ -443,7 +447,7 @@ class CellLists {
 
   SPHCLOTH_MULTIVERSION int candidates(int slot, int other, double reach, bool same_type)
   {
-    const int self = place[slot];
+    const int self = sorted_index[slot];
     const Grid &grid = grids[other];
     const float xi = px[self], yi = py[self], zi = pz[self];
     std::array<int, 3> from, to;

@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Projects distances (4) and hinges (5), (6) by (7) and (8).
+
 #include "core/pbd/cloth_solver.h"
 
 #include <algorithm>
@@ -117,7 +120,7 @@ namespace {
         const double weight = a.w[l] * ga + b.w[l] * gb + e1.w[l] * g1 + e2.w[l] * g2;
         const double w = a.w[l] + b.w[l] + e1.w[l] + e2.w[l];
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
-        const double lever = weight - LEAST_LEVER * w * steepest;
+        const double lever = weight - MIN_LEVER * w * steepest;
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, step_ratio,
                                             compliance[l] * inv_dt_sq, lambda[l], max_lambda[l]);
@@ -213,17 +216,17 @@ SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int color, const Vertex
 
 namespace {
 
-  Vec3 place(const Vertex &v) { return {v.x, v.y, v.z}; }
+  Vec3 position(const Vertex &v) { return {v.x, v.y, v.z}; }
 
   double error_of(const Constraints<2> &c, const Vertex *p, int m)
   {
-    return (place(p[c.slot[0][m]]) - place(p[c.slot[1][m]])).norm() - c.rest[m];
+    return (position(p[c.slot[0][m]]) - position(p[c.slot[1][m]])).norm() - c.rest[m];
   }
 
   double error_of(const Constraints<4> &c, const Vertex *p, int m)
   {
-    const double angle = hinge_angle(place(p[c.slot[0][m]]), place(p[c.slot[1][m]]),
-                                     place(p[c.slot[2][m]]), place(p[c.slot[3][m]]));
+    const double angle = hinge_angle(position(p[c.slot[0][m]]), position(p[c.slot[1][m]]),
+                                     position(p[c.slot[2][m]]), position(p[c.slot[3][m]]));
     return std::isnan(angle) ? 0.0 : angle_difference(angle, c.rest[m]);
   }
 
@@ -265,9 +268,9 @@ void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start
   for (int m = 0; m < c.size(); m++) {
     const int one = c.slot[0][m], two = c.slot[1][m];
     if (c.lambda[m] == 0.0 || (p[one].w > 0.0 && p[two].w > 0.0)) continue;
-    Vec3 edge = place(p[one]) - place(p[two]);
+    Vec3 edge = position(p[one]) - position(p[two]);
     if (start) {
-      const Vec3 before = place(start[one]) - place(start[two]);
+      const Vec3 before = position(start[one]) - position(start[two]);
       const double pull = std::fabs(c.lambda[m]) * (p[one].w + p[two].w) / edge.norm();
       if (!start_is_void(edge.normalized().dot(before), before.norm(), pull)) edge = before;
     }
@@ -283,8 +286,8 @@ void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, con
     const std::array<int, 4> s{c.slot[0][m], c.slot[1][m], c.slot[2][m], c.slot[3][m]};
     if (c.lambda[m] == 0.0 || std::all_of(s.begin(), s.end(), [&](int q) { return p[q].w > 0.0; }))
       continue;
-    const Vec3 e1 = place(p[s[1]]), a = place(p[s[0]]) - e1, e = place(p[s[2]]) - e1,
-               b = place(p[s[3]]) - e1;
+    const Vec3 e1 = position(p[s[1]]), a = position(p[s[0]]) - e1, e = position(p[s[2]]) - e1,
+               b = position(p[s[3]]) - e1;
     const HingeShape h = hinge_shape(a[0], a[1], a[2], e[0], e[1], e[2], b[0], b[1], b[2]);
     const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
     const Vec3 g2 = -h.a2 * ga - h.b2 * gb;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Projection of the constraints of a cloth, color by color.
 //
 // No two constraints of one color share a vertex, so a color is a loop without order: groups of

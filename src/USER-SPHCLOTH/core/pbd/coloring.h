@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Greedy coloring of constraints: two constraints of one color share no vertex, so a color can
 // be projected in any order, by any number of ranks, with the same result.
 //

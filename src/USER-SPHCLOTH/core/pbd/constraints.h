@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Position-based constraints: distance (4), hinge (5) to (6), projection (7) to (9).
 //
 // One constraint C at a time, written without branches so that loops over many of them are vectors
@@ -203,7 +204,7 @@ SPHCLOTH_INLINE double angle_difference(double angle, double rest)
 // If only vertices can move that hardly turn the hinge (an edge vertex below a right angle, the
 // others pinned), a projection would throw them far away: below this share of the lever that a
 // wing has, squared, the hinge is left to its neighbors.
-inline constexpr double LEAST_LEVER = 1e-3;
+inline constexpr double MIN_LEVER = 1e-3;
 
 // the share of the relative velocity (vx, vy, vz) of two ends along their edge, over the sum of the
 // inverse masses: what is taken from the one times its w, and given to the other

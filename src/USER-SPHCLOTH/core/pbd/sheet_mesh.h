@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Triangulated rectangles and discs, and what follows from the triangles of any mesh: edges, hinges
 // and vertex areas.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Density (1), and what else is summed with the kernel itself: volumes of boundary particles,
 // smoothed densities, pressures of boundary particles.
 
@@ -111,7 +112,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
 // Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057, without the weight of the fluid between.
 
 template <class K, class P>
-void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *pressure)
+void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *p_over_rho2)
 {
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);
@@ -121,11 +122,11 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
       const NeighborSpan found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {
         const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
-        sum += w * p.pressure[found.of[k]];
+        sum += w * p.p_over_rho2[found.of[k]];
         weights += w;
       }
     }
-    pressure[i] = weights > 0.0 ? sum / weights : 0.0;
+    p_over_rho2[i] = weights > 0.0 ? sum / weights : 0.0;
   }
 }
 

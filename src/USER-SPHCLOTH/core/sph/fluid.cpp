@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What does not depend on kernel and precision: their choice, active particles, counts.
+
 #include "core/sph/fluid.h"
 
 namespace sphcloth {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The fluid of one rank: neighbors, density (1), momentum (2), boundary particles.
 //
 // A fluid particle sums over fluid neighbors (its mass m_j) and over boundary neighbors, walls
@@ -5,7 +6,7 @@
 // Akinci et al., ACM Trans. Graph. 31 (2012) 62.
 //
 // This is what the pair style sees; the loops, one set per kernel and precision, are in
-// core/sph/fluid_loops.h.
+// core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h and rate_loops.h.
 
 #ifndef SPHCLOTH_CORE_SPH_FLUID_H
 #define SPHCLOTH_CORE_SPH_FLUID_H
@@ -61,12 +62,14 @@ struct Particles {
   int n_owned = 0, n_all = 0;
   const int *type = nullptr;
   const double *x = nullptr, *v = nullptr;
-  const double *mass_or_volume = nullptr;    // fluid: mass m; boundary: volume V_b
-  const double *pressure = nullptr;    // p / rho^2
+  // Fluid: mass m; boundary: volume V_b.  One array, since ghosts get it as one number and the type
+  // of a particle says which it is.
+  const double *mass_or_volume = nullptr;
+  const double *p_over_rho2 = nullptr;
   double *rho = nullptr;
   double *f = nullptr, *drho = nullptr;    // what forces() adds to
-  double *approach = nullptr;              // of the fluid, what it finds if asked
-  double force_unit = 1.0;                 // of mass times acceleration
+  double *approach = nullptr;    // of the fluid, what it finds if asked
+  double force_unit = 1.0;    // of mass times acceleration
   const Sides *sides = nullptr;    // for new lists; null: there are no sheets
   double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
   int active_column = 0;
@@ -119,7 +122,7 @@ class Fluid {
   struct Box {
     double lo[3], length[3], margin;
   };
-  virtual void place(const Particles &, const Box &) = 0;
+  virtual void record_positions(const Particles &, const Box &) = 0;
 
   // volume = 1 / sum_k W_bk over the boundary particles of the same type, with itself
   virtual void volumes(const Particles &, int type, double *volume) = 0;
@@ -139,8 +142,8 @@ class Fluid {
   // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
   virtual void smooth_densities(const Particles &, double *smooth) = 0;
 
-  // p/rho^2 of the boundary particles of a type: the mean of the fluid around each, weighted with W
-  virtual void boundary_pressures(const Particles &, int type, double *pressure) = 0;
+  // of the boundary particles of a type: the mean of the fluid around each, weighted with W
+  virtual void boundary_pressures(const Particles &, int type, double *p_over_rho2) = 0;
 
   // Records density, volume, velocity and pressure of all particles.
   virtual void record(const Particles &) = 0;

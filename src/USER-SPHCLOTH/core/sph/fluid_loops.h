@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The loops over neighbors, for one kernel and one precision.
 //
 // Every loop writes one accumulator per particle and evaluates terms that are antisymmetric in the
@@ -27,7 +28,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   using Terms = LoopTerms<P>;
   static constexpr int LANES = GROUP<Real>;
 
-  void place(const Particles &p, const Box &box) override { records.place(p, box); }
+  void record_positions(const Particles &p, const Box &box) override
+  {
+    records.record_positions(p, box);
+  }
   void volumes(const Particles &, int type, double *volume) override;
   void gather(const Particles &, bool sum) override;
   void density_gradients(const Particles &p, double *gradient) override
@@ -36,7 +40,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   }
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
   void smooth_densities(const Particles &, double *smooth) override;
-  void boundary_pressures(const Particles &, int type, double *pressure) override;
+  void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
   void record(const Particles &p) override { records.record(p, model.role.data()); }
   void forces(const Particles &, Target) override;
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;

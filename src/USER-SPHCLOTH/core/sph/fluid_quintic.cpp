@@ -1,3 +1,6 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The loops for the quintic spline.
+
 #include "core/sph/density_loops.h"
 #include "core/sph/force_loops.h"
 #include "core/sph/rate_loops.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Momentum (2): forces, impulses and virials.
 
 #ifndef SPHCLOTH_CORE_SPH_FORCE_LOOPS_H
@@ -64,7 +65,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
-  const Real own_span = IMPULSE ? records.spans[of.i] : Real(1);
+  const Real span_i = IMPULSE ? records.spans[of.i] : Real(1);
   const double *mass = nullptr;
   records.for_neighbors(
       of, c,
@@ -81,9 +82,8 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
         const Real rho_j = c.density_or_volume[k];
 
         const bool asleep = IMPULSE && c.span[k] < Real(0);
-        const Real mean = IMPULSE ? (asleep ? own_span : Real(0.5) * (own_span + c.span[k]))
-                                  : Real(1);
-        Real along = motion.pressure + (asleep ? own_span : Real(1)) * c.pressure[k];
+        const Real mean = IMPULSE ? (asleep ? span_i : Real(0.5) * (span_i + c.span[k])) : Real(1);
+        Real along = motion.p_over_rho2 + (asleep ? span_i : Real(1)) * c.p_over_rho2[k];
         if (F != Friction::NONE) {
           const Real both = rho_i + rho_j;
           along -=
@@ -116,7 +116,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
-  const Real own_span = IMPULSE && !ON_BOUNDARY ? records.spans[of.i] : Real(1);
+  const Real span_i = IMPULSE && !ON_BOUNDARY ? records.spans[of.i] : Real(1);
   const double *mass = nullptr;
   records.for_neighbors(
       of, c,
@@ -134,12 +134,12 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
 
         // the time of the fluid, whose pressure comes with it; that of the boundary does not
         const Real span = !IMPULSE ? Real(1)
-            : !ON_BOUNDARY         ? own_span
+            : !ON_BOUNDARY         ? span_i
             : c.span[k] < Real(0)  ? Real(1)
                                    : c.span[k];
         Real along = t.stiffness *
-            (ON_BOUNDARY ? span * motion.pressure + c.pressure[k]
-                         : motion.pressure + span * c.pressure[k]);
+            (ON_BOUNDARY ? span * motion.p_over_rho2 + c.p_over_rho2[k]
+                         : motion.p_over_rho2 + span * c.p_over_rho2[k]);
         if (F != Friction::NONE)
           along -= span * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
         const Real push = -slope * along;
@@ -151,8 +151,9 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
           fz += friction * dw;
         }
         if (!ON_BOUNDARY) sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
-        const double amount = ON_BOUNDARY ? mass[k] : static_cast<double>(c.density_or_volume[k]);
-        sums.add(k, amount, {fx, fy, fz}, slope * v_dot_r, r);
+        const double mass_or_volume = ON_BOUNDARY ? mass[k]
+                                                  : static_cast<double>(c.density_or_volume[k]);
+        sums.add(k, mass_or_volume, {fx, fy, fz}, slope * v_dot_r, r);
       });
 }
 
@@ -233,7 +234,7 @@ void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressur
   records.spans.resize(p.n_all);
   acts.resize(p.n_all);
   for (int i = 0; i < p.n_all; i++) {
-    records.motions[i].pressure = static_cast<Real>(pressure_time[i]);
+    records.motions[i].p_over_rho2 = static_cast<Real>(pressure_time[i]);
     records.spans[i] = static_cast<Real>(span[i]);
     acts[i] = span[i] != 0.0 || pressure_time[i] != 0.0;
   }
@@ -244,9 +245,9 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::apply(const Particles &p, int i, bool flu
                                              const Acceleration &a) const
 {
   // the volume that the fluid has seen, to the last bit
-  const double amount = fluid ? p.mass_or_volume[i]
-                              : static_cast<double>(records.sites[i].density_or_volume);
-  const double scale = amount * p.force_unit;
+  const double mass_or_volume = fluid ? p.mass_or_volume[i]
+                                      : static_cast<double>(records.sites[i].density_or_volume);
+  const double scale = mass_or_volume * p.force_unit;
   p.f[3 * i] += scale * a.x;
   p.f[3 * i + 1] += scale * a.y;
   p.f[3 * i + 2] += scale * a.z;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Gradient of a field f at a particle from the differences to its neighbors, exact for a linear
 // field wherever the neighbors are:
 //   <grad f>_i = L_i sum_j V_j (f_j - f_i) grad_i W_ij

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Smoothing kernels W(r, H) with compact support H, of equation (1).
 //
 // Every kernel is written in q = r/H, so that
@@ -8,7 +9,7 @@
 //
 // A kernel is added here: its struct, its name in KernelName and its line in with_kernel().
 //
-// Wendland, Adv. Comput. Math. 4 (1995) 389; Dehnen & Aly, MNRAS 425 (2012) 1068 (normalisation).
+// Wendland, Adv. Comput. Math. 4 (1995) 389; Dehnen & Aly, MNRAS 425 (2012) 1068 (normalization).
 // Monaghan & Lattanzio, A&A 149 (1985) 135 (cubic spline); Morris, Fox & Zhu, J. Comput. Phys. 136
 // (1997) 214 (quintic spline).
 

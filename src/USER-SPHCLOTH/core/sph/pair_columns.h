@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Particles as records of four numbers, position with density and velocity with pressure, and the
 // loop over the neighbors of one particle, for one precision.
 //
@@ -66,10 +67,10 @@ template <class P> class PairColumns {
 
   struct Site {
     Coordinate x, y, z;
-    Real density_or_volume;    // of fluid; of a boundary
+    Real density_or_volume;    // of fluid; of a boundary: four numbers are one gather per pair
   };
   struct Motion {
-    Real u, v, w, pressure;    // p/rho^2
+    Real u, v, w, p_over_rho2;
   };
   struct Gradient {
     Real x, y, z, none;
@@ -77,7 +78,7 @@ template <class P> class PairColumns {
   // one group of neighbors
   struct Columns {
     alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
-    alignas(64) Real density_or_volume[LANES], u[LANES], v[LANES], w[LANES], pressure[LANES];
+    alignas(64) Real density_or_volume[LANES], u[LANES], v[LANES], w[LANES], p_over_rho2[LANES];
     alignas(64) Real span[LANES];    // of impulses
   };
   // x_i - x_j
@@ -99,7 +100,7 @@ template <class P> class PairColumns {
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
   std::vector<Real> spans;              // of impulses, empty without them
 
-  void place(const Particles &p, const Fluid::Box &box)
+  void record_positions(const Particles &p, const Fluid::Box &box)
   {
     sites.resize(p.n_all + LANES);
     motions.resize(p.n_all + LANES);
@@ -112,7 +113,7 @@ template <class P> class PairColumns {
         quantum[d] = static_cast<Real>(1.0 / per_quantum[d]);
       }
     }
-    place(p, origin, per_quantum);
+    record_positions(p, origin, per_quantum);
   }
 
   SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role)
@@ -121,7 +122,7 @@ template <class P> class PairColumns {
       const bool fluid = role[p.type[i]] == Role::FLUID;
       sites[i].density_or_volume = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
       motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
-                    static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.pressure[i])};
+                    static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.p_over_rho2[i])};
     }
   }
 
@@ -165,7 +166,7 @@ template <class P> class PairColumns {
   }
   SPHCLOTH_INLINE void load(Columns &c, const int *near) const
   {
-    columns(&motions[0].u, near, c.u, c.v, c.w, c.pressure);
+    columns(&motions[0].u, near, c.u, c.v, c.w, c.p_over_rho2);
     load_sites(c, near);
   }
   SPHCLOTH_INLINE void load_spans(Columns &c, const int *near) const
@@ -176,8 +177,9 @@ template <class P> class PairColumns {
   double bytes() const { return bytes_of(sites, motions, gradients, spans); }
 
  private:
-  SPHCLOTH_MULTIVERSION void place(const Particles &p, const std::array<double, 3> &origin,
-                                   const std::array<double, 3> &per_quantum)
+  SPHCLOTH_MULTIVERSION void record_positions(const Particles &p,
+                                              const std::array<double, 3> &origin,
+                                              const std::array<double, 3> &per_quantum)
   {
     const double ox = origin[0], oy = origin[1], oz = origin[2];
     const double qx = per_quantum[0], qy = per_quantum[1], qz = per_quantum[2];

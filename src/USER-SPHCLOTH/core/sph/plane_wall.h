@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A plane wall as a half-space of fluid at rest density: what the kernel's part behind the plane
 // adds to the density sum (1), to the momentum (2), and to the laminar friction.
 //
@@ -49,9 +50,9 @@ class WallTable {
       const Value front = (*this)(-delta);
       return {1.0 - front.lambda, front.slope};
     }
-    const double place = delta * PIECES;
-    const int k = static_cast<int>(place);
-    const double t = place - k, u = 1.0 - t;
+    const double table_index = delta * PIECES;
+    const int k = static_cast<int>(table_index);
+    const double t = table_index - k, u = 1.0 - t;
     const Node &a = nodes[k], &b = nodes[k + 1];
     const double sa = a.slope / PIECES, sb = b.slope / PIECES;
     const double rise = b.lambda - a.lambda;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Density by continuity: d rho_i/dt = sum_j m_j v_ij . grad W_ij and, between fluid particles of
 // one type, diffusion, with <grad rho> of core/sph/gradient.h and r_ji = x_j - x_i,
 //   2 delta c0 h_s sum_j m_j/rho_j psi_ij r_ji . grad W_ij / r^2
@@ -106,7 +107,8 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Neighborhood &of, do
         const Real q = std::sqrt(ax * ax + ay * ay + az * az) * t.inv_support;
         const Real slope = t.f * K::slope_over_q(q_now_sq < Real(1) ? q : Real(1));
         const Real v_dot_r = du * ax + dv * ay + dw * az;
-        const double amount = FROM_BOUNDARY ? static_cast<double>(density_or_volume) : mass[k];
+        const double mass_or_volume = FROM_BOUNDARY ? static_cast<double>(density_or_volume)
+                                                    : mass[k];
         Real flow = FROM_BOUNDARY ? t.rho0 * v_dot_r : v_dot_r;
         if (DIFFUSION) {
           const Real linear =
@@ -114,7 +116,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Neighborhood &of, do
           flow +=
               t.diffusion * (rho_i - density_or_volume - Real(0.5) * linear) / density_or_volume;
         }
-        rate.of[k] += amount * (slope * flow);
+        rate.of[k] += mass_or_volume * (slope * flow);
       });
   return rate.total();
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Particle shifting: a small displacement along minus the gradient of the concentration
 //   C_i = sum_j V_j W_ij,    grad C_i = sum_j V_j [1 + R (W_ij/W(dx))^4] grad_i W_ij,
 // takes particles from where they are crowded to where they are sparse; dx is the spacing of the
@@ -55,7 +56,7 @@ struct NeighborTerm {
 };
 
 template <class K>
-void add_neighbor(ConcentrationGradient &crowd, const NeighborTerm &n, const KernelScale &s,
+void add_neighbor(ConcentrationGradient &concentration, const NeighborTerm &n, const KernelScale &s,
                   double shape_at_spacing, double clumping, int dim)
 {
   const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
@@ -63,20 +64,20 @@ void add_neighbor(ConcentrationGradient &crowd, const NeighborTerm &n, const Ker
   const double slope = s.f * K::slope_over_q(q);
   const double close = K::shape(q) / shape_at_spacing, close_sq = close * close;
   const double weight = n.volume * slope * (1.0 + clumping * close_sq * close_sq);
-  crowd.cover -= n.volume_at_rest * slope * r_sq / dim;
-  for (int a = 0; a < 3; a++) crowd.gradient[a] += weight * n.r[a];
+  concentration.cover -= n.volume_at_rest * slope * r_sq / dim;
+  for (int a = 0; a < 3; a++) concentration.gradient[a] += weight * n.r[a];
 }
 
 // what it adds to the gradient of the velocity; v = v_i - v_j
 
 template <class K>
-void add_velocity(ConcentrationGradient &crowd, const NeighborTerm &n,
+void add_velocity(ConcentrationGradient &concentration, const NeighborTerm &n,
                   const std::array<double, 3> &v, const KernelScale &s)
 {
   const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
   const double weight = n.volume * s.f * K::slope_over_q(std::sqrt(r_sq) * s.inv_support);
   for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) crowd.grad_v[3 * a + b] -= weight * v[a] * n.r[b];
+    for (int b = 0; b < 3; b++) concentration.grad_v[3 * a + b] -= weight * v[a] * n.r[b];
 }
 
 // A plane wall at delta = distance/H, filled with fluid behind it.  The kernel's gradient

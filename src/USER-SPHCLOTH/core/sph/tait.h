@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The Tait equation of state, equation (3): p = k rho0/gamma ((rho/rho0)^gamma - 1).
 //
 // k is the square of the sound speed at rest: dp/drho = k (rho/rho0)^(gamma-1).

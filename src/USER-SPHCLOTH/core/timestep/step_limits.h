@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Limits of the time step: equations (10) to (12), and the acoustic, viscous and density limits
 // that stability asks for.
 //
@@ -277,10 +278,10 @@ inline double step_towards(double remaining, double dt)
 
 // (15): a particle's own step in whole steps of now, rounded down, at least one
 
-inline long long whole_steps(double own, double dt)
+inline long long whole_steps(double wanted, double dt)
 {
-  constexpr double MOST = 1e15, ROUNDING = 1e-12;
-  return static_cast<long long>(std::clamp((1.0 + ROUNDING) * own / dt, 1.0, MOST));
+  constexpr double MAX_STEPS = 1e15, ROUNDING = 1e-12;
+  return static_cast<long long>(std::clamp((1.0 + ROUNDING) * wanted / dt, 1.0, MAX_STEPS));
 }
 
 }    // namespace sphcloth

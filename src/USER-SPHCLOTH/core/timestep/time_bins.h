@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Power-of-two steps on an integer time line.
 //
 // A base step is halved again and again: particles in time bin k take steps of base/2^k, which
@@ -46,9 +47,9 @@ class TimeBins {
   int bin_of(double dt) const
   {
     constexpr double ROUNDING = 1e-12;
-    const double most = (1.0 + ROUNDING) * dt;
+    const double max_step = (1.0 + ROUNDING) * dt;
     int bin = 0;
-    for (double step = base; bin < DEEPEST && step > most; step *= 0.5) bin++;
+    for (double step = base; bin < DEEPEST && step > max_step; step *= 0.5) bin++;
     return bin;
   }
 
@@ -79,14 +80,15 @@ class WantedSteps {
   }
 
   // One evaluation of all particles costs 1, so a smallest step costs the share that it updates,
-  // and `overhead` for what is done for all.  It is below `least` by less than a half.  Unless
+  // and `overhead` for what is done for all.  It is below `min_step` by less than a half.  Unless
   // unequal steps cost less by a factor of `gain` the step is uniform.
-  double best_base_step(double least, double overhead, double gain) const
+  double best_base_step(double min_step, double overhead, double gain) const
   {
     const int end = end_of_counts();
-    double best = least, best_cost = of_ladder(0, end, 0, overhead).per_shortest / (gain * least);
+    double best = min_step,
+           best_cost = of_ladder(0, end, 0, overhead).per_shortest / (gain * min_step);
     for (int shift = 0; shift < PARTS; shift++) {
-      const double shortest = least * std::exp2(-static_cast<double>(shift) / PARTS);
+      const double shortest = min_step * std::exp2(-static_cast<double>(shift) / PARTS);
       const Work work = of_ladder(shift, end, TimeBins::DEEPEST, overhead);
       const double cost = work.per_shortest / shortest;
       if (cost >= best_cost) continue;
@@ -99,20 +101,20 @@ class WantedSteps {
   // The same where a base step has to end `remaining` from now: the fewest equal base steps, or up
   // to twice as many, whichever cost least.  Far away any base step will do, and a uniform step
   // arrives as it does elsewhere.
-  double base_step_towards(double remaining, double least, double overhead, double gain) const
+  double base_step_towards(double remaining, double min_step, double overhead, double gain) const
   {
-    constexpr int FAR = 16;    // base steps
+    constexpr int MAX_STEPS_AHEAD = 16;    // base steps
     constexpr double ROUNDING = 1e-9;
-    const double best = best_base_step(least, overhead, gain), n_steps = remaining / best;
-    if (best <= least) return step_towards(remaining, best);
-    if (n_steps > FAR) return best;
+    const double best = best_base_step(min_step, overhead, gain), n_steps = remaining / best;
+    if (best <= min_step) return step_towards(remaining, best);
+    if (n_steps > MAX_STEPS_AHEAD) return best;
     const int fewest = std::max(1, static_cast<int>(std::ceil((1.0 - ROUNDING) * n_steps)));
     const int end = end_of_counts();
-    double base = 0.0, least_cost = std::numeric_limits<double>::infinity();
+    double base = 0.0, min_cost = std::numeric_limits<double>::infinity();
     for (int n = fewest; n < 2 * fewest; n++) {
-      const double cost = cost_of(remaining / n, least, end, overhead);
-      if (cost >= least_cost) continue;
-      least_cost = cost;
+      const double cost = cost_of(remaining / n, min_step, end, overhead);
+      if (cost >= min_cost) continue;
+      min_cost = cost;
       base = remaining / n;
     }
     return base;
@@ -132,16 +134,17 @@ class WantedSteps {
     return end;
   }
 
-  double cost_of(double base, double least, int end, double overhead) const
+  double cost_of(double base, double min_step, int end, double overhead) const
   {
     const TimeBins line{base};
-    const int deepest = line.bin_of(least);
-    const double above = std::log2(least / line.step(deepest));
+    const int deepest = line.bin_of(min_step);
+    const double above = std::log2(min_step / line.step(deepest));
     const int shift = std::max(0, static_cast<int>(std::ceil(PARTS * above)));
     return of_ladder(shift, end, deepest, overhead).per_shortest / line.step(deepest);
   }
 
-  // of octaves up to `highest`, the first of which begins `shift` parts below the least wanted step
+  // of octaves up to `highest`, the first of which begins `shift` parts below the shortest wanted
+  // step
   Work of_ladder(int shift, int end, int highest, double overhead) const
   {
     Work work;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What buffers hold on to, for memory_usage().
 
 #ifndef SPHCLOTH_CORE_UTIL_BYTES_H

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // SIMD: one portable binary, the widest vectors that the running CPU has.
 //
 // Loops are plain `omp simd` loops over contiguous columns, compiled several times by
-// SPHCLOTH_MULTIVERSION.  Only what no compiler vectorises is written by hand: records of scattered
+// SPHCLOTH_MULTIVERSION.  Only what no compiler vectorizes is written by hand: records of scattered
 // particles turned into columns (hardware gathers are several times slower), and the compaction of
 // a list to the entries that pass a test.
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the pair style calls during an evaluation for a scheme in which particles have time steps of
 // their own: the scheme turns the forces of the pair style into impulses.  Each is called once in
 // an evaluation and loops over particles itself.
 
-#ifndef SPHCLOTH_STEPPING_STEP_HOOKS_H
-#define SPHCLOTH_STEPPING_STEP_HOOKS_H
+#ifndef SPHCLOTH_FLUID_STEP_HOOKS_H
+#define SPHCLOTH_FLUID_STEP_HOOKS_H
 
 #include <vector>
 

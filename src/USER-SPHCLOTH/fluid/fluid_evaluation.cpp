@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The phases of an evaluation in their order: volumes of boundary particles, density (1), Tait
+// equation of state (3), momentum (2).
+
+#include "fluid/fluid_evaluation.h"
+
+#include "comm.h"
+#include "core/util/bytes.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "fluid/side_source.h"
+#include "fluid/step_hooks.h"
+#include "lammps_util/atom_tools.h"
+#include "lammps_util/rank_error.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "timer.h"
+#include "update.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <new>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+static const std::string STYLE = "pair_style sph/tait";
+
+/* ----------------------------------------------------------------------
+   before a run
+------------------------------------------------------------------------- */
+
+void FluidEvaluation::forget()
+{
+  core.reset();
+  forget_pair_values();
+  is_evaluated = false;
+}
+
+// Lists outlive init(): 'run pre no' goes on with them.
+
+void FluidEvaluation::begin_run()
+{
+  active = nullptr;    // until a fix sets the active particles
+  hooks = nullptr;
+  pressures_follow = false;
+  boundaries = find_fluid_boundaries(modify);
+  find_sides();
+  cache_pair_values();
+  if (!core) core = Fluid::create(options.kernel, options.precision);
+  FluidModel &model = core->model;
+  const int n = atom->ntypes + 1;
+  model.dimension = domain->dimension;
+  model.n_types = atom->ntypes;
+  model.friction = Friction::NONE;
+  model.outputs = Outputs::NOTHING;
+  model.role.assign(n, Role::NONE);
+  model.mass.resize(n, 0.0);
+  model.terms.assign(n * n, PairTerms());
+  for (int i = 1; i < n; i++) model.role[i] = type(i).role;
+  list_reach.assign(n * n, 0.0);
+  moved.assign(n, 0);
+  moved_here = moved;
+}
+
+void FluidEvaluation::set_pair(int i, int j, double listed)
+{
+  const int n = atom->ntypes + 1;
+  FluidModel &model = core->model;
+  PairTerms t = mix(i, j);
+  // density diffuses within a fluid, not across the step between two
+  if (i == j && integrates_density())
+    t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);
+  model.terms[i * n + j] = model.terms[j * n + i] = t;
+  if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
+  if (t.nu > 0.0) model.friction = Friction::ANY;
+  list_reach[i * n + j] = list_reach[j * n + i] = listed;
+}
+
+void FluidEvaluation::find_sides()
+{
+  sides = nullptr;
+  const Fix *owner = nullptr;
+  for (Fix *fix : modify->get_fix_list()) {
+    int dim = 0;
+    void *found = fix->extract(SideSource::EXTRACT, dim);
+    if (!found) continue;
+    if (sides)
+      error->all(FLERR,
+                 "{}: fix {} and fix {} cloth/contact both part the fluid: give one of them "
+                 "'sides no'",
+                 STYLE, owner->id, fix->id);
+    sides = static_cast<SideSource *>(found);
+    owner = fix;
+  }
+  double longest = 0.0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    if (is_fluid(i)) longest = std::max(longest, support(i));
+  if (sides) sides->set_view_distance(longest + neighbor->skin);
+}
+
+/* ----------------------------------------------------------------------
+   one evaluation
+------------------------------------------------------------------------- */
+
+void FluidEvaluation::begin(bool new_neighbors)
+{
+  is_evaluated = false;
+  new_lists = new_neighbors;
+  if (new_lists) begin_lists();
+  const Particles p = particles();
+  update_lists(p);
+  select(p);
+  core->record_positions(p, box());
+  measure_volumes(p);
+  for (FluidBoundary *boundary : boundaries) boundary->begin();
+}
+
+void FluidEvaluation::find_densities_and_pressures()
+{
+  const Particles p = particles();
+  find_densities(p);
+  find_pressures(p);
+  ghosts.send_to_ghosts(GhostData::DENSITY);
+  if (extrapolate) find_boundary_pressures(p);
+  core->record(p);
+  if (hooks && hooks->correct_velocities()) core->record(p);
+}
+
+void FluidEvaluation::find_forces()
+{
+  core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
+  if (hooks) hooks->note_pair_forces();
+  for (FluidBoundary *boundary : boundaries) push(*boundary);
+}
+
+// Where the pressures of inactive particles follow, these act on a boundary in every step.
+
+void FluidEvaluation::push(FluidBoundary &boundary)
+{
+  const auto push_one = [&](int i, const Tait &) { boundary.push(i, p_over_rho2[i]); };
+  if (!pressures_follow) return for_each_fluid(push_one);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const int t = atom->type[i]; is_fluid(t)) push_one(i, equation_of_state(t));
+}
+
+void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
+{
+  const Particles updated = particles();
+  if (!hooks) return core->virials(updated, receive, context);
+  Particles all = updated;
+  all.active = nullptr;
+  core->select(all);
+  core->virials(all, receive, context);
+  core->select(updated);
+}
+
+void FluidEvaluation::end()
+{
+  if (hooks) hooks->apply_impulses();
+  for (FluidBoundary *boundary : boundaries) boundary->end();
+  is_evaluated = true;
+}
+
+/* ----------------------------------------------------------------------
+   lists
+------------------------------------------------------------------------- */
+
+void FluidEvaluation::begin_lists()
+{
+  mass_or_volume.resize(atom->nmax);
+  p_over_rho2.assign(atom->nmax, 0.0);
+  if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
+  if (core->model.outputs == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int itype = atom->type[i];
+    if (!is_boundary(itype))
+      mass_or_volume[i] = atom_mass(atom, i);
+    else if (type(itype).volume > 0.0)
+      mass_or_volume[i] = type(itype).volume;
+    const double *v = atom->v[i];
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2]))
+      rank_error(lmp, FLERR, "{}: particle {} has velocity {} {} {}: give finite numbers", STYLE,
+                 atom->tag[i], v[0], v[1], v[2]);
+  }
+  evaluated_order = order_of_atoms(atom);
+}
+
+// Lists as wide as LAMMPS's hold until LAMMPS renews its own, which follows the fastest particle.
+// Narrower ones are rebuilt where particles have approached each other.
+
+void FluidEvaluation::update_lists(const Particles &p)
+{
+  try {
+    if (new_lists)
+      core->list(p, list_reach.data(), neighbor->skin, usual_motion(p));
+    else
+      core->follow(p);
+  } catch (const std::bad_alloc &) {
+    rank_error(lmp, FLERR,
+               "{}: not enough memory for the neighbors of {} particles within the support {}: are "
+               "particles or vertices much nearer to each other than that?",
+               STYLE, atom->nlocal, options.support);
+  }
+  timer->stamp(Timer::NEIGH);
+}
+
+void FluidEvaluation::select(const Particles &p)
+{
+  if (!core->select(p)) return;
+  if (!hooks) return;
+  active_fluid.clear();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(t))
+      for (const int slot : core->active().of(t)) active_fluid.push_back(core->order().at(slot));
+}
+
+Fluid::Box FluidEvaluation::box() const
+{
+  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+  const double tilt = std::fabs(domain->xy) + std::fabs(domain->xz) + std::fabs(domain->yz);
+  return {{lo[0], lo[1], lo[2]},
+          {domain->prd[0], domain->prd[1], domain->prd[2]},
+          comm->get_comm_cutoff() + neighbor->skin + tilt};
+}
+
+// From velocities and a usual acoustic step: the step itself is another after a restart than
+// before.
+
+Motion FluidEvaluation::usual_motion(const Particles &p) const
+{
+  Motion motion;
+  motion.dimension = domain->dimension;
+  motion.v = p.v;
+  constexpr double USUAL = 0.5;    // of h_s/c
+  double step = std::numeric_limits<double>::max();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(t))
+      step = std::min(step, USUAL * 0.5 * support(t) / equation_of_state(t).sound_speed());
+  motion.step = step;
+  motion.interval.assign(atom->ntypes + 1, 1.0);
+  if (hooks) hooks->find_intervals(motion.interval);
+  return motion;
+}
+
+/* ----------------------------------------------------------------------
+   volumes of boundary particles, and masses
+------------------------------------------------------------------------- */
+
+// Volumes of boundary particles that share space among themselves follow their motion, as long as
+// there is fluid to feel them.
+
+void FluidEvaluation::measure_volumes(const Particles &p)
+{
+  const int n = atom->ntypes + 1;
+  std::fill(moved.begin(), moved.end(), new_lists);
+  if (measure_volume && !new_lists && any_fluid) {
+    std::vector<int> &here = moved_here;
+    std::fill(here.begin(), here.end(), 0);
+    for (int i = 0; i < p.n_owned; i++) {
+      const double *v = p.v + 3 * i;
+      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) here[p.type[i]] = 1;
+    }
+    MPI_Allreduce(here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
+  }
+  bool measured = false;
+  for (int t = 1; t < n; t++) {
+    if (!is_measured(t) || !moved[t]) continue;
+    core->volumes(p, t, mass_or_volume.data());
+    measured = true;
+  }
+  if (!measured && !new_lists) return;
+  ghosts.send_to_ghosts(GhostData::MASS_OR_VOLUME);
+  if (!new_lists) return;
+  std::array<int, 3> here{0, 0, 0}, anywhere{0, 0, 0};
+  for (int i = 0; i < p.n_owned; i++) {
+    const int t = p.type[i];
+    if (is_fluid(t)) here[0] = 1;
+    if (extrapolates(t)) here[1] = 1;
+    if (is_measured(t)) here[2] = 1;
+  }
+  MPI_Allreduce(here.data(), anywhere.data(), 3, MPI_INT, MPI_MAX, world);
+  any_fluid = anywhere[0];
+  extrapolate = anywhere[1];
+  measure_volume = anywhere[2];
+  find_equal_masses(p);
+}
+
+// A mass that all particles of a type share leaves the sums.
+
+void FluidEvaluation::find_equal_masses(const Particles &p)
+{
+  std::vector<double> &mass = core->model.mass;
+  std::fill(mass.begin(), mass.end(), -1.0);
+  for (int i = 0; i < p.n_all; i++) {
+    const int t = p.type[i];
+    if (mass[t] < 0.0) mass[t] = is_fluid(t) ? mass_or_volume[i] : 0.0;
+    if (mass[t] != mass_or_volume[i]) mass[t] = 0.0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   densities and pressures
+------------------------------------------------------------------------- */
+
+void FluidEvaluation::find_densities(const Particles &p)
+{
+  if (!integrates_density()) {
+    core->gather(p, true);
+    for (FluidBoundary *boundary : boundaries)
+      for_each_fluid([&](int i, const Tait &) { p.rho[i] = boundary->density(i, p.rho[i]); });
+    return;
+  }
+  check_densities();
+  core->record(p);
+  core->gather(p, false);
+  integrate_density(p);
+}
+
+// The velocities are those with which the particles came here, so the rate is that at the middle of
+// the displacement.  At its end it would be wrong by the divergence that the forces have made
+// since, which is a diffusion of -dt c0^2 / 2.
+
+void FluidEvaluation::integrate_density(const Particles &p)
+{
+  rate.resize(atom->nmax);
+  const double dt = elapsed, back = 0.5 * dt;
+  if (!(dt > 0.0)) return;
+  find_density_rates(p, back);
+  for (FluidBoundary *boundary : boundaries)
+    for_each_fluid(
+        [&](int i, const Tait &) { rate[i] = boundary->density_rate(i, rate[i], back); });
+  for_each_fluid([&](int i, const Tait &) { p.rho[i] += dt * rate[i]; });
+  elapsed = 0.0;
+  if (const int every = options.reinit; every && update->ntimestep % every == 0) {
+    ghosts.send_to_ghosts(GhostData::DENSITY);
+    core->smooth_densities(p, rate.data());
+    for_each_fluid([&](int i, const Tait &) { p.rho[i] = rate[i]; });
+  }
+}
+
+// Inactive particles keep their gradient.
+
+void FluidEvaluation::find_density_rates(const Particles &p, double back)
+{
+  if (diffuses()) {
+    core->density_gradients(p, gradient.data());
+    ghosts.send_to_ghosts(GhostData::GRADIENT);
+  }
+  core->density_rates(p, diffuses() ? gradient.data() : nullptr, back, rate.data());
+}
+
+void FluidEvaluation::find_boundary_pressures(const Particles &p)
+{
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (extrapolates(t)) core->boundary_pressures(p, t, p_over_rho2.data());
+  ghosts.send_to_ghosts(GhostData::DENSITY);
+}
+
+void FluidEvaluation::check_densities() const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_fluid(atom->type[i]) && !(atom->rho[i] > 0.0))
+      rank_error(lmp, FLERR,
+                 "{}: particle {} has density {}: give every fluid particle one, 'set group all "
+                 "sph/rho RHO0', or use 'density summation'",
+                 STYLE, atom->tag[i], atom->rho[i]);
+}
+
+// Inactive particles keep their pressure until lists are built: then it follows from the density.
+
+void FluidEvaluation::find_pressures(const Particles &p)
+{
+  const double min = options.tension ? -std::numeric_limits<double>::max() : 0.0;
+  const auto find = [&](int i, const Tait &eos) {
+    const double rho = p.rho[i];
+    double &term = p_over_rho2[i];
+    term = std::max(eos.pressure(rho), min) / (rho * rho);
+    // a density that is renormalized has a gradient that is
+    for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
+    // neither true of what is not a number
+    if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
+      rank_error(lmp, FLERR,
+                 "{}: particle {} has density {}: particles overlap or the time step is too large",
+                 STYLE, atom->tag[i], rho);
+  };
+  const bool of_all = pressures_follow || new_lists;
+  if (!of_all || !active) return for_each_fluid(find);
+  for (int i = 0; i < p.n_owned; i++)
+    if (is_fluid(p.type[i])) find(i, equation_of_state(p.type[i]));
+}
+
+/* ----------------------------------------------------------------------
+   what ghosts get
+------------------------------------------------------------------------- */
+
+int FluidEvaluation::ghost_size(GhostData what)
+{
+  switch (what) {
+    case GhostData::MASS_OR_VOLUME: return 1;
+    case GhostData::DENSITY: return 2;
+    case GhostData::GRADIENT: return 3;
+  }
+  return 0;
+}
+
+int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) const
+{
+  double *end = buf;
+  for (int k = 0; k < n; k++) {
+    const int i = list[k];
+    switch (what) {
+      case GhostData::MASS_OR_VOLUME: *end++ = mass_or_volume[i]; break;
+      case GhostData::DENSITY:
+        *end++ = atom->rho[i];
+        *end++ = p_over_rho2[i];
+        break;
+      case GhostData::GRADIENT: end = std::copy_n(&gradient[3 * i], 3, end); break;
+    }
+  }
+  return static_cast<int>(end - buf);
+}
+
+void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf)
+{
+  for (int i = first; i < first + n; i++) {
+    switch (what) {
+      case GhostData::MASS_OR_VOLUME: mass_or_volume[i] = *buf++; break;
+      case GhostData::DENSITY:
+        atom->rho[i] = *buf++;
+        p_over_rho2[i] = *buf++;
+        break;
+      case GhostData::GRADIENT:
+        std::copy_n(buf, 3, &gradient[3 * i]);
+        buf += 3;
+        break;
+    }
+  }
+}
+
+double FluidEvaluation::bytes() const
+{
+  return (core ? core->bytes() : 0.0) +
+      bytes_of(mass_or_volume, p_over_rho2, rate, gradient, approach, active_fluid);
+}

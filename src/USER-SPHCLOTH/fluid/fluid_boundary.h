@@ -16,10 +16,11 @@ namespace LAMMPS_NS {
 class Modify;
 
 // Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of
-// the fluid that moves with it and the sound speed of that fluid; both 0 if it is dry
+// the fluid that moves with it; the sound speed of that fluid over its smoothing length, and its
+// viscosity over the square of that.  All are 0 if it is dry.
 
 struct Wetting {
-  double fluid_mass = 0.0, sound = 0.0;
+  double fluid_mass = 0.0, sound_rate = 0.0, viscous_rate = 0.0;
 };
 
 class FluidBoundary {

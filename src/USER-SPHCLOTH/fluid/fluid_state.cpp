@@ -191,9 +191,17 @@ Wetting FluidState::wetting(int i)
   Wetting w;
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!is_fluid(t) || core->count_inside(p, i, t, 1) == 0) continue;
-    const Tait &eos = type(t).eos;
-    w.fluid_mass = std::max(w.fluid_mass, eos.rho0 * mass_or_volume[i]);
-    w.sound = std::max(w.sound, eos.sound_speed());
+    const Wetting by = wetting_by(t, viscosity(t, atom->type[i]));
+    const double stiffening = std::sqrt(pressure_factor(t, atom->type[i]));
+    w.fluid_mass = std::max(w.fluid_mass, type(t).eos.rho0 * mass_or_volume[i]);
+    w.sound_rate = std::max(w.sound_rate, stiffening * by.sound_rate);
+    w.viscous_rate = std::max(w.viscous_rate, by.viscous_rate);
   }
   return w;
+}
+
+Wetting FluidState::wetting_by(int fluid_type, double nu) const
+{
+  const double smoothing = 0.5 * support(fluid_type);
+  return {0.0, type(fluid_type).eos.sound_speed() / smoothing, nu / (smoothing * smoothing)};
 }

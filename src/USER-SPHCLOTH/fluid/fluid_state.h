@@ -68,6 +68,8 @@ class FluidState : public SPHMaterials {
   void want_wetting() const;
   double approach_speed(int i);
   Wetting wetting(int i);
+  // the rates of a type of fluid, of this viscosity at the boundary
+  Wetting wetting_by(int fluid_type, double nu) const;
 
   bool feels_moving_wall(int i) const;
   bool is_beside_mesh(int i) const;

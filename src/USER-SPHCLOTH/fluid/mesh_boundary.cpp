@@ -300,15 +300,15 @@ void MeshBoundary::begin()
 
 void MeshBoundary::find_wetting()
 {
-  fluid_mass.assign(atom->nlocal, Vec3::Zero());
+  wetted_by.assign(atom->nlocal, Vec3::Zero());
   for (const ClosestPoint &closest : closest_points) {
     const int i = closest.particle;
     const double moves = 2.0 * atom_mass(atom, i) * covered(closest);
-    const double sound = fluid->equation_of_state(atom->type[i]).sound_speed();
-    sheets[closest.sheet].wet(closest, Vec3(moves, moves * sound, 0.0));
+    const Wetting by = fluid->wetting_by(atom->type[i], fluid->type(atom->type[i]).nu);
+    sheets[closest.sheet].wet(closest, moves * Vec3(1.0, by.sound_rate, by.viscous_rate));
   }
   for (BoundaryMesh &sheet : sheets)
-    sheet.hand_over_wetting([this](int i, const Vec3 &quantity) { fluid_mass[i] += quantity; });
+    sheet.hand_over_wetting([this](int i, const Vec3 &quantity) { wetted_by[i] += quantity; });
 }
 
 template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
@@ -414,6 +414,6 @@ void MeshBoundary::end()
 
 Wetting MeshBoundary::wetting(int i) const
 {
-  const Vec3 &sum = fluid_mass[i];
-  return sum[0] > 0.0 ? Wetting{sum[0], sum[1] / sum[0]} : Wetting();
+  const Vec3 &sum = wetted_by[i];
+  return sum[0] > 0.0 ? Wetting{sum[0], sum[1] / sum[0], sum[2] / sum[0]} : Wetting();
 }

@@ -54,7 +54,8 @@ class BoundaryMesh : protected Pointers {
   void give(const ClosestPoint &closest, const Vec3 &push) { spread(closest, push, forces); }
   void hand_over(const std::function<void(int, const Vec3 &)> &take) { sum_up(forces, take); }
 
-  // the same of the fluid that moves with the mesh: its mass, and that times its sound speed
+  // The same of the fluid that moves with the mesh: its mass, and that times its rates of sound and
+  // viscosity
   void wet(const ClosestPoint &closest, const Vec3 &quantity)
   {
     spread(closest, quantity, wetting);
@@ -141,7 +142,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   std::vector<int> first;    // of an owned particle, -1: none
   bool wetting_wanted = false;
   double lasts = 1.0;    // how many times as long as the step what was pushed acts
-  std::vector<Vec3> fluid_mass;    // by owned atom: mass, and that times its sound speed
+  std::vector<Vec3> wetted_by;    // by owned atom: mass of fluid, and that times its rates
 
   template <class Do> void for_closest_points(int i, Do something);
   void push(int i, double p_over_rho2, double times, bool first_push);

@@ -248,13 +248,40 @@ double SPHMaterials::find_support(int i, int j) const
   return is_fluid(i) ? support(i, i) : support(j, j);
 }
 
+// Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
+
+double SPHMaterials::viscosity(int i, int j) const
+{
+  const double smoothing = 0.5 * support(i, j);
+  return nu(i, j) + alpha(i, j) * sound(i, j) * smoothing / (2.0 * (domain->dimension + 2));
+}
+
 double SPHMaterials::find_viscosity(int i) const
 {
-  // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2))
-  const TypeData &t = types[i];
-  const double artificial =
-      t.alpha * t.eos.sound_speed() * 0.5 * support(i, i) / (2.0 * (domain->dimension + 2));
-  return t.nu + artificial;
+  double largest = viscosity(i, i);
+  for (int j = 1; j < static_cast<int>(types.size()); j++)
+    if (given(i, j).nu >= 0.0 || given(i, j).alpha >= 0.0)
+      largest = std::max(largest, viscosity(i, j));
+  return largest;
+}
+
+double SPHMaterials::pressure_factor(int fluid, int boundary) const
+{
+  const double stiffness = given(fluid, boundary).stiffness;
+  return stiffness > 0.0 ? stiffness / types[fluid].eos.k : 1.0;
+}
+
+double SPHMaterials::largest_pressure_factor(int fluid) const
+{
+  double largest = 1.0;
+  for (int j = 1; j < static_cast<int>(types.size()); j++)
+    if (is_boundary(j)) largest = std::max(largest, pressure_factor(fluid, j));
+  return largest;
+}
+
+double SPHMaterials::sound(int i, int j) const
+{
+  return 0.5 * (fluid_of(i, j).eos.sound_speed() + fluid_of(j, i).eos.sound_speed());
 }
 
 void SPHMaterials::cache_pair_values()
@@ -293,7 +320,7 @@ double SPHMaterials::alpha(int i, int j) const
 PairTerms SPHMaterials::mix(int i, int j) const
 {
   const PairData &of_pair = given(i, j);
-  const TypeData &a = fluid_of(i, j), &b = fluid_of(j, i);
+  const TypeData &a = fluid_of(i, j);
   if (of_pair.stiffness > 0.0 && types[i].role == types[j].role)
     error->all(FLERR,
                "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
@@ -302,11 +329,10 @@ PairTerms SPHMaterials::mix(int i, int j) const
 
   PairTerms t;
   const double radius = support(i, j), smoothing = 0.5 * radius;
-  const double sound = 0.5 * (a.eos.sound_speed() + b.eos.sound_speed());
   t.kernel = with_kernel(
       options.kernel, [&](auto k) { return kernel_scale<decltype(k)>(radius, domain->dimension); });
   t.nu = nu(i, j);
-  t.monaghan = alpha(i, j) * sound * smoothing;
+  t.monaghan = alpha(i, j) * sound(i, j) * smoothing;
   t.soft = 0.01 * smoothing * smoothing;
   t.rho0 = a.eos.rho0;
   t.stiffness = of_pair.stiffness > 0.0 ? of_pair.stiffness / a.eos.k : 1.0;

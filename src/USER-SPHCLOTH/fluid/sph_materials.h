@@ -68,8 +68,14 @@ class SPHMaterials : protected Pointers {
   {
     return supports.empty() ? find_support(i, j) : supports[i * types.size() + j];
   }
-  // laminar and artificial together
+  // kinematic viscosity, laminar and artificial together: of a pair; and of a fluid, the largest of
+  // its own and of those given for its pairs
+  double viscosity(int i, int j) const;
   double viscosity(int i) const { return viscosities.empty() ? find_viscosity(i) : viscosities[i]; }
+  // the pressure of a fluid on a boundary over its own, if the pair has a stiffness; and the
+  // largest of a fluid, at least 1
+  double pressure_factor(int fluid, int boundary) const;
+  double largest_pressure_factor(int fluid) const;
   // both until the next read()
   void cache_pair_values();
   void forget_pair_values();
@@ -108,6 +114,7 @@ class SPHMaterials : protected Pointers {
 
   double find_support(int i, int j) const;
   double find_viscosity(int i) const;
+  double sound(int i, int j) const;    // mean of two fluids, or that of the only one
   const PairData &given(int i, int j) const;
   // the fluid of a pair: its own, or the partner's of a boundary
   const TypeData &fluid_of(int i, int j) const { return types[is_fluid(i) ? i : j]; }

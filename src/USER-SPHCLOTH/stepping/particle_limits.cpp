@@ -26,6 +26,7 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
     if (!fluid->is_fluid(t)) continue;
     its.eos = fluid->equation_of_state(t);
     its.sound = its.eos.sound_speed();
+    its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
     its.viscosity = fluid->viscosity(t);
   }
   cloths.clear();
@@ -96,7 +97,7 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
   s.nu = type.viscosity;
-  s.sound = type.sound * type.eos.stiffening(s.rho);
+  s.sound = type.at_boundary * type.sound * type.eos.stiffening(s.rho);
   if (options.lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
   const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
   if (in_flight) s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.sound);
@@ -130,13 +131,15 @@ StepLimit ParticleLimits::of_vertex(int i, const LimitedVertices &vertices) cons
 }
 
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is
-// faster by the root of the ratio of the masses (added mass).
+// faster by the root of the ratio of the masses (added mass).  Friction is faster by that ratio.
 
 StepState ParticleLimits::vertex_state(int i) const
 {
   StepState s{};
   const double mass = set_motion(i, atom->f[i], s);
   const Wetting wet = fluid->wetting(i);
-  s.sound = wet.sound * std::sqrt(std::max(1.0, wet.fluid_mass / mass));
+  const double ratio = std::max(1.0, wet.fluid_mass / mass), smoothing = 0.5 * s.support;
+  s.sound = smoothing * wet.sound_rate * std::sqrt(ratio);
+  s.nu = smoothing * smoothing * wet.viscous_rate * ratio;
   return s;
 }

@@ -56,9 +56,9 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
                                                                  : SteppingScheme::CONSTANT;
   options.ceiling = update->dt;
   options.read(args, control.times);
-  if (options.floor > options.ceiling)
+  if (options.min > options.ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
-               label, options.floor, options.ceiling);
+               label, options.min, options.ceiling);
 
   use_scheme(options.scheme, BlockClock());
   FixSPHIntegrate::grow_arrays(atom->nmax);

@@ -117,7 +117,7 @@ def _steps() -> list[Case]:
              schemes=stepped, same=None),
         Case("long-floor", "a floor of ten times that: the run ends and names the limit", "dam", (),
              {"limits": "max 0.02 min 0.0075"}, schemes=stepped,
-             error=r"fix step sph/integrate: the \w+ limit asks for a step of .* below min"),
+             error=r"fix step sph/integrate: the \w+ limit of particle \d+ asks for .* below min"),
         Case("long-clamped", "clamped at that floor: counted, or a named end", "dam",
              (column("v_clamped", 1, 1e9, last=True),),
              {"limits": "max 0.02 min 0.0075 below clamp", "every": 1}, schemes=stepped,

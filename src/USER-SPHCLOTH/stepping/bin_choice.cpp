@@ -95,8 +95,7 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
   parts.limits.for_particles(of, external, [&](int i, const StepLimit &limit) {
     const StepLimit step = control.bounded(limit, wanted[i]);
     if (control.is_too_short(step))
-      rank_error(lmp, FLERR,
-                 control.too_short(limit, fmt::format(" for particle {}", atom->tag[i])));
+      rank_error(lmp, FLERR, control.too_short(limit, atom->tag[i]));
     wanted[i] = step.dt;
     by[i] = static_cast<double>(step.by);
     tightest.tighten(step.dt, step.by);
@@ -106,8 +105,11 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
 
 void BinChoice::limit_vertices()
 {
+  const StepControl &control = parts.control;
   parts.limits.for_vertices([&](int i, const StepLimit &limit) {
-    parts.rows[i][UpdateRows::OWN_STEP] = limit.dt;
+    if (control.is_too_short(control.bounded(limit, 0.0)))
+      rank_error(lmp, FLERR, control.too_short(limit, atom->tag[i]));
+    parts.rows[i][UpdateRows::OWN_STEP] = std::max(limit.dt, parts.options.floor());
     state.columns[Columns::BY][i] = static_cast<double>(limit.by);
   });
   vertices.n = -1;

@@ -62,15 +62,21 @@ void IndividualSteps::select_active()
   tell_active(false);
 }
 
-void IndividualSteps::choose_step() { parts.control.choose(tightest_limit()); }
+void IndividualSteps::choose_step()
+{
+  const StepLimit tightest = tightest_limit();
+  parts.control.choose(tightest, limited);
+}
 
 StepLimit IndividualSteps::tightest_limit()
 {
   const double now = physical_time(update);
   StepLimit tightest;
+  limited = 0;
   parts.report.forget_particles();
-  const auto take = [&](const StepLimit &limit) {
+  const auto take = [&](int i, const StepLimit &limit) {
     parts.report.count_particle(limit);
+    if (limit.dt < tightest.dt) limited = atom->tag[i];
     tightest.tighten(limit.dt, limit.by);
   };
   updated.clear();
@@ -80,13 +86,13 @@ StepLimit IndividualSteps::tightest_limit()
     if (row[UpdateRows::ACTIVE] != 0.0)
       updated.push_back(i);
     else
-      take({row[UpdateRows::OWN_STEP], limit_of(kept[IndividualColumns::LIMITED_BY][i])});
+      take(i, {row[UpdateRows::OWN_STEP], limit_of(kept[IndividualColumns::LIMITED_BY][i])});
   }
   parts.limits.for_particles(updated, nullptr, [&](int i, const StepLimit &limit) {
     keep(i, limit, now);
-    take(limit);
+    take(i, limit);
   });
-  parts.limits.for_vertices([&](int, const StepLimit &limit) { take(limit); });
+  parts.limits.for_vertices(take);
   return tightest;
 }
 

@@ -33,6 +33,7 @@ class IndividualSteps : public Stepper {
  private:
   IndividualColumns kept;
   std::vector<int> updated;
+  tagint limited = 0;    // the particle or vertex with the tightest limit
 
   void drift();
   void select_active();

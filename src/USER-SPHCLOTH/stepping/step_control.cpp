@@ -50,7 +50,7 @@ void StepControl::restore(const State &before)
    the next step
 ------------------------------------------------------------------------- */
 
-void StepControl::choose(const StepLimit &mine)
+void StepControl::choose(const StepLimit &mine, tagint particle)
 {
   StepLimit wanted = tightest_of_ranks(mine);
   if (control.eta > 0.0) {
@@ -58,7 +58,12 @@ void StepControl::choose(const StepLimit &mine)
     wanted.tighten(control.step(previous, compression, largest_before), Limit::FLUCTUATION);
   }
   StepLimit step = bounded(wanted, previous);
-  if (is_too_short(step)) error->all(FLERR, too_short(wanted, ""));
+  if (is_too_short(step)) {
+    const tagint here = mine.dt == wanted.dt ? particle : 0;
+    tagint anywhere = 0;
+    MPI_Allreduce(&here, &anywhere, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    error->all(FLERR, too_short(wanted, anywhere));
+  }
   if (times.any()) times.head_for(step);
   limit = step.by;
   if (step.dt != update->dt) set_timestep(step.dt);
@@ -89,7 +94,7 @@ double StepControl::jump(double now) const
 
 StepLimit StepControl::bounded(const StepLimit &wanted, double before) const
 {
-  return bounded_step(wanted, before, options.growth, options.floor, options.ceiling);
+  return bounded_step(wanted, before, options.growth, options.floor(), options.ceiling);
 }
 
 bool StepControl::is_too_short(const StepLimit &step) const
@@ -97,11 +102,18 @@ bool StepControl::is_too_short(const StepLimit &step) const
   return step.by == Limit::FLOOR && !options.clamp_at_floor;
 }
 
-std::string StepControl::too_short(const StepLimit &wanted, const std::string &for_which) const
+std::string StepControl::too_short(const StepLimit &wanted, tagint particle) const
 {
-  return fmt::format("{}: the {} limit asks for a step of {}{}, below min {}: lower min, or use "
+  const std::string of = particle ? fmt::format(" of particle {}", particle) : "";
+  const std::string failed = options.min > 0.0
+      ? ""
+      : fmt::format(" ({:g} of max {}): a run that needs such steps has failed before, give its "
+                    "limits smaller coefficients; or",
+                    StepOptions::DEFAULT_MIN, options.ceiling);
+  return fmt::format("{}: the {} limit{} asks for a step of {}, below min {}{}{} lower min, or use "
                      "'below clamp' to go on with min and count",
-                     label, limit_name(wanted.by), wanted.dt, for_which, options.floor);
+                     label, limit_name(wanted.by), of, wanted.dt, options.floor(), failed,
+                     failed.empty() ? ":" : "");
 }
 
 void StepControl::refuse_reset(double output_time, double end) const

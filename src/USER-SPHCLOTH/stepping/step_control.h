@@ -30,8 +30,9 @@ class StepControl : protected Pointers {
   void begin_step() { n_steps++; }
   bigint steps() const { return n_steps; }
 
-  // collective: the next step from the tightest limit of this rank
-  void choose(const sphcloth::StepLimit &mine);
+  // collective: the next step from the tightest limit of this rank, and the ID of the particle or
+  // vertex that has it
+  void choose(const sphcloth::StepLimit &mine, tagint particle);
   // the next step, as a scheme has chosen it
   void take(double dt, sphcloth::Limit by, bool ends_at_output_time);
   void end_step();
@@ -49,7 +50,8 @@ class StepControl : protected Pointers {
   // is below a floor that ends the run
   sphcloth::StepLimit bounded(const sphcloth::StepLimit &wanted, double before) const;
   bool is_too_short(const sphcloth::StepLimit &bounded) const;
-  std::string too_short(const sphcloth::StepLimit &wanted, const std::string &for_which) const;
+  // 0: it is no limit of a particle
+  std::string too_short(const sphcloth::StepLimit &wanted, tagint particle) const;
 
   // an error: the time was reset between an output time and the end of a base step
   void refuse_reset(double output_time, double end) const;

@@ -45,7 +45,7 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
     else if (keyword == "sleep")
       block.sleep = args.at_least(keyword, 0.0);
     else if (keyword == "min")
-      floor = args.positive(keyword);
+      min = args.positive(keyword);
     else if (keyword == "max") {
       ceiling = args.positive(keyword);
       ceiling_given = true;

@@ -27,14 +27,18 @@ struct BlockOptions {
 };
 
 struct StepOptions {
+  static constexpr double DEFAULT_MIN = 1e-6;    // of the ceiling: what needs less has failed
+
   SteppingScheme scheme = SteppingScheme::CONSTANT;    // unless the run style has one
   sphcloth::StepCoefficients lambda;
   double eta = 0.0;    // compression at which the step is held, 0: the step does not depend on it
-  double floor = 0.0, ceiling = 0.0;    // of the step
+  double min = 0.0, ceiling = 0.0;    // of the step; 0: min is not given
   double growth = 2.0;    // largest ratio of a step to the one before
   bool ceiling_given = false;
   bool clamp_at_floor = false;    // go on with the floor where a limit is below it
   BlockOptions block;
+
+  double floor() const { return min > 0.0 ? min : DEFAULT_MIN * ceiling; }
 
   // the keywords after the scheme, up to the end of the command
   void read(ArgReader &, OutputTimes &);

@@ -23,16 +23,20 @@ void UniformSteps::move()
 
 void UniformSteps::choose_step()
 {
-  if (!constant) parts.control.choose(tightest_limit());
+  if (constant) return;
+  const StepLimit tightest = tightest_limit();
+  parts.control.choose(tightest, limited);
 }
 
 StepLimit UniformSteps::tightest_limit()
 {
   const double now = physical_time(update);
   StepLimit tightest;
+  limited = 0;
   parts.report.forget_particles();
-  const auto take = [&](const StepLimit &limit) {
+  const auto take = [&](int i, const StepLimit &limit) {
     parts.report.count_particle(limit);
+    if (limit.dt < tightest.dt) limited = atom->tag[i];
     tightest.tighten(limit.dt, limit.by);
   };
   integrated.clear();
@@ -42,9 +46,9 @@ StepLimit UniformSteps::tightest_limit()
     double *row = parts.rows[i];
     row[UpdateRows::OWN_STEP] = std::min(limit.dt, parts.options.ceiling);
     row[UpdateRows::LAST_UPDATE] = now;
-    take(limit);
+    take(i, limit);
   });
-  parts.limits.for_vertices([&](int, const StepLimit &limit) { take(limit); });
+  parts.limits.for_vertices(take);
   return tightest;
 }
 

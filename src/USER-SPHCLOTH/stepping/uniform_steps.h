@@ -24,6 +24,7 @@ class UniformSteps : public Stepper {
  private:
   bool constant;    // the step is the user's
   std::vector<int> integrated;
+  tagint limited = 0;    // the particle or vertex with the tightest limit
 
   sphcloth::StepLimit tightest_limit();
 };

@@ -1,0 +1,162 @@
+"""Limits of the step: coefficients of pairs, light vertices in viscous water, the floor."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import (
+    FLUID,
+    box,
+    cloth_box,
+    cloth_styles,
+    filled,
+    gravity,
+    header,
+    lattice,
+    neighbor,
+    sheet,
+    sph_tait,
+)
+from test_stepping import VISCOUS, WETTED, dt_and_limit
+
+ONLY = "velocity 0 force 0 density 0"
+
+
+def wet_sheet(areal=1.0, options="", water="c0 20", pair="", support="0.1"):
+    """The step that a particle of water above a sheet, or the sheet below it, asks for."""
+    lmp = instance()
+    lmp.commands_string(
+        header()
+        + cloth_box("-1 1 -1 1 -1 1")
+        + "mass 1 0.01\n"
+        + sheet(2, areal, "0.4 0.4", 0.05)
+        + "create_atoms 1 single 0 0 0.03\ngroup fluid type 1\n"
+        + sph_tait(f"1 1 fluid 1000 {water}", "2 2 boundary", *([pair] if pair else []))
+        + cloth_styles("1", "0")
+        + neighbor(0.02)
+        + f"""timestep 1
+        fix step fluid sph/integrate global {ONLY} {options}
+        fix sheet cloth pbd/cloth
+        run 0"""
+    )
+    found = dt_and_limit(lmp)
+    lmp.close()
+    return found
+
+
+def test_light_vertices_in_viscous_water_shorten_the_step():
+    """Friction slows a light vertex down faster than water, by the ratio of the masses."""
+    light, heavy = (wet_sheet(a, "acoustic 0", "c0 20 nu 0.1") for a in (1.0, 4.0))
+    assert light[1] == heavy[1] == VISCOUS
+    assert heavy[0] == pytest.approx(4 * light[0], rel=1e-9)
+    assert heavy[0] < 0.2 * 0.05**2 / 0.1
+    artificial = wet_sheet(1.0, "acoustic 0", "c0 20 alpha 0.5")
+    assert artificial[0] == pytest.approx(light[0] * 0.1 / (0.5 * 20 * 0.05 / 10), rel=1e-9)
+
+
+def test_a_friction_of_the_pair_limits_both_partners():
+    own = wet_sheet(100.0, "acoustic 0", "c0 20 nu 0.1")
+    pair = wet_sheet(100.0, "acoustic 0", "c0 20 nu 0.001", "1 2 nu 0.4")
+    assert own == (pytest.approx(0.2 * 0.05**2 / 0.1, rel=1e-9), VISCOUS)
+    assert pair == (pytest.approx(own[0] / 4, rel=1e-9), VISCOUS)
+    lower = wet_sheet(100.0, "acoustic 0", "c0 20 nu 0.1", "1 2 nu 0")
+    assert lower == own
+
+
+@pytest.mark.parametrize("areal", [1.0, 100.0])
+def test_a_stiffness_of_the_pair_limits_both_partners(areal):
+    """Pressure four times as stiff is felt as sound twice as fast."""
+    usual, stiff = wet_sheet(areal), wet_sheet(areal, pair="1 2 k 1600")
+    assert stiff[0] == pytest.approx(usual[0] / 2, rel=1e-9)
+
+
+def test_the_limit_of_a_wet_vertex_is_that_of_the_fluid_at_it():
+    """Its own type has the support of the pair style, water beside it may have a smaller one."""
+    coarse = wet_sheet(1.0, options="viscous 0")
+    fine = wet_sheet(1.0, options="viscous 0", water="c0 20 support 0.05")
+    assert coarse[1] == fine[1] == WETTED
+    assert fine[0] == pytest.approx(coarse[0] / 2, rel=1e-9)
+
+
+def test_a_light_sheet_in_viscous_water_does_not_ring():
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f")
+        + cloth_box("-0.03 0.03 -0.03 0.03 -0.02 0.03")
+        + f"mass 1 {1000 * 0.005**3}\nmass 2 1\n"
+        + sheet(2, 0.2, "0.04 0.04", 0.005)
+        + "region rim block -0.0199 0.0199 -0.0199 0.0199 INF INF side out units box\n"
+        + "group rim region rim\ngroup pins intersect rim cloth\n"
+        + lattice(0.005)
+        + filled("drop", "-0.011 0.011 -0.011 0.011 0.006 0.016")
+        + "group fluid type 1\n"
+        + sph_tait("1 1 fluid 1000 c0 5 nu 0.01", "2 2 boundary", support=0.01)
+        + cloth_styles()
+        + neighbor(0.003)
+        + gravity()
+        + """timestep 1e-3
+        fix step fluid sph/integrate global until 0.008
+        fix sheet cloth pbd/cloth pin pins
+        compute energy cloth ke
+        thermo_style custom step time c_energy
+        run 100000 post no"""
+    )
+    energy = lmp.extract_compute("energy", 0, 0)
+    lmp.close()
+    assert 0 < energy < 1e-9  # 1e-10 with steps of 10 us, 3e-8 with those of sound
+
+
+DROP = (
+    header("f f f", FLUID)
+    + box("-1 1 -1 1 -1 1")
+    + "mass 1 0.125\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 0.5 0 0\n"
+    + sph_tait("1 1 fluid 1000 c0 20")
+    + neighbor(0.05)
+    + "timestep 1e-3\n"
+)
+
+
+def error_of_speed(speed, options="", scheme="global"):
+    with instance() as lmp:
+        lmp.commands_string(
+            f"{DROP}fix step all sph/integrate global {options}\nrun_style sph/adaptive {scheme}"
+        )
+        lmp.command(f"set atom 2 vx {speed}")
+        try:
+            lmp.command("run 0")
+        except Exception as error:
+            return str(error)
+        return lmp.extract_fix("step", 0, 0)
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+def test_a_step_below_a_millionth_of_the_largest_ends_the_run(scheme):
+    """A run that has exploded would go on with ever shorter steps."""
+    message = error_of_speed(1.1e7, scheme=scheme)
+    assert "fix step sph/integrate: the velocity limit of particle 2 asks for a step" in message
+    assert "below min 1e-09 (1e-06 of max 0.001): a run that needs such steps" in message
+    assert "lower min, or use 'below clamp'" in message
+    assert error_of_speed(0.9e7, scheme=scheme) == pytest.approx(0.1 * 0.1 / 0.9e7)
+    assert error_of_speed(1.1e7, "min 1e-12", scheme) == pytest.approx(0.1 * 0.1 / 1.1e7)
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+def test_a_vertex_below_the_floor_is_named(scheme):
+    with instance() as lmp:
+        lmp.commands_string(
+            header()
+            + cloth_box("-1 1 -1 1 -1 1")
+            + "mass 1 0.01\n"
+            + sheet(2, 1.0, "0.4 0.4", 0.1)
+            + "create_atoms 1 single 0 0 0.5\ngroup fluid type 1\n"
+            + sph_tait("1 1 fluid 1000 c0 20", "2 2 boundary")
+            + cloth_styles()
+            + neighbor(0.02)
+            + f"""timestep 1e-3
+            fix step fluid sph/integrate global
+            fix sheet cloth pbd/cloth
+            run_style sph/adaptive {scheme}
+            set atom 7 vz 1e8"""
+        )
+        with pytest.raises(Exception, match="velocity limit of particle 7 asks for a step"):
+            lmp.command("run 0")
+        assert np.isfinite(by_id(lmp, "x")).all()

@@ -56,6 +56,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     error->all(FLERR, "{}: group {} has no atoms: create the cloth before this fix", label,
                group->names[igroup]);
 
+  rest_box = RestBox::of(domain);
   rest_x.create(3, atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -137,7 +138,7 @@ void FixPBDCloth::init()
   const auto *adaptive = dynamic_cast<HasSteppingScheme *>(update->integrate);
   powers_of_two = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
   reference_step = find_reference_step();
-  constraints.measure_rest(groupbit, rest_x);
+  constraints.measure_rest(groupbit, rest_x, rest_box);
   const Substepping::Options &solving = options.solving;
   constraints.color(solving.symmetric_sweeps ? 2 * solving.iterations : solving.iterations,
                     substepping.uses(ClothSolver::JACOBI));
@@ -470,12 +471,14 @@ int FixPBDCloth::maxsize_restart()
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, substepping.state());
+  write_record(fp, RestartRecord{substepping.state(), rest_box});
 }
 
 void FixPBDCloth::restart(char *buf)
 {
-  substepping.set_state(read_record<Substepping::State>(buf, label, error));
+  const auto record = read_record<RestartRecord>(buf, label, error);
+  substepping.set_state(record.state);
+  rest_box = record.rest_box;
   keep_restored_time(update);
 }
 

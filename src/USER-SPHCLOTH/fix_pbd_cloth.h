@@ -78,11 +78,17 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
  private:
   using Vec3 = Eigen::Vector3d;
 
+  struct RestartRecord {    // plain and without gaps
+    Substepping::State state;
+    RestBox rest_box;
+  };
+
   std::string label;
   ClothOptions options;
   double reference_step;    // for which k holds, 0: it holds for every step
 
   ParticleColumns rest_x;    // rest position of each vertex, unwrapped
+  RestBox rest_box;
   ClothTopology mesh;
   ClothConstraints constraints;
   ClothVertices vertices;

@@ -411,6 +411,36 @@ def test_pins_that_move_carry_the_cloth_along(solver):
     np.testing.assert_allclose(by_id(lmp, "v")[1], [0.3, 0, 0], atol=1e-9)
 
 
+RING = """
+region box prism 0 1 -0.5 0.5 -0.5 0.5 {tilt} 0 0
+create_box 1 box bond/types 2 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 16
+mass 1 1
+"""
+MEASURED = "compute edge all pbd/local ring edge rest length\nrun 0"
+
+
+@pytest.mark.parametrize("tilt", [0, 0.3])
+@pytest.mark.parametrize("restart", [False, True])
+def test_rest_lengths_across_a_periodic_face_do_not_follow_the_box(tilt, restart, tmp_path):
+    """Ten atoms, 0.1 apart around a periodic box whose side becomes 1.2 between two runs."""
+    lmp = instance()
+    settings = styles(0, cutoff=0.3) + "fix ring all pbd/cloth\n"
+    ring = "".join(f"create_atoms 1 single {0.1 * n + 0.05 + tilt / 2} 0 0\n" for n in range(10))
+    ring += "".join(f"create_bonds single/bond 1 {n} {n % 10 + 1}\n" for n in range(1, 11))
+    lmp.commands_string(header() + RING.format(tilt=tilt) + ring + settings + "run 1")
+    lmp.command("change_box all x final 0 1.2 remap units box")
+    if restart:
+        lmp.command(f"write_restart {tmp_path / 'ring'}")
+        lmp = instance()
+        lmp.command(f"read_restart {tmp_path / 'ring'}")
+        lmp.commands_string(settings)
+    lmp.commands_string(MEASURED)
+    rest, length = np.array(lmp.numpy.extract_compute("edge", 2, 2)).T
+    np.testing.assert_allclose(rest, 0.1, rtol=1e-12)
+    np.testing.assert_allclose(length, 0.12, rtol=1e-12)
+
+
 def string_under_tension(dt, direction):
     """Largest deflection of a taut string after 2000 steps, of a tenth of a millimeter at first.
 

@@ -12,7 +12,6 @@
 #include "cloth/pbd_material.h"
 #include "core/pbd/coloring.h"
 #include "dihedral.h"
-#include "domain.h"
 #include "error.h"
 #include "force.h"
 
@@ -54,7 +53,8 @@ bool ClothConstraints::has_strain(int m) const
 
 // Rest lengths and rest angles from the rest positions, which each vertex carries.
 
-void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x)
+void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x,
+                                    const RestBox &rest_box)
 {
   const int n = mesh.n_vertices();
   std::vector<Vec3> mine(n, Vec3::Zero()), rest(n);
@@ -76,11 +76,7 @@ void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x)
   MPI_Allreduce(mine.data(), rest.data(), 3 * n, MPI_DOUBLE, MPI_SUM, world);
 
   // nearest images, for cloth that closes over a periodic boundary
-  const auto from = [&](int a, int b) {
-    Vec3 d = rest[b] - rest[a];
-    domain->minimum_image(FLERR, d.data());
-    return d;
-  };
+  const auto from = [&](int a, int b) { return rest_box.nearest_image(rest[b] - rest[a]); };
   mean = 0.0;
   edges.rest.clear();
   for (const auto &[a, b] : mesh.edges.vertices) {

@@ -6,6 +6,7 @@
 #define SPHCLOTH_CLOTH_CLOTH_CONSTRAINTS_H
 
 #include "cloth/cloth_topology.h"
+#include "cloth/rest_box.h"
 #include "cloth/vertex_halo.h"
 #include "core/pbd/cloth_solver.h"
 #include "lammps_util/particle_columns.h"
@@ -31,7 +32,7 @@ class ClothConstraints : protected Pointers {
   // that many together do what a stiffness says.  at_once: a sweep sees none of itself, so that a
   // constraint may do only a share.
 
-  void measure_rest(int groupbit, const ParticleColumns &rest_x);
+  void measure_rest(int groupbit, const ParticleColumns &rest_x, const RestBox &rest_box);
   void color(int sweeps, bool at_once);
 
   // 2. after each list build, between reset() and connect() of the halo, which must have that many

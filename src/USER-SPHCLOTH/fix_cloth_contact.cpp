@@ -94,6 +94,7 @@ void FixClothContact::init()
   surfaces.clear();
   obstacles.clear();
   obstacle_surfaces.clear();
+  sheets.clear();
   couplings.clear();
   vertex_bits = 0;
   std::vector<FixPBDCloth *> cloths;
@@ -183,13 +184,22 @@ void FixClothContact::setup_post_neighbor()
                "data file needs an Angles section",
                label);
   store_positions();
-  if (rules.sides && surfaces.size() > sphcloth::MAX_SHEETS)
-    error->all(FLERR, "{}: {} cloths have sides, the most are {}: give 'sides no'", label,
-               surfaces.size(), sphcloth::MAX_SHEETS);
-  if (rules.sides)
-    for (auto &surface : surfaces) surface->triangles.check_winding();
+  if (rules.sides) find_sheets();
   post_neighbor();
   warn_of_too_near();
+}
+
+void FixClothContact::find_sheets()
+{
+  sheets.clear();
+  for (auto &surface : surfaces) sheets.push_back(surface.get());
+  for (auto &surface : obstacle_surfaces)
+    if (surface->triangles.is_open()) sheets.push_back(surface.get());
+  if (sheets.size() > sphcloth::MAX_SHEETS)
+    error->all(FLERR,
+               "{}: {} cloths and open obstacles have sides, the most are {}: give 'sides no'",
+               label, sheets.size(), sphcloth::MAX_SHEETS);
+  for (ContactSurface *sheet : sheets) sheet->triangles.check_winding();
 }
 
 void FixClothContact::warn_of_too_near()
@@ -222,8 +232,8 @@ void FixClothContact::find_sides()
 {
   side.assign(atom->nmax, 0);
   if (view_distance == 0.0) return;
-  for (std::size_t sheet = 0; sheet < surfaces.size(); sheet++)
-    surfaces[sheet]->sides.find(view_distance, static_cast<int>(sheet), side);
+  for (std::size_t sheet = 0; sheet < sheets.size(); sheet++)
+    sheets[sheet]->sides.find(view_distance, static_cast<int>(sheet), side);
   comm->forward_comm(this);
 }
 

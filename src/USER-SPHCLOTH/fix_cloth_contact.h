@@ -88,6 +88,7 @@ class FixClothContact : public Fix, public SideSource {
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
+  std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
   std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
@@ -103,6 +104,7 @@ class FixClothContact : public Fix, public SideSource {
   void subtract_excess_velocities();
   void subtract_excess_velocity(int i);
   void warn_of_too_near();
+  void find_sheets();
   void find_sides();
   void read_obstacle(ArgReader &);
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);

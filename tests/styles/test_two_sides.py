@@ -88,6 +88,29 @@ def test_it_stays_so_while_the_sheet_moves_on_any_ranks(tmp_path):
     assert not (one[fluid & inside, 8] == wrong[fluid & inside]).any()
 
 
+WALLS = {
+    "cloth": "fix sheet cloth pbd/cloth pin cloth\nfix contact fluid cloth/contact 0.005 wall yes",
+    "plate": "fix contact fluid cloth/contact 0.005 obstacle cloth wall yes",
+}
+
+
+@pytest.mark.parametrize("sides", ["yes", "no"])
+def test_a_thin_plate_parts_the_pools_as_a_cloth_does(sides):
+    """Density and forces of the water on both sides of an obstacle are those at a pinned cloth."""
+    found = {}
+    for name, wall in WALLS.items():
+        lmp = instance()
+        lmp.commands_string(POOLS.format(fill="\n".join(FILL.values()), sheet=SHEET))
+        lmp.commands_string(
+            f"{wall} sides {sides}\ncomm_modify cutoff 0.3\ncompute side all sph/atom side\nrun 1"
+        )
+        fluid = by_id(lmp, "type") < 3
+        found[name] = [by_id(lmp, key)[fluid] for key in ("rho", "f")]
+        assert (compute(lmp, "side")[fluid] != 0).any() == (sides == "yes")
+    for one, other in zip(*found.values(), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12 * np.abs(other).max())
+
+
 def test_the_sheet_carries_the_pool_on_it():
     """By contact alone: what the pins carry is the weight."""
     lmp = pools(

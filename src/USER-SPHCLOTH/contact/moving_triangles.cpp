@@ -70,11 +70,48 @@ Sweep MovingTriangles::sweep_of(int i) const
   return {Vec3(last[0][i], last[1][i], last[2][i]), Vec3(x[0], x[1], x[2])};
 }
 
-std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t) const
+std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t, double part) const
 {
   std::array<Sweep, 3> sweep;
-  for (int q = 0; q < 3; q++) sweep[q] = {start[triangles[t][q]], end[triangles[t][q]]};
+  for (int q = 0; q < 3; q++)
+    sweep[q] = {start[triangles[t][q]], position_at(triangles[t][q], part)};
   return sweep;
+}
+
+ContactResult MovingTriangles::contact(const Sweep &p, int t, double slack, double part) const
+{
+  const std::array<Sweep, 3> sweep = sweep_of_triangle(t, part);
+  const ContactResult found = point_triangle_contact(p, sweep, rules.thickness, slack);
+  if (!found.hit || found.through) return found;
+  Vec3 from_nearest = p.end;
+  for (int q = 0; q < 3; q++) from_nearest -= found.weight[q] * sweep[q].end;
+  return is_nearer_to_another(t, found.weight, from_nearest, part) ? ContactResult() : found;
+}
+
+// At an edge: inwards in the other triangle.  At a vertex: along all edges that end there, of which
+// those of the triangle itself lead away from the point.
+
+bool MovingTriangles::is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
+                                           double part) const
+{
+  std::array<int, 3> at{};    // the vertices of the edge, or the vertex
+  int n = 0;
+  for (int q = 0; q < 3; q++)
+    if (weight[q] > 0.0) at[n++] = triangles[t][q];
+  if (n == 3) return false;
+  const Vec3 a = position_at(at[0], part);
+  const Vec3 edge = n == 2 ? Vec3(position_at(at[1], part) - a) : Vec3::Zero();
+  for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
+    const std::array<int, 3> &other = triangles[incident[k]];
+    if (n == 2 && std::find(other.begin(), other.end(), at[1]) == other.end()) continue;
+    for (int s : other) {
+      if (s == at[0] || (n == 2 && s == at[1])) continue;
+      Vec3 direction = position_at(s, part) - a;
+      if (n == 2) direction -= edge.dot(direction) / edge.squaredNorm() * edge;
+      if (inclines_to(direction, from_nearest)) return true;
+    }
+  }
+  return false;
 }
 
 Box MovingTriangles::swept_box(int t) const
@@ -105,5 +142,5 @@ void MovingTriangles::push_held(int i, const Vec3 &impulse)
 
 double MovingTriangles::memory_usage() const
 {
-  return halo.memory_usage() + bytes_of(start, end, w, w_solver, moved);
+  return halo.memory_usage() + bytes_of(first, incident, start, end, w, w_solver, moved);
 }

@@ -45,7 +45,18 @@ class MovingTriangles : public TriangleSet {
   void add_vertices_of(const ContactMesh *other) { others.push_back(other); }
 
   sphcloth::Sweep sweep_of(int atom) const;
-  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
+  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t, double part = 1.0) const;
+  // Contact with a point whose start is that of the step, `part` of which has passed.  One that is
+  // nearer to another triangle at the same edge or vertex only counts if it passes through: the
+  // normal of a surface is that of the triangle that is nearest.
+  sphcloth::ContactResult contact(const sphcloth::Sweep &, int t, double slack,
+                                  double part = 1.0) const;
+
+  // Of a point at this vector from its nearest point in a triangle, which has these weights: is it
+  // nearer to another triangle at the same edge or vertex?
+  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
+                            double part = 1.0) const;
+
   sphcloth::Box swept_box(int t) const;    // with room for contact
 
   // Does the first contact go deeper?  Two triangles may be hit alike, on an edge: then all ranks
@@ -61,6 +72,11 @@ class MovingTriangles : public TriangleSet {
  private:
   std::vector<const ContactMesh *> others;
   const ParticleColumns &last_positions;
+
+  Vec3 position_at(int slot, double part) const
+  {
+    return part == 1.0 ? end[slot] : Vec3(start[slot] + part * (end[slot] - start[slot]));
+  }
 };
 
 }    // namespace LAMMPS_NS

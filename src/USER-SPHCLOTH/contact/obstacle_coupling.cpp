@@ -100,21 +100,13 @@ int ObstacleCoupling::find_deepest(const VertexContact &c, const Vec3 &position,
 {
   int triangle = -1;
   for (int k = c.first; k < c.last; k++) {
-    const ContactResult contact = point_triangle_contact(
-        {c.start, position}, sweep_so_far(candidates[k]), obstacle.rules.thickness, 0.0);
+    const ContactResult contact =
+        obstacle.contact({c.start, position}, candidates[k], 0.0, elapsed / step_dt);
     if (!contact.hit || !obstacle.is_deeper(contact, candidates[k], deepest, triangle)) continue;
     deepest = contact;
     triangle = candidates[k];
   }
   return triangle;
-}
-
-std::array<Sweep, 3> ObstacleCoupling::sweep_so_far(int t) const
-{
-  const double part = elapsed / step_dt;
-  std::array<Sweep, 3> sweep = obstacle.sweep_of_triangle(t);
-  for (Sweep &s : sweep) s.end = s.start + part * (s.end - s.start);
-  return sweep;
 }
 
 Eigen::Vector3d ObstacleCoupling::relative_velocity(const Vec3 &of_vertex, int triangle,

@@ -60,7 +60,6 @@ class ObstacleCoupling : public SolverCoupling, protected Pointers {
   void find_candidates(int slot, const sphcloth::Sweep &);
   int find_deepest(const VertexContact &, const Vec3 &position,
                    sphcloth::ContactResult &deepest) const;
-  std::array<sphcloth::Sweep, 3> sweep_so_far(int t) const;
   Vec3 relative_velocity(const Vec3 &of_vertex, int triangle, const Vec3 &weight) const;
 };
 

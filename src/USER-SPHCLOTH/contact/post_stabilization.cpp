@@ -70,8 +70,7 @@ bool PostStabilization::resolve_deepest(bool recover)
       triangle = -1;
       deepest = ContactResult();
     }
-    ContactResult contact =
-        point_triangle_contact(sweep, mesh.sweep_of_triangle(t), mesh.rules.thickness, SLACK);
+    ContactResult contact = mesh.contact(sweep, t, SLACK);
     const double into = contact.depth - SLACK * contact.gap;
     if (contact.through)
       contact.depth += SLACK * contact.gap;
@@ -101,6 +100,7 @@ bool PostStabilization::recover_gap(ContactResult &contact, const Vec3 &p, int t
   const Vec3 vector = distance_vector(p, mesh.end[a], mesh.end[b], mesh.end[c], weight);
   const double distance = vector.norm();
   if (distance == 0.0 || distance >= thickness) return false;
+  if (mesh.is_nearer_to_another(t, weight, vector)) return false;
   contact.weight = weight;
   contact.normal = vector / distance;
   contact.depth = std::max(contact.depth, std::min(thickness - distance, RECOVERY * thickness));

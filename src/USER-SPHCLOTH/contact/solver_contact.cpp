@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -111,15 +112,15 @@ void SolverContact::project(Vertex *displacement)
 }
 
 // Closes what is missing of the gap.  What was corrected too far before is taken back, but a pair
-// never pulls.  All of this is continuous in the positions: whether a gap that is just closed
+// never pulls, and what was corrected where another triangle has become the nearest is taken back
+// whole.  All of this is continuous in the positions: whether a gap that is just closed
 // counts as a hit is round-off, and makes no difference.
 
 void SolverContact::project_normal(ContactPair &pair)
 {
   const ContactParticle &p = contacts.particle_of(pair);
   const std::array<int, 3> &slots = mesh.triangles[pair.triangle];
-  const ContactResult contact = point_triangle_contact(
-      {p.start, p.end}, mesh.sweep_of_triangle(pair.triangle), mesh.rules.thickness, 0.0);
+  const ContactResult contact = mesh.contact({p.start, p.end}, pair.triangle, 0.0);
   double missing = contact.depth;
   if (contact.hit) {
     pair.weight = contact.weight;
@@ -131,11 +132,17 @@ void SolverContact::project_normal(ContactPair &pair)
     mesh.counts.contacts++;
     mesh.counts.deepest = std::max(mesh.counts.deepest, contact.depth);
   } else if (pair.normal_correction > 0.0) {
+    Vec3 weight;
     const Vec3 vector = distance_vector(p.end, mesh.end[slots[0]], mesh.end[slots[1]],
-                                        mesh.end[slots[2]], pair.weight);
+                                        mesh.end[slots[2]], weight);
     const double distance = vector.norm();
     missing = pair.gap - distance;
-    if (distance > 0.0) pair.normal = vector / distance;
+    if (mesh.is_nearer_to_another(pair.triangle, weight, vector))
+      missing = -std::numeric_limits<double>::max();
+    else {
+      pair.weight = weight;
+      if (distance > 0.0) pair.normal = vector / distance;
+    }
   } else
     return;
   const double step =

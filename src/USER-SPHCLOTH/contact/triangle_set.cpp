@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 
@@ -41,6 +42,7 @@ void TriangleSet::rebuild(double max_distance)
   add_triangles(reach);
   for (int s = halo.n_owned(); s < halo.n_slots(); s++) halo.need(s, 0);
   halo.connect();
+  find_incident();
   check_reach(max_distance);
 }
 
@@ -69,6 +71,17 @@ void TriangleSet::add_triangles(const std::vector<int> &reach)
       element.push_back(t.incident[k]);
     }
   }
+}
+
+void TriangleSet::find_incident()
+{
+  first.assign(halo.n_slots() + 2, 0);
+  for (const std::array<int, 3> &t : triangles)
+    for (int s : t) first[s + 2]++;
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  incident.resize(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); t++)
+    for (int s : triangles[t]) incident[first[s + 1]++] = static_cast<int>(t);
 }
 
 void TriangleSet::check_reach(double max_distance)
@@ -105,6 +118,13 @@ void TriangleSet::find_border()
     for (int q = 0; q < 3; q++) at_border[m][q] = triangles_at[edge(elements[m], q)] == 1;
 }
 
+bool TriangleSet::is_open()
+{
+  if (at_border.empty()) find_border();
+  return std::any_of(at_border.begin(), at_border.end(),
+                     [](const auto &sides) { return sides[0] || sides[1] || sides[2]; });
+}
+
 void TriangleSet::check_winding() const
 {
   const ClothTopology &cloth = mesh->topology();
@@ -114,7 +134,7 @@ void TriangleSet::check_winding() const
       if (++at_edge[{t[q], t[(q + 1) % 3]}] > 1)
         error->all(
             FLERR,
-            "{}: two triangles run from vertex {} to vertex {}: a cloth with two sides must be "
+            "{}: two triangles run from vertex {} to vertex {}: a mesh with two sides must be "
             "wound alike everywhere ('sphcloth mesh' does that); or give 'sides no'",
             label, cloth.ids[t[q]], cloth.ids[t[(q + 1) % 3]]);
 }

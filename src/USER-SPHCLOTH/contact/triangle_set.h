@@ -35,6 +35,10 @@ class TriangleSet : protected Pointers {
   VertexHalo halo;
   std::vector<std::array<int, 3>> triangles;    // slots
   std::vector<int> element;    // of the mesh, of each triangle
+  std::vector<int> first, incident;    // triangles at slot s: incident[first[s] .. first[s+1])
+
+  // Has the mesh a border?  One without it has all fluid on one side.
+  bool is_open();
 
   // nothing is beyond the edge of an element that is opposite to a vertex
   bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
@@ -54,6 +58,7 @@ class TriangleSet : protected Pointers {
   std::vector<std::array<bool, 3>> at_border;    // of each element
 
   void find_border();
+  void find_incident();
   void add_triangles(const std::vector<int> &reach);
   void check_reach(double max_distance);
 };

@@ -119,6 +119,14 @@ inline Vec3 distance_vector(const Vec3 &p, const Vec3 &a, const Vec3 &b, const V
   return p - weight[0] * a - weight[1] * b - weight[2] * c;
 }
 
+// Is the line to a point, from the nearest point of an edge or a vertex, inclined to what begins
+// there and runs in a direction?  Then the nearest point of all is not on that edge or vertex.
+
+inline bool inclines_to(const Vec3 &direction, const Vec3 &from_nearest)
+{
+  return from_nearest.dot(direction) > SEAM * from_nearest.norm() * direction.norm();
+}
+
 // The signed volume of point and triangle in the course of the step, times 6:
 // c0 + c1 t + c2 t^2 + c3 t^3.
 

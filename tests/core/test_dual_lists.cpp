@@ -5,6 +5,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -148,6 +149,55 @@ BOOST_AUTO_TEST_CASE(types_that_do_not_interact_have_an_empty_inner_list)
   BOOST_CHECK(w.walk.type[1] == 2);
   BOOST_CHECK(w.lists(w.lists.slot(1), 2).n == 0);
   BOOST_CHECK(w.lists(w.lists.slot(1), 1).n > 0);
+}
+
+// Types 3 and 30 of 32 instead of 1 and 2 of 2: the same lists, in as much memory.
+
+BOOST_AUTO_TEST_CASE(types_without_particles_take_no_memory)
+{
+  constexpr int N = 300, OWNED = 200, TYPES = 32;
+  const std::array<int, 3> among{0, 3, 30};
+  Walk few(N), many(N);
+  for (int &t : many.type) t = among[t];
+  const std::vector<double> support{0, 0, 0, 0, SUPPORT, SUPPORT, 0, SUPPORT, 0};
+  std::vector<double> of_many((TYPES + 1) * (TYPES + 1), SUPPORT);
+  for (int t = 1; t <= 2; t++)
+    for (int other = 1; other <= 2; other++)
+      of_many[among[t] * (TYPES + 1) + among[other]] = support[3 * t + other];
+  std::vector<double> interval(TYPES + 1, 7.0);
+  interval[3] = interval[30] = 1.0;
+  const auto points = [&](const Walk &w, int types) -> Points {
+    return {w.x.data(), w.type.data(), OWNED, N, types};
+  };
+  DualLists lists, others;
+  lists.build(points(few, 2), support.data(), SKIN, {3, nullptr, 1.0, {1.0, 1.0, 1.0}});
+  others.build(points(many, TYPES), of_many.data(), SKIN, {3, nullptr, 1.0, interval});
+  BOOST_CHECK(others.present_types() == (std::vector<int>{3, 30}));
+  BOOST_CHECK(others.bytes() < 1.02 * lists.bytes());
+  BOOST_CHECK(others.begin(1) == 0 && others.begin(4) == lists.begin(2));
+  BOOST_CHECK(others.begin(TYPES + 1) == lists.begin(3));
+  const std::vector<int> value(N, 5);
+  for (int step = 0; step < 30; step++) {
+    few.move(2e-3);
+    many.x = few.x;
+    lists.follow(points(few, 2));
+    others.follow(points(many, TYPES));
+    for (int i = 0; i < OWNED; i++) {
+      const int slot = lists.slot(i);
+      BOOST_REQUIRE(others.slot(i) == slot);
+      lists.refresh(slot);
+      others.refresh(slot);
+      for (int t = 1; t <= 2; t++) {
+        const NeighborSpan one = lists(slot, t), other = others(slot, among[t]);
+        BOOST_REQUIRE(std::vector<int>(one.of, one.of + one.n) ==
+                      std::vector<int>(other.of, other.of + other.n));
+        BOOST_CHECK(others.inner_skin(slot, among[t]) == lists.inner_skin(slot, t));
+      }
+      BOOST_CHECK(others(slot, 17).n == 0 && others.others(0, slot, 17, value.data()).n == 0);
+      BOOST_CHECK(!others.any_above(1, slot, 17, value.data(), false));
+      BOOST_CHECK(others.any_above(1, slot, 3, value.data(), false) == (others(slot, 3).n > 0));
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(inner_list_is_right_as_soon_as_lists_are_built)

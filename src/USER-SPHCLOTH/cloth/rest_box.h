@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The periodic box in which a cloth has its rest positions.  Rest lengths across a periodic face
 // are measured in it, whatever the box becomes.
 

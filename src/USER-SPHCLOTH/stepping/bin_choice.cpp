@@ -286,7 +286,7 @@ bool BinChoice::is_too_coarse(int i) const
 {
   DualLists &lists = fluid->order();
   const int slot = lists.slot(i), type_i = atom->type[i];
-  for (int t = 1; t <= atom->ntypes; t++)
+  for (const int t : lists.present_types())
     if (lists.any_above(state.bin[i] + allowed_difference(type_i, t), slot, t, state.bin.data(),
                         state.clock.all_synchronized()))
       return true;

@@ -143,7 +143,7 @@ bool BlockImpulses::neighbors_share_step(int i)
   DualLists &lists = state.fluid->order();
   const int slot = lists.slot(i), key_i = state.key[i];
   bool share = StepKey::before(key_i) != StepKey::BROKEN;
-  for (int t = 1; t <= atom->ntypes; t++) {
+  for (const int t : lists.present_types()) {
     const NeighborSpan others =
         lists.others(key_i, slot, t, state.key.data(), state.clock.all_synchronized());
     if (others.n > 0) share = examine(i, t, others) && share;

@@ -44,13 +44,23 @@ class DualLists {
  public:
   // support: [(n_types+1)^2], up to where two types interact, 0: never.  No list needs a wider skin
   // than max_skin: lists are built again before particles have approached by more.
-  void build(const Points &p, const double *support, double max_skin, const Motion &motion)
+  void build(const Points &all, const double *support_of_all, double max_skin,
+             const Motion &motion)
   {
     give_back(reference);    // its memory for what the lists are made of
+    find_present(all);
+    const Points p = by_present_type(all);
     types = p.n_types;
     dim = motion.dimension;
-    interval = motion.interval;
-    set_limits(support, max_skin);
+    interval.assign(types + 1, 0.0);
+    std::vector<double> support((types + 1) * (types + 1), 0.0);
+    for (int t = 1; t <= types; t++) {
+      if (!motion.interval.empty()) interval[t] = motion.interval[present[t - 1]];
+      for (int other = 1; other <= types; other++)
+        support[pair(t, other)] =
+            support_of_all[present[t - 1] * (all.n_types + 1) + present[other - 1]];
+    }
+    set_limits(support.data(), max_skin);
     set_blocks(p, max_skin, motion);
     const std::vector<double> near = inner_reach();
     outer.build(p, cutoff.data(), {near.data(), blocks.of_particle()}, n_inner);
@@ -66,7 +76,11 @@ class DualLists {
     set_reference(p);
     longest_list = 0;
     note_lists([](int, int, int) { return true; });
+    give_back(present_type);
   }
+
+  // Types that have particles here, ascending: lists of others are empty.
+  const std::vector<int> &present_types() const { return present; }
 
   // Once per evaluation but for the one for which lists are new, before they are read.  The
   // particles are those for which lists were built, where they are now.
@@ -89,7 +103,9 @@ class DualLists {
       bound.at_reference = bound.approach;
     });
     set_reference(p);
-    if (!outer_hold) renew(p);
+    if (outer_hold) return;
+    renew(by_present_type(p));
+    give_back(present_type);
   }
 
   // makes all inner lists of one particle valid
@@ -109,14 +125,18 @@ class DualLists {
   void measure_block_ranges(const int *value) { ranges.take(value); }
   bool any_above(int limit_of_value, int slot, int other, const int *value, bool ranges_known)
   {
-    if (ranges_known && ranges.greatest(block[slot], other) <= limit_of_value) return false;
+    const int column = number[other];
+    if (column == 0) return false;
+    if (ranges_known && ranges.greatest(block[slot], column) <= limit_of_value) return false;
     refresh(slot);
     return greatest((*this)(slot, other), value) > limit_of_value;
   }
   // valid until the next call
   NeighborSpan others(int same, int slot, int other, const int *value, bool ranges_known = false)
   {
-    if (ranges_known && ranges.all_have(same, block[slot], other)) return {nullptr, 0};
+    const int column = number[other];
+    if (column == 0) return {nullptr, 0};
+    if (ranges_known && ranges.all_have(same, block[slot], column)) return {nullptr, 0};
     refresh(slot);
     const NeighborSpan near = (*this)(slot, other);
     const int n = pick_others(value, same, near.of, near.n, spare.data());
@@ -125,25 +145,30 @@ class DualLists {
   }
 
   // owned particles by type and in space, see CellLists
-  int begin(int t) const { return outer.begin(t); }
+  int begin(int t) const { return outer.begin(n_before[t] + 1); }
   int slots() const { return outer.slots(); }
   int at(int slot) const { return outer.at(slot); }
   // all neighbors inside the support and some a little outside, as of the last refresh
   NeighborSpan operator()(int slot, int t) const
   {
-    return {outer(slot, t).of, n_inner[of(slot, t)]};
+    const int column = number[t];
+    if (column == 0) return {nullptr, 0};
+    return {outer(slot, column).of, n_inner[of(slot, column)]};
   }
   int slot(int owned) const { return slot_of[owned]; }
   // of the inner list of one particle, if it were pruned now
-  double inner_skin(int slot, int t) const { return at(block[slot], type_of(slot), t).skin; }
+  double inner_skin(int slot, int t) const
+  {
+    return number[t] == 0 ? 0.0 : at(block[slot], type_of(slot), number[t]).skin;
+  }
   // list, of one particle and type
   int longest() const { return longest_list; }
 
   double bytes() const
   {
     return outer.bytes() + blocks.bytes() + displacements.bytes() + ranges.bytes() +
-        bytes_of(reference, inner_until, n_inner, slot_of, block, current, pair_bounds, due,
-                 due_block);
+        bytes_of(present, number, n_before, reference, inner_until, n_inner, slot_of, block,
+                 current, pair_bounds, due, due_block);
   }
 
  private:
@@ -163,6 +188,12 @@ class DualLists {
   static constexpr double LIST_SKIN = 0.3;
   // minimum inner skin over support while nothing is known of the motion
   static constexpr double FIRST_SKIN = 0.02;
+
+  // Inside, types are numbered by those that are present: a type without particles costs nothing.
+  std::vector<int> present;    // types, ascending
+  std::vector<int> number;    // of a type among them, from 1; 0: it has no particles
+  std::vector<int> n_before;    // of a type: how many of those present are below it
+  std::vector<int> present_type;    // of each particle, while lists are made
 
   CellLists outer;
   int types = 0;
@@ -208,6 +239,32 @@ class DualLists {
         for (int other = 1; other <= types; other++)
           if (limit[pair(t, other)] > 0.0) something(at(b, t, other), b, t, other);
       }
+  }
+
+  void find_present(const Points &p)
+  {
+    number.assign(p.n_types + 1, 0);
+    for (int i = 0; i < p.n_all; i++) number[p.type[i]] = 1;
+    present.clear();
+    n_before.assign(p.n_types + 2, 0);
+    for (int t = 1; t <= p.n_types; t++) {
+      if (number[t] != 0) {
+        present.push_back(t);
+        number[t] = static_cast<int>(present.size());
+      }
+      n_before[t + 1] = static_cast<int>(present.size());
+    }
+  }
+
+  Points by_present_type(const Points &p)
+  {
+    Points q = p;
+    q.n_types = static_cast<int>(present.size());
+    if (q.n_types == p.n_types) return q;
+    present_type.resize(p.n_all);
+    for (int i = 0; i < p.n_all; i++) present_type[i] = number[p.type[i]];
+    q.type = present_type.data();
+    return q;
   }
 
   void set_limits(const double *support, double max_skin)

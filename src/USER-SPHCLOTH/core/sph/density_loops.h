@@ -37,8 +37,7 @@ template <class K, class P>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_densities(const Particles &p, bool sum)
 {
   Columns c;
-  const int n_types = model.n_types;
-  for (int t = 1; t <= n_types; t++) {
+  for (int t = 1; t <= model.n_types; t++) {
     const bool fluid = is_fluid(t);
     const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
     for (const int slot : selection.of(t)) {
@@ -46,7 +45,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_densities(const Particles &p, b
       lists.refresh(slot);
       if (!sum || !fluid) continue;
       double rho = p.mass_or_volume[i] * at_self;
-      for (int other = 1; other <= n_types; other++) {
+      for (const int other : lists.present_types()) {
         const NeighborSpan near = lists(slot, other);
         if (near.n == 0) continue;
         const PairTerms &whole = model.pair(t, other);
@@ -94,7 +93,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
       const int i = lists.at(slot);
       const double at_self = model.pair(t, t).kernel.w * K::shape(0.0);
       double mass = p.mass_or_volume[i] * at_self, volume = mass / p.rho[i];
-      for (int other = 1; other <= model.n_types; other++) {
+      for (const int other : lists.present_types()) {
         const NeighborSpan found = lists(slot, other);
         const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
@@ -117,7 +116,7 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);
     double sum = 0.0, weights = 0.0;
-    for (int other = 1; other <= model.n_types; other++) {
+    for (const int other : lists.present_types()) {
       if (!is_fluid(other)) continue;
       const NeighborSpan found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {

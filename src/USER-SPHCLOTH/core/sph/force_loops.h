@@ -172,7 +172,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::forces_on(const Particles &p, int slot, i
   lists.refresh(slot);
   Sums<OUTPUTS, VIRIAL> sums;
   int n_found = 0;
-  for (int other = 1; other <= model.n_types; other++) {
+  for (const int other : lists.present_types()) {
     const NeighborSpan found = gives ? lists(slot, other)
                                      : lists.others(0, slot, other, acts.data());
     if (found.n == 0 || !(fluid || is_fluid(other))) continue;

@@ -141,7 +141,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
     for (const int slot : selection.of(t)) {
       const int i = lists.at(slot);
       double sum = 0.0;
-      for (int other = 1; other <= model.n_types; other++) {
+      for (const int other : lists.present_types()) {
         const NeighborSpan found = lists(slot, other);
         if (found.n == 0) continue;
         const Terms &of_pair = pair(t, other);

@@ -12,7 +12,6 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "integrate.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
@@ -35,9 +34,10 @@ using namespace sphcloth;
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
-    reference_step(0.0), mesh(lmp, label), constraints(lmp, label, mesh), vertices(lmp),
+    mesh(lmp, label), constraints(lmp, label, mesh),
+    reference(lmp, label, options.reference, constraints), powers_of_two(false), vertices(lmp),
     holders(lmp, vertices), substepping(lmp, options.solving, constraints, vertices),
-    holder_force{}, measured(true), last_residual(0.0), last_energy(0.0), powers_of_two(false)
+    holder_force{}, measured(true), last_residual(0.0), last_energy(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -135,9 +135,6 @@ void FixPBDCloth::init()
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
-  const auto *adaptive = dynamic_cast<HasSteppingScheme *>(update->integrate);
-  powers_of_two = adaptive && adaptive->scheme() == SteppingScheme::BLOCK;
-  reference_step = find_reference_step();
   constraints.measure_rest(groupbit, rest_x, rest_box);
   const Substepping::Options &solving = options.solving;
   constraints.color(solving.symmetric_sweeps ? 2 * solving.iterations : solving.iterations,
@@ -176,16 +173,17 @@ void FixPBDCloth::check_styles()
                force->bond_style ? force->bond_style : "none");
 }
 
-// A stiffness that acts once in each step is that of a spring as one over the square of the step.
-// Where steps go to and fro between powers of two that would feed the motion.
+// the fix that integrates the fluid knows its scheme since its init()
 
-double FixPBDCloth::find_reference_step() const
+void FixPBDCloth::setup_post_neighbor()
 {
-  if (options.reference > 0.0) return options.reference;
-  if (!powers_of_two) return 0.0;
-  // other commands than run set up fixes without a run style that looks for what it needs
-  const auto steppers = modify->get_fix_by_style("^sph/integrate$");
-  return steppers.empty() ? 0.0 : dynamic_cast<HasLongestStep *>(steppers[0])->longest_step();
+  SteppingScheme scheme = SteppingScheme::CONSTANT;
+  for (Fix *fix : modify->get_fix_by_style("^sph/integrate$"))
+    if (const auto *integrates = dynamic_cast<HasSteppingScheme *>(fix))
+      scheme = integrates->stepping_scheme();
+  reference.set_steps_vary(scheme != SteppingScheme::CONSTANT);
+  powers_of_two = scheme == SteppingScheme::BLOCK;
+  post_neighbor();
 }
 
 /* ----------------------------------------------------------------------
@@ -245,9 +243,7 @@ void FixPBDCloth::post_integrate()
   load();
   if (holders.wanted()) holders.begin_step();
   begin_couplings();
-  if (reference_step > 0.0)
-    constraints.rescale_stiffness(reference_step / substepping.usual_substeps(),
-                                  substepping.substep_dt());
+  reference.rescale(substepping.usual_substeps(), substepping.substep_dt());
   for (int n = 0; n < substepping.substeps(); n++) substepping.substep(n, present, holders);
   if (holders.wanted()) holders.end_step();
   store();
@@ -468,16 +464,23 @@ int FixPBDCloth::maxsize_restart()
   return 1 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
 }
 
+struct FixPBDCloth::Record {
+  Substepping::State substepping;
+  double first_step;
+  RestBox rest_box;
+};
+
 void FixPBDCloth::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, RestartRecord{substepping.state(), rest_box});
+  write_record(fp, Record{substepping.state(), reference.first_step(), rest_box});
 }
 
 void FixPBDCloth::restart(char *buf)
 {
-  const auto record = read_record<RestartRecord>(buf, label, error);
-  substepping.set_state(record.state);
+  const auto record = read_record<Record>(buf, label, error);
+  substepping.set_state(record.substepping);
+  reference.set_first_step(record.first_step);
   rest_box = record.rest_box;
   keep_restored_time(update);
 }

@@ -18,6 +18,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/cloth_vertices.h"
 #include "cloth/half_kick_correction.h"
 #include "cloth/holder_forces.h"
+#include "cloth/reference_step.h"
 #include "cloth/solver_coupling.h"
 #include "cloth/substepping.h"
 #include "contact/contact_mesh.h"
@@ -34,7 +35,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ~FixPBDCloth() override;
   int setmask() override;
   void init() override;
-  void setup_post_neighbor() override { post_neighbor(); }
+  void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
@@ -76,21 +77,18 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   Eigen::Vector3d reaction_force(int owned_atom) const;
 
  private:
+  struct Record;    // in restart files
   using Vec3 = Eigen::Vector3d;
-
-  struct RestartRecord {    // plain and without gaps
-    Substepping::State state;
-    RestBox rest_box;
-  };
 
   std::string label;
   ClothOptions options;
-  double reference_step;    // for which k holds, 0: it holds for every step
 
   ParticleColumns rest_x;    // rest position of each vertex, unwrapped
   RestBox rest_box;
   ClothTopology mesh;
   ClothConstraints constraints;
+  ReferenceStep reference;
+  bool powers_of_two;    // steps go to and fro between them
   ClothVertices vertices;
   HolderForces holders;
   HalfKickCorrection half_kick;    // of the solver substeps
@@ -100,13 +98,11 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   double holder_force[3];    // in the last step, this rank's part
   bool measured;    // the next two are of the last step, this rank's part
   double last_residual, last_energy;
-  bool powers_of_two;    // steps go to and fro between them
 
   void take_rest_positions(const char *);
   void check_overlap();
   void check_masses();
   void check_styles();
-  double find_reference_step() const;
   bool is_pinned(int atom) const;
   bool is_attached(int atom) const;
   bool is_held(int atom) const;    // either

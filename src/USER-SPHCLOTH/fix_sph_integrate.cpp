@@ -88,7 +88,7 @@ void FixSPHIntegrate::init()
 
   const auto *run_style = dynamic_cast<HasSteppingScheme *>(update->integrate);
   run_style_drives = run_style != nullptr;
-  const SteppingScheme wanted = run_style ? run_style->scheme() : options.scheme;
+  const SteppingScheme wanted = run_style ? run_style->stepping_scheme() : options.scheme;
   options.check(wanted, control.times, fluid->integrates_density(), label, error);
   use_scheme(wanted, BlockClock());
   if (update->whichflag == 2 && updates_some())

@@ -26,7 +26,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 namespace LAMMPS_NS {
 
-class FixSPHIntegrate : public Fix, public HasLongestStep {
+class FixSPHIntegrate : public Fix, public HasSteppingScheme {
  public:
   FixSPHIntegrate(class LAMMPS *, int, char **);
   ~FixSPHIntegrate() override;
@@ -72,7 +72,7 @@ class FixSPHIntegrate : public Fix, public HasLongestStep {
   // the step that this particle allows, whatever the others need
   double own_step(int i) const;
   bool is_active(int i) const { return rows[i][UpdateRows::ACTIVE] != 0.0; }
-  double longest_step() const override { return options.ceiling; }
+  SteppingScheme stepping_scheme() const override { return scheme; }
 
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();

@@ -21,7 +21,7 @@ class SPHAdaptive : public Verlet, public HasSteppingScheme {
   void init() override;
   void run(int) override;
 
-  SteppingScheme scheme() const override { return stepping; }
+  SteppingScheme stepping_scheme() const override { return stepping; }
 
  private:
   SteppingScheme stepping;

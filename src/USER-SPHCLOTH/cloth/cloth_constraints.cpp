@@ -144,6 +144,18 @@ double ClothConstraints::shortest_edge(int i) const
   return shortest;
 }
 
+bool ClothConstraints::any_soft_k() const
+{
+  const auto any_in = [](const auto &kind) {
+    const auto is_soft = [&](int type) {
+      return std::any_of(kind.springs[type].begin(), kind.springs[type].end(),
+                         [](const Spring &s) { return s.k > 0.0 && s.k < 1.0; });
+    };
+    return std::any_of(kind.elements.type.begin(), kind.elements.type.end(), is_soft);
+  };
+  return any_in(edges) || any_in(hinges);
+}
+
 double ClothConstraints::largest_strain(const VertexHalo &halo, int held_bits) const
 {
   const auto is_held = [&](int i) { return (atom->mask[i] & held_bits) != 0; };

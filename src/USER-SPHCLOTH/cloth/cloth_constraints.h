@@ -49,6 +49,8 @@ class ClothConstraints : protected Pointers {
     bending.rescale_stiffness(ratio);
   }
 
+  bool any_soft_k() const;    // of the whole mesh: between 0 and 1
+
   static constexpr int ALL = 0;
   int channel_of_edge_color(int c) const { return 1 + c; }
   int channel_of_hinge_color(int c) const { return 1 + edges.colors * edges.layers + c; }

@@ -111,7 +111,9 @@ void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
   const double dt = substep_dt();
   Vertex *displacement = vertices.displacement.data();
   const ClothState state{vertices.start.data(), displacement, options.from_start,
-                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr, inv_dt_sq()};
+                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
+                         inv_dt_sq(),
+                         single_sweeps() ? STABLE_HINGE_SHARE : 1.0};
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   const int n = uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The stepping schemes, and what the cloth asks the styles that have them, without knowing these.
+// The stepping schemes, and which one is in force, for styles that do not know those that have it.
 
 #ifndef SPHCLOTH_STEPPING_STEPPING_SCHEME_H
 #define SPHCLOTH_STEPPING_STEPPING_SCHEME_H
@@ -19,24 +19,14 @@ inline const char *scheme_name(SteppingScheme scheme)
   return "";
 }
 
-// run_style sph/adaptive
+// run_style sph/adaptive, and fix sph/integrate from its init() on
 
 class HasSteppingScheme {
  public:
-  virtual SteppingScheme scheme() const = 0;
+  virtual SteppingScheme stepping_scheme() const = 0;
 
  protected:
   ~HasSteppingScheme() = default;
-};
-
-// fix sph/integrate
-
-class HasLongestStep {
- public:
-  virtual double longest_step() const = 0;
-
- protected:
-  ~HasLongestStep() = default;
 };
 
 }    // namespace LAMMPS_NS

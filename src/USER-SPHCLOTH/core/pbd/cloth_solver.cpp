@@ -102,11 +102,12 @@ namespace {
       rows_1.to(e1);
     }
 
-    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, double inv_dt_sq)
+    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, const ClothState &s)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m];
       double *lambda = &c.lambda[m];
+      const double inv_share = 1.0 / s.max_hinge_share;
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const HingeShape h =
@@ -122,8 +123,10 @@ namespace {
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
         const double lever = weight - MIN_LEVER * w * steepest;
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
+        const double softness =
+            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * weight);
         const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, step_ratio,
-                                            compliance[l] * inv_dt_sq, lambda[l], max_lambda[l]);
+                                            softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
         a.put(l, step * h.ax, step * h.ay, step * h.az);
         e2.put(l, step * x2, step * y2, step * z2);
@@ -165,7 +168,7 @@ namespace {
       HingeGroup group[BATCH];
       const int n = std::min(BATCH, (end - m) / WIDE);
       for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, displacement);
-      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s.inv_dt_sq);
+      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s);
       for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, displacement, moved);
     }
   }

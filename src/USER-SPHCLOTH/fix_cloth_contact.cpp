@@ -15,6 +15,7 @@
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -30,8 +31,8 @@ static constexpr int MAX_ROUNDS = 10;
 ------------------------------------------------------------------------- */
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), view_distance(0.0),
-    vertex_bits(0)
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), ghosts(lmp, label),
+    view_distance(0.0), vertex_bits(0)
 {
   vector_flag = 1;
   size_vector = 11;
@@ -85,7 +86,7 @@ FixClothContact::~FixClothContact()
 
 int FixClothContact::setmask()
 {
-  return POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
+  return PRE_EXCHANGE | POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
       (impulses.empty() ? 0 : PRE_REVERSE);
 }
 
@@ -123,11 +124,48 @@ void FixClothContact::init()
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
-  if (!walls) return;
-  walls->init(fluid);
-  for (std::size_t k = 0; k < surfaces.size(); k++) walls->add(cloths[k], &surfaces[k]->triangles);
-  for (std::size_t k = 0; k < obstacle_surfaces.size(); k++)
-    walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles);
+  if (walls) {
+    walls->init(fluid);
+    for (std::size_t k = 0; k < surfaces.size(); k++)
+      walls->add(cloths[k], &surfaces[k]->triangles);
+    for (std::size_t k = 0; k < obstacle_surfaces.size(); k++)
+      walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles);
+  }
+  if (!ghosts.matters()) return;
+  const auto [needed, wanted] = ghosts_needed_and_wanted();
+  ghosts.require(needed, wanted);
+}
+
+void FixClothContact::pre_exchange()
+{
+  if (!ghosts.matters()) return;
+  const auto [needed, wanted] = ghosts_needed_and_wanted();
+  ghosts.require_in_run(needed, wanted);
+}
+
+// A particle must see whole triangles.  Wanted is room for displacements until the next list build:
+// the skin, and steps at the present speeds, as long as these do not cross the box.
+
+std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
+{
+  double longest = 0.0, mine = 0.0, speed_sq = 0.0;
+  for (auto &obstacle : obstacles) obstacle->measure();
+  for_all_surfaces([&](const ContactSurface &surface) {
+    longest = std::max(longest, surface.triangles.mesh->topology().longest_edge());
+    const int bits = surface.triangles.groupbits;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & bits) && !surface.triangles.mesh->has_vertex(i)) continue;
+      const double *v = atom->v[i];
+      mine = std::max(mine, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    }
+  });
+  MPI_Allreduce(&mine, &speed_sq, 1, MPI_DOUBLE, MPI_MAX, world);
+  const int steps = std::max({1, neighbor->every, neighbor->delay});
+  const double displacement =
+      std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
+               std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
+  return {longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
+          longest + rules.thickness + neighbor->skin + displacement};
 }
 
 std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
@@ -264,21 +302,19 @@ void FixClothContact::post_integrate()
 
 void FixClothContact::subtract_excess_velocities()
 {
+  const auto subtract = [&](int i) {
+    double *v = atom->v[i];
+    for (int d = 0; d < 3; d++) {
+      const double excess = v[d] - (atom->x[i][d] - last_positions[d][i]) / update->dt;
+      excess_velocities[d][i] += excess;
+      v[d] -= excess;
+    }
+  };
   for_all_surfaces([&](const ContactSurface &surface) {
-    for (int i : surface.triangles.moved) subtract_excess_velocity(i);
+    for (int i : surface.triangles.moved) subtract(i);
   });
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & vertex_bits) subtract_excess_velocity(i);
-}
-
-void FixClothContact::subtract_excess_velocity(int i)
-{
-  double *v = atom->v[i];
-  for (int d = 0; d < 3; d++) {
-    const double excess = v[d] - (atom->x[i][d] - last_positions[d][i]) / update->dt;
-    excess_velocities[d][i] += excess;
-    v[d] -= excess;
-  }
+    if (atom->mask[i] & vertex_bits) subtract(i);
 }
 
 void FixClothContact::post_force(int)

@@ -17,6 +17,7 @@ FixStyle(cloth/contact,FixClothContact);
 #include "contact/obstacle_coupling.h"
 #include "fluid/mesh_boundary.h"
 #include "fluid/side_source.h"
+#include "lammps_util/ghost_reach.h"
 #include "lammps_util/particle_columns.h"
 
 #include <array>
@@ -36,6 +37,7 @@ class FixClothContact : public Fix, public SideSource {
   int setmask() override;
   void init() override;
   void initial_integrate(int) override;
+  void pre_exchange() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;
@@ -78,6 +80,7 @@ class FixClothContact : public Fix, public SideSource {
 
  private:
   std::string label;
+  GhostReach ghosts;
   ContactRules rules;
   ContactCounts counts;    // of this rank, since the fix was made
   // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
@@ -99,10 +102,10 @@ class FixClothContact : public Fix, public SideSource {
   {
     return {&last_positions, &impulses, &excess_velocities};
   }
+  std::array<double, 2> ghosts_needed_and_wanted();
   void store_positions();
   void wrap_last_positions();
   void subtract_excess_velocities();
-  void subtract_excess_velocity(int i);
   void warn_of_too_near();
   void find_sheets();
   void find_sides();

@@ -34,7 +34,7 @@ using namespace sphcloth;
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
-    mesh(lmp, label), constraints(lmp, label, mesh),
+    mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
     reference(lmp, label, options.reference, constraints), powers_of_two(false), vertices(lmp),
     holders(lmp, vertices), substepping(lmp, options.solving, constraints, vertices),
     holder_force{}, measured(true), last_residual(0.0), last_energy(0.0)
@@ -118,7 +118,7 @@ FixPBDCloth *FixPBDCloth::find(LAMMPS *lmp, const std::string &asking, const std
 
 int FixPBDCloth::setmask()
 {
-  return POST_INTEGRATE | POST_NEIGHBOR | (options.attachbit ? PRE_REVERSE : 0);
+  return POST_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | (options.attachbit ? PRE_REVERSE : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -128,20 +128,26 @@ int FixPBDCloth::setmask()
 void FixPBDCloth::init()
 {
   couplings.clear();
-  check_overlap();
-  check_masses();
+  check_vertices();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
   check_styles();
+  if (ghosts.matters()) {
+    mesh.measure();
+    ghosts.require(mesh.widest_element(), mesh.widest_element());
+  }
   constraints.measure_rest(groupbit, rest_x, rest_box);
   const Substepping::Options &solving = options.solving;
   constraints.color(solving.symmetric_sweeps ? 2 * solving.iterations : solving.iterations,
                     substepping.uses(ClothSolver::JACOBI));
 }
 
-void FixPBDCloth::check_overlap()
+// No other cloth has them, and all have a mass: types have, so that only per-atom masses may be
+// missing.
+
+void FixPBDCloth::check_vertices()
 {
   for (Fix *other : modify->get_fix_by_style("^pbd/cloth$")) {
     if (other == this) continue;
@@ -150,12 +156,7 @@ void FixPBDCloth::check_overlap()
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
-}
 
-// Types have masses; only per-atom masses may be missing.
-
-void FixPBDCloth::check_masses()
-{
   int mine = 0, massless;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0))
@@ -189,6 +190,15 @@ void FixPBDCloth::setup_post_neighbor()
 /* ----------------------------------------------------------------------
    this rank's vertices and constraints, after each list build
 ------------------------------------------------------------------------- */
+
+void FixPBDCloth::pre_exchange()
+{
+  if (!ghosts.matters()) return;
+  vertices.halo.forward_positions(ClothConstraints::ALL, vertices.p.data());
+  constraints.check_lengths(vertices);
+  mesh.measure();
+  ghosts.require_in_run(mesh.widest_element(), mesh.widest_element());
+}
 
 void FixPBDCloth::post_neighbor()
 {

@@ -22,6 +22,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/solver_coupling.h"
 #include "cloth/substepping.h"
 #include "contact/contact_mesh.h"
+#include "lammps_util/ghost_reach.h"
 #include "stepping/limited_vertices.h"
 
 #include <string>
@@ -36,6 +37,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   int setmask() override;
   void init() override;
   void setup_post_neighbor() override;
+  void pre_exchange() override;
   void post_neighbor() override;
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
@@ -86,6 +88,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ParticleColumns rest_x;    // rest position of each vertex, unwrapped
   RestBox rest_box;
   ClothTopology mesh;
+  GhostReach ghosts;
   ClothConstraints constraints;
   ReferenceStep reference;
   bool powers_of_two;    // steps go to and fro between them
@@ -100,8 +103,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   double last_residual, last_energy;
 
   void take_rest_positions(const char *);
-  void check_overlap();
-  void check_masses();
+  void check_vertices();
   void check_styles();
   bool is_pinned(int atom) const;
   bool is_attached(int atom) const;

@@ -96,11 +96,6 @@ void PairSPHTait::init_style()
 double PairSPHTait::init_one(int i, int j)
 {
   const double radius = fluid.support(i, j);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < radius)
-    error->all(FLERR,
-               "{}: the ghost cut-off {} of comm_modify is smaller than the support {} of types {} "
-               "and {}: raise it to the support plus the skin",
-               STYLE, comm->cutghostuser, radius, i, j);
 
   // LAMMPS counts the images of a box within the cut-off in an int, and makes ghosts of all of them
   constexpr double MAX_BOXES = 1000.0, MAX_IMAGES = 1000.0;

@@ -14,6 +14,8 @@
 #include "dihedral.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/rank_error.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -174,6 +176,25 @@ double ClothConstraints::largest_strain(const VertexHalo &halo, int held_bits) c
     }
   }
   return strain;
+}
+
+void ClothConstraints::check_lengths(const ClothVertices &vertices) const
+{
+  const auto id = [&](int slot) { return atom->tag[vertices.halo.atom_of(slot)]; };
+  for (int m = 0; m < distance.size(); m++) {
+    if (distance.is_idle(m)) continue;
+    const int a = distance.slot[0][m], b = distance.slot[1][m];
+    const Vertex &p = vertices.p[a], &q = vertices.p[b];
+    const Vec3 edge(p.x - q.x, p.y - q.y, p.z - q.z);
+    if (!domain->minimum_image_check(edge[0], edge[1], edge[2])) continue;
+    const double length = edge.norm(), rest = distance.rest[m];
+    rank_error(lmp, FLERR,
+               "{}: the edge of vertices {} and {} is {:.6g} long in step {}, {}, and reaches over "
+               "half of the periodic box, where an image would be nearer: lower the time step, or "
+               "make the edges stiffer",
+               owner, id(a), id(b), length, update->ntimestep,
+               rest > 0.0 ? fmt::format("a strain of {:.3g}", length / rest - 1.0) : "a seam");
+  }
 }
 
 /* ----------------------------------------------------------------------

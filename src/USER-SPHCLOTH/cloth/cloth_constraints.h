@@ -6,6 +6,7 @@
 #define SPHCLOTH_CLOTH_CLOTH_CONSTRAINTS_H
 
 #include "cloth/cloth_topology.h"
+#include "cloth/cloth_vertices.h"
 #include "cloth/rest_box.h"
 #include "cloth/vertex_halo.h"
 #include "core/pbd/cloth_solver.h"
@@ -71,6 +72,9 @@ class ClothConstraints : protected Pointers {
   double shortest_edge(int owned_atom) const;
   // of this rank's edges, but for those between vertices that are both in a group of held_bits
   double largest_strain(const VertexHalo &, int held_bits) const;
+  // an edge over half a periodic box ends the run; vertices where the last step has left them,
+  // ghosts too
+  void check_lengths(const ClothVertices &) const;
 
  private:
   template <std::size_t N> struct Kind {

@@ -13,6 +13,7 @@
 #include "lammps_util/rank_error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 using namespace LAMMPS_NS;
@@ -72,6 +73,41 @@ Eigen::Vector3d ClothTopology::from(int i, int vertex) const
 {
   const double *a = atom->x[i], *b = atom->x[image_here(vertex, i)];
   return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+}
+
+// Each rank measures a part of the elements.
+
+void ClothTopology::measure()
+{
+  std::vector<double> mine(3 * ids.size(), 0.0), x(mine.size());
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const int vertex = index_of(atom->tag[i]); vertex >= 0)
+      std::copy(atom->x[i], atom->x[i] + 3, &mine[3 * vertex]);
+  MPI_Allreduce(mine.data(), x.data(), static_cast<int>(x.size()), MPI_DOUBLE, MPI_SUM, world);
+  const auto width_sq = [&](const auto &vertices) {
+    double largest = 0.0;
+    for (int a : vertices)
+      for (int b : vertices) {
+        if (b >= a) continue;
+        double d[3];
+        for (int k = 0; k < 3; k++) d[k] = x[3 * a + k] - x[3 * b + k];
+        domain->minimum_image(FLERR, d);
+        largest = std::max(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      }
+    return largest;
+  };
+  double here[2] = {0.0, 0.0}, all[2];
+  const auto measure_all = [&](const auto &elements, double &largest) {
+    for (std::size_t m = comm->me; m < elements.size(); m += comm->nprocs)
+      largest = std::max(largest, width_sq(elements.vertices[m]));
+  };
+  measure_all(triangles, here[0]);
+  here[1] = here[0];
+  measure_all(edges, here[1]);
+  measure_all(hinges, here[1]);
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  longest = std::sqrt(all[0]);
+  widest = std::sqrt(all[1]);
 }
 
 void ClothTopology::gather(int groupbit)

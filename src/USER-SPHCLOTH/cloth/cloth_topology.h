@@ -41,6 +41,12 @@ class ClothTopology : protected Pointers {
   ClothElements<3> triangles;
   ClothElements<4> hinges;    // wing, edge, edge, wing
 
+  // collective: from the positions of the atoms, which must not be farther apart than half a
+  // periodic box
+  void measure();
+  double longest_edge() const { return longest; }    // of the triangles
+  double widest_element() const { return widest; }
+
   int n_vertices() const { return static_cast<int>(ids.size()); }
   int index_of(tagint id) const;    // -1 if it is no vertex
 
@@ -53,6 +59,7 @@ class ClothTopology : protected Pointers {
 
  private:
   std::string owner;
+  double longest = 0.0, widest = 0.0;
 
   template <std::size_t N, class Collect>
   void gather_elements(ClothElements<N> &, const char *, Collect);

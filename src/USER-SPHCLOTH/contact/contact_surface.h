@@ -41,6 +41,7 @@ struct ContactSurface {
     triangles.rebuild(max_distance);
     candidates.clear();
     solver.rebuild();
+    stabilization.rebuild();
   }
 
   double memory_usage() const

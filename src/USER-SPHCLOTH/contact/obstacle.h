@@ -21,6 +21,7 @@ class Obstacle : public ContactMesh, protected Pointers {
   {
   }
   void gather() { mesh.gather(groupbit); }
+  void measure() { mesh.measure(); }
 
   const ClothTopology &topology() const override { return mesh; }
   bool has_vertex(int i) const override { return atom->mask[i] & groupbit; }

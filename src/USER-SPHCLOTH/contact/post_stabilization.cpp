@@ -48,18 +48,20 @@ bool PostStabilization::resolve_penetrations()
 }
 
 // Each particle is put back from the triangle in which it is deepest, the triangle stays.  One that
-// was too near before the step gets a part of the way back, in the first pass.
+// was too near before the step gets a part of the way back, in the first pass.  After that one no
+// sweep becomes longer, and the region in which triangles are known must cover them.
 
-bool PostStabilization::resolve_deepest(bool recover)
+bool PostStabilization::resolve_deepest(bool first)
 {
-  int mine = 0, particle = -1, triangle = -1;
+  double mine[2] = {0.0, first ? region.max_vertex_displacement() : 0.0}, all[2];
+  int particle = -1, triangle = -1;
   ContactResult deepest;
   double max_approach = 0.0;    // of the deepest
   const auto put_back = [&] {
     if (triangle < 0) return;
     for (int d = 0; d < 3; d++) atom->x[particle][d] += deepest.depth * deepest.normal[d];
     if (!deepest.hit) return;
-    mine = 1;
+    mine[0] = 1.0;
     mesh.counts.stops++;
     contacts.add(particle, triangle, deepest).max_approach = max_approach;
   };
@@ -76,7 +78,7 @@ bool PostStabilization::resolve_deepest(bool recover)
       contact.depth += SLACK * contact.gap;
     else {
       if (contact.hit) contact.depth = into + OVERSHOOT * contact.gap;
-      if (recover) recover_gap(contact, sweep.end, t);
+      if (first) recover_gap(contact, sweep.end, t);
     }
     if (!mesh.is_deeper(contact, t, deepest, triangle)) return;
     deepest = contact;
@@ -85,9 +87,9 @@ bool PostStabilization::resolve_deepest(bool recover)
     triangle = t;
   });
   put_back();
-  int any = 0;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  return any;
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (first) region.check(all[1]);
+  return all[0] > 0.0;
 }
 
 // at least a part of the thickness, if something of it is missing; false if nothing is

@@ -9,6 +9,7 @@
 #include "contact/candidate_pairs.h"
 #include "contact/contact_pairs.h"
 #include "contact/impact_zones.h"
+#include "contact/known_region.h"
 
 namespace LAMMPS_NS {
 
@@ -17,9 +18,12 @@ class PostStabilization : protected Pointers {
   using Vec3 = Eigen::Vector3d;
 
   PostStabilization(LAMMPS *lmp_, MovingTriangles &mesh_, CandidatePairs &candidates_) :
-      Pointers(lmp_), mesh(mesh_), candidates(candidates_), contacts(lmp, mesh)
+      Pointers(lmp_), mesh(mesh_), candidates(candidates_), contacts(lmp, mesh), region(lmp, mesh)
   {
   }
+
+  // after each list build
+  void rebuild() { region.rebuild(); }
 
   // Of the sweeps from the last step's positions to the present ones.  Collective; was there any?
   bool resolve_penetrations();
@@ -33,8 +37,9 @@ class PostStabilization : protected Pointers {
   MovingTriangles &mesh;
   CandidatePairs &candidates;
   ContactPairs contacts;
+  KnownRegion region;
 
-  bool resolve_deepest(bool recover);
+  bool resolve_deepest(bool first);
   bool recover_gap(sphcloth::ContactResult &, const Vec3 &p, int t) const;
   void solve_velocities();
   void load_velocities();

@@ -4,8 +4,6 @@
 #include "contact/triangle_set.h"
 
 #include "atom.h"
-#include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "lammps_util/rank_error.h"
 
@@ -17,7 +15,7 @@
 using namespace LAMMPS_NS;
 
 TriangleSet::TriangleSet(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &label_) :
-    Pointers(lmp_), label(label_), mesh(mesh_), halo(lmp)
+    Pointers(lmp_), label(label_), mesh(mesh_), halo(lmp), ghosts(lmp, label)
 {
 }
 
@@ -86,7 +84,7 @@ void TriangleSet::find_incident()
 
 void TriangleSet::check_reach(double max_distance)
 {
-  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic) return;
+  if (!ghosts.matters()) return;
   double longest_sq = 0.0;
   for (const std::array<int, 3> &t : triangles)
     for (int q = 0; q < 3; q++) {
@@ -94,7 +92,8 @@ void TriangleSet::check_reach(double max_distance)
       longest_sq =
           std::max(longest_sq, (Vec3(a[0], a[1], a[2]) - Vec3(b[0], b[1], b[2])).squaredNorm());
     }
-  const double needed = std::sqrt(longest_sq) + max_distance, reach = comm->get_comm_cutoff();
+  longest_here = std::sqrt(longest_sq);
+  const double needed = longest_here + max_distance, reach = ghosts.reach();
   if (needed > reach)
     rank_error(
         lmp, FLERR,

@@ -7,6 +7,7 @@
 #include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
 #include "core/geometry/box_grid.h"
+#include "lammps_util/ghost_reach.h"
 #include "platform.h"
 
 #include <array>
@@ -51,11 +52,17 @@ class TriangleSet : protected Pointers {
     return false;
   }
 
+  // of the triangles that are here, at the last list build
+  double longest_edge_here() const { return longest_here; }
+
   // vertices as they are now, ghosts too
   Vec3 position(int slot) const;
 
  private:
   std::vector<std::array<bool, 3>> at_border;    // of each element
+
+  GhostReach ghosts;
+  double longest_here = 0.0;
 
   void find_border();
   void find_incident();

@@ -5,6 +5,7 @@
 #include "fix_wall_sph.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fluid/fluid_state.h"
@@ -13,6 +14,7 @@
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
+#include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "update.h"
 #include "variable.h"
@@ -56,6 +58,9 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
                    "xlo, xhi, ylo, yhi, zlo, zhi before the keywords slip, pressure, velocity");
   }
 
+  restart_global = std::any_of(walls.begin(), walls.end(), [](const Wall &w) {
+    return w.position_kind != PositionKind::NUMBER;
+  });
   scalar_flag = vector_flag = 1;
   size_vector = 3 * static_cast<int>(walls.size());
   global_freq = 1;
@@ -407,4 +412,28 @@ double FixWallSPH::compute_vector(int n) { return output(n); }
 void *FixWallSPH::extract(const char *name, int &)
 {
   return std::strcmp(name, EXTRACT) == 0 ? static_cast<FluidBoundary *>(this) : nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   restart: velocities of walls that move, which are those of the last step
+------------------------------------------------------------------------- */
+
+struct FixWallSPH::Record {
+  double velocity[6];    // across each face
+};
+
+void FixWallSPH::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  Record record{};
+  for (const Wall &wall : walls) record.velocity[wall.face] = wall.velocity[wall.axis()];
+  write_record(fp, record);
+}
+
+void FixWallSPH::restart(char *buf)
+{
+  const auto record = read_record<Record>(buf, label, error);
+  for (Wall &wall : walls)
+    if (wall.position_kind != PositionKind::NUMBER)
+      wall.velocity[wall.axis()] = record.velocity[wall.face];
 }

@@ -33,6 +33,8 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void init() override;
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   void *extract(const char *, int &) override;
@@ -52,6 +54,8 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
+  struct Record;    // in restart files
+
   enum class PositionKind { NUMBER, EDGE, VARIABLE };
 
   struct Wall {

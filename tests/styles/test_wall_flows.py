@@ -9,7 +9,7 @@ import pytest
 from harness import by_id, instance, run, write
 from scenes import FLUID, filled, gravity, header, lattice, neighbor, sph_tait
 from scenes import box as a_box
-from wall_scenes import C0, RHO0, channel
+from wall_scenes import C0, RHO0, H, channel
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -127,3 +127,25 @@ def test_slip_walls_leave_a_uniform_flow_alone():
         run 500""",
     )
     np.testing.assert_allclose(by_id(lmp, "v")[:, 0], 1.0, rtol=1e-12)
+
+
+def test_a_moving_wall_has_its_velocity_after_a_restart(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    walls = "ylo 0 yhi v_place"
+    moves = (
+        "variable place equal {ly}*(1-0.5*time)\ntimestep 1e-4\n"
+        "fix step all sph/integrate constant\n"
+    )
+    lmp, _, ly = channel(walls, size=(8, 9), extra="variable place equal v_ly")
+    lmp.commands_string(moves.format(ly=ly) + "run 20\nwrite_restart mid\nrun 0")
+    again = instance()
+    again.commands_string(
+        f"comm_modify vel yes\nread_restart mid\n{neighbor(0.4 * H / 3)}"
+        f"fix wall all wall/sph {walls.format(ly=ly)}\n{moves.format(ly=ly)}run 0"
+    )
+    assert np.abs(by_id(lmp, "drho")).max() > 0
+    for _ in range(2):
+        for name in ("drho", "rho", "x", "f"):
+            assert np.array_equal(by_id(lmp, name), by_id(again, name)), name
+        lmp.command("run 5")
+        again.command("run 5")

@@ -54,8 +54,20 @@ FixSPHWatch::FixSPHWatch(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   read_options(args);
-  if (file.empty()) return;
+  if (!file.empty()) keep_files();
+}
+
+// LAMMPS keeps one pair of files, beside single ones.
+
+void FixSPHWatch::keep_files()
+{
   std::vector<std::string> words{std::to_string(keep), file + ".1", file + ".2"};
+  if (output->restart_flag_double &&
+      (words[1] != output->restart2a || words[2] != output->restart2b))
+    error->all(FLERR,
+               "{}: restart {} would replace the command 'restart N {} {}' from before: leave the "
+               "keyword out, or give 'restart N FILE' there",
+               label, file, output->restart2a, output->restart2b);
   std::vector<char *> pointers;
   pointers.reserve(words.size());
   for (std::string &word : words) pointers.push_back(word.data());
@@ -147,7 +159,7 @@ void FixSPHWatch::setup(int)
 {
   check();
   if (file.empty() || !saved.empty()) return;
-  remember_file();
+  remember_file(true);
   output->write_restart(update->ntimestep);
 }
 
@@ -163,14 +175,17 @@ void FixSPHWatch::end_of_step()
   const bool writes = update->ntimestep == output->next_restart;
   if (update->ntimestep % interval != 0 && !writes) return;
   check();
-  if (writes) remember_file();
+  if (writes)
+    remember_file(output->restart_flag_double && update->ntimestep == output->next_restart_double);
 }
 
-void FixSPHWatch::remember_file()
+void FixSPHWatch::remember_file(bool one_of_two)
 {
-  const char *name = !output->restart_flag_double ? output->restart1
-      : output->restart_toggle == 0               ? output->restart2a
-                                                  : output->restart2b;
+  std::string name = !one_of_two      ? output->restart1
+      : output->restart_toggle == 0 ? output->restart2a
+                                    : output->restart2b;
+  if (const auto star = name.find('*'); star != std::string::npos)
+    name.replace(star, 1, std::to_string(update->ntimestep));
   saved = fmt::format("{} (step {}, time {:.6g})", name, update->ntimestep, physical_time(update));
 }
 

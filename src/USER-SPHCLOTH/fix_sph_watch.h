@@ -96,7 +96,8 @@ class FixSPHWatch : public Fix {
   std::vector<Suspect> suspects(Limit) const;
   static void keep_worst(std::vector<Suspect> &);
   std::string describe(const Suspect &, Limit) const;
-  void remember_file();
+  void keep_files();
+  void remember_file(bool one_of_two);
 };
 
 }    // namespace LAMMPS_NS

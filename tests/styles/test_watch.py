@@ -165,6 +165,25 @@ def test_no_restart_file_of_a_state_beyond_the_limits(tmp_path, monkeypatch):
     assert not list(tmp_path.glob("user.*"))
 
 
+def test_the_pair_of_restart_files_of_the_command_is_not_replaced(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lmp = space("every 1 speed 50")
+    lmp.command("restart 7 one two")
+    with pytest.raises(Exception, match=r"fix b sph/watch: restart good .* 'restart N one two'"):
+        lmp.command("fix b all sph/watch restart good")
+
+
+def test_single_restart_files_of_the_command_go_on(tmp_path, monkeypatch):
+    """The one that is named is the last one."""
+    monkeypatch.chdir(tmp_path)
+    lmp = space("every 1 speed 5 restart good keep 1000", bad=PUSH)
+    lmp.commands_string("fix again all sph/watch restart good keep 1000\nunfix again")
+    lmp.command("restart 20 user.*")
+    with pytest.raises(Exception, match=r"within the limits is in user.60 \(step 60, time 0.06\)"):
+        lmp.command("run 500")
+    assert {p.name for p in tmp_path.glob("*[.]*0")} == {"user.0", "user.20", "user.40", "user.60"}
+
+
 SCHEMES = {
     "verlet": "run_style verlet",
     **{s: f"run_style sph/adaptive {s}" for s in ("constant", "global", "individual", "block")},

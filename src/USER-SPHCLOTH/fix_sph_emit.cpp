@@ -86,6 +86,11 @@ void FixSPHEmit::read_options(ArgReader &args)
                label);
   if (velocity.norm() == 0.0)
     error->all(FLERR, "{}: the velocity is missing: add 'velocity VX VY VZ'", label);
+  if (domain->dimension == 2 && (center[2] != 0.0 || velocity[2] != 0.0))
+    error->all(FLERR,
+               "{}: the center is at z = {} and the velocity has {} in z: give 0 in a 2-D "
+               "simulation",
+               label, center[2], velocity[2]);
   layer_time = spacing / velocity.norm();
 }
 
@@ -106,8 +111,12 @@ void FixSPHEmit::make_pattern()
   if (cells > MAX_IN_LAYER)
     error->all(FLERR, "{}: spacing {} makes {:.3g} particles in a layer, more than {:g}: raise it",
                label, spacing, cells, MAX_IN_LAYER);
-  const int na = std::max(1, static_cast<int>(std::lround(reach_a / spacing)));
-  const int nb = std::max(1, static_cast<int>(std::lround(reach_b / spacing)));
+  // in two dimensions a layer is a row
+  const auto count = [&](double reach, const Vec3 &side) {
+    const bool across = domain->dimension == 2 && side[2] != 0.0;
+    return across ? 1 : std::max(1, static_cast<int>(std::lround(reach / spacing)));
+  };
+  const int na = count(reach_a, first), nb = count(reach_b, second);
   for (int b = 0; b < nb; b++)
     for (int a = 0; a < na; a++) {
       const Vec3 x = spacing * ((a - 0.5 * (na - 1)) * first + (b - 0.5 * (nb - 1)) * second);

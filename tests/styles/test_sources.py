@@ -25,6 +25,42 @@ def test_a_rectangle_pours_layers_at_the_density_of_water():
     assert by_id(lmp, "v")[:, 2] == pytest.approx(np.full(len(x), -2.0))
 
 
+@pytest.mark.parametrize(
+    ("opening", "velocity", "x", "y"),
+    [
+        ("disc 0 0 0 0.1", "0 -2 0", [-0.075, -0.025, 0.025, 0.075], [0, 0, 0, 0]),
+        ("disc 0 0 0 0.1", "2 0 0", [0, 0, 0, 0], [-0.075, -0.025, 0.025, 0.075]),
+        ("rectangle 0 0 0 0.1 0.2", "0 -2 0", [-0.025, 0.025], [0, 0]),
+        ("rectangle 0 0 0 0.15 1", "2 0 0", [0, 0, 0], [-0.05, 0, 0.05]),
+    ],
+)
+def test_a_layer_is_a_row_at_z_0_in_two_dimensions(opening, velocity, x, y):
+    lmp = instance()
+    lmp.commands_string(
+        header("f f p", FLUID, dimension=2)
+        + box("-0.5 0.5 -0.5 0.5 -0.03 0.03")
+        + "mass 1 2.4\n"
+        + sph_tait("1 1 fluid 1000 c0 20")
+        + neighbor(0.03)
+        + "group water type 1\nfix step water sph/integrate constant\n"
+        + f"fix pour water sph/emit 90 1 0.05 {opening} velocity {velocity} start 0\nrun 0\n"
+    )
+    places = by_id(lmp, "x")
+    assert np.all(places[:, 2] == 0.0)
+    assert sorted(places[:, 0]) == pytest.approx(x, abs=1e-12)
+    assert sorted(places[:, 1]) == pytest.approx(y, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "words", ["disc 0 0 0.01 0.1 velocity 0 -2 0", "disc 0 0 0 0.1 velocity 1 0 2"]
+)
+def test_a_source_out_of_the_plane_is_named_in_two_dimensions(words):
+    lmp = instance()
+    lmp.commands_string(header("f f p", FLUID, dimension=2) + box("-0.5 0.5 -0.5 0.5 -0.03 0.03"))
+    with pytest.raises(Exception, match=r"fix pour sph/emit: .* in z: give 0 in a 2-D simulation"):
+        lmp.command(f"fix pour all sph/emit 90 1 0.05 {words}")
+
+
 @pytest.mark.parametrize("dt", [1e-3, 7e-4, 3e-3])
 def test_layers_follow_time_and_not_steps(dt):
     steps = round(0.21 / dt)

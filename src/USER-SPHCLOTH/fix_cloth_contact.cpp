@@ -224,7 +224,7 @@ void FixClothContact::setup_post_neighbor()
   store_positions();
   if (rules.sides) find_sheets();
   post_neighbor();
-  warn_of_too_near();
+  for_all_surfaces([](ContactSurface &surface) { surface.stabilization.warn_of_too_near(); });
 }
 
 void FixClothContact::find_sheets()
@@ -238,21 +238,6 @@ void FixClothContact::find_sheets()
                "{}: {} cloths and open obstacles have sides, the most are {}: give 'sides no'",
                label, sheets.size(), sphcloth::MAX_SHEETS);
   for (ContactSurface *sheet : sheets) sheet->triangles.check_winding();
-}
-
-void FixClothContact::warn_of_too_near()
-{
-  for_all_surfaces([this](ContactSurface &surface) {
-    tagint one;
-    const bigint n = surface.stabilization.count_too_near(one);
-    if (n > 0 && comm->me == 0)
-      error->warning(
-          FLERR,
-          "{}: {} particles start nearer to the triangles than the thickness {}, atom {} "
-          "for example: they get their gap by a tenth of it per step; place them farther "
-          "away, or lower the thickness",
-          label, n, rules.thickness, one);
-  });
 }
 
 void FixClothContact::post_neighbor()

@@ -106,7 +106,6 @@ class FixClothContact : public Fix, public SideSource {
   void store_positions();
   void wrap_last_positions();
   void subtract_excess_velocities();
-  void warn_of_too_near();
   void find_sheets();
   void find_sides();
   void read_obstacle(ArgReader &);

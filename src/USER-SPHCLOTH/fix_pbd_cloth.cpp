@@ -144,8 +144,7 @@ void FixPBDCloth::init()
                     substepping.uses(ClothSolver::JACOBI));
 }
 
-// No other cloth has them, and all have a mass: types have, so that only per-atom masses may be
-// missing.
+// No other cloth has them, and all have a mass.  Only per-atom masses may be missing.
 
 void FixPBDCloth::check_vertices()
 {
@@ -156,7 +155,6 @@ void FixPBDCloth::check_vertices()
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
-
   int mine = 0, massless;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0))

@@ -188,4 +188,4 @@ def test_activity_from_end_to_end() -> None:
     for corner in result["corners"]:
         assert 0 < corner["active"] < 0.5
         assert corner["over_all"]["value"] > 0
-    assert "per particle left out" in said.getvalue()
+    assert "left out" in said.getvalue()

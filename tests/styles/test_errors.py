@@ -220,7 +220,8 @@ CASES = [
     case(
         "contact: many sheets",
         SHEET + NINE_SHEETS + "fix c water cloth/contact 0.01\nrun 0",
-        r"fix c cloth/contact: 9 cloths have sides, the most are 8: give 'sides no'",
+        r"fix c cloth/contact: 9 cloths and open obstacles have sides, the most are 8: "
+        r"give 'sides no'",
     ),
     case(
         "contact: two that part the fluid",

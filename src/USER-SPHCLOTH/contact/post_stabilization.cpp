@@ -109,12 +109,12 @@ bool PostStabilization::recover_gap(ContactResult &contact, const Vec3 &p, int t
   return true;
 }
 
-bigint PostStabilization::count_too_near(tagint &one)
+void PostStabilization::warn_of_too_near()
 {
   mesh.load_step();
   candidates.update();
   bigint mine = 0, all;
-  tagint example = 0;
+  tagint example = 0, one;
   int last = -1;
   candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
     ContactResult contact;
@@ -125,7 +125,12 @@ bigint PostStabilization::count_too_near(tagint &one)
   });
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&example, &one, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all;
+  if (all > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "{}: {} particles start nearer to the triangles than the thickness {}, atom {} "
+                   "for example: they get their gap by a tenth of it per step; place them farther "
+                   "away, or lower the thickness",
+                   mesh.label, all, mesh.rules.thickness, one);
 }
 
 // Both sides of what was put back lose the approach, see APPROACH_FACTOR.  What restitution gives

@@ -28,8 +28,8 @@ class PostStabilization : protected Pointers {
   // Of the sweeps from the last step's positions to the present ones.  Collective; was there any?
   bool resolve_penetrations();
 
-  // now: how many particles are nearer than the thickness, and one of them, or 0.  Collective.
-  bigint count_too_near(tagint &one);
+  // of particles that are nearer than the thickness now.  Collective.
+  void warn_of_too_near();
 
   double memory_usage() const { return contacts.memory_usage(); }
 

@@ -203,6 +203,11 @@ CASES = [
     ),
     # fix cloth/contact
     case("contact: thickness", SHEET_FIX + "fix c water cloth/contact 0", r"thickness is '0'.*> 0"),
+    case(
+        "contact: thickness above the box",
+        SHEET_FIX + "fix c water cloth/contact 1e20\nrun 0",
+        r"fix c cloth/contact: needs ghosts as far as 1e\+20, .* images of each atom",
+    ),
     case("contact: none", SHEET_FIX + "fix c water cloth/contact", r"thickness is missing"),
     case(
         "contact: no cloth", SHEET + "fix c water cloth/contact 0.01\nrun 0", r"there is no cloth"

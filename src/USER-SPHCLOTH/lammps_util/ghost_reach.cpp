@@ -20,6 +20,9 @@ using namespace LAMMPS_NS;
 // so that a mesh that stretches slowly does not ask at every list build
 static constexpr double ROOM = 1.1;
 
+// Each atom has fewer images than this, before there is no memory for them.
+static constexpr double MOST_IMAGES = 1e4;
+
 static constexpr int TILED = 1;    // of Comm::style
 
 bool GhostReach::matters() const
@@ -40,15 +43,28 @@ double GhostReach::reach() const
   return std::max(comm->cutghostuser, listed);
 }
 
-double GhostReach::shortest_period() const
+std::array<double, 3> GhostReach::periods() const
 {
   const double *h_inv = domain->h_inv;
-  const double length[3] = {1.0 / std::hypot(h_inv[0], h_inv[5], h_inv[4]),
-                            1.0 / std::hypot(h_inv[1], h_inv[3]), 1.0 / h_inv[2]};
-  double shortest = std::numeric_limits<double>::infinity();
-  for (int d = 0; d < domain->dimension; d++)
-    if (domain->periodicity[d]) shortest = std::min(shortest, length[d]);
-  return shortest;
+  std::array<double, 3> length{1.0 / std::hypot(h_inv[0], h_inv[5], h_inv[4]),
+                               1.0 / std::hypot(h_inv[1], h_inv[3]), 1.0 / h_inv[2]};
+  for (int d = 0; d < 3; d++)
+    if (!domain->periodicity[d] || d >= domain->dimension)
+      length[d] = std::numeric_limits<double>::infinity();
+  return length;
+}
+
+double GhostReach::shortest_period() const
+{
+  const auto all = periods();
+  return *std::min_element(all.begin(), all.end());
+}
+
+double GhostReach::images(double reach) const
+{
+  double product = 1.0;
+  for (const double period : periods()) product *= 1.0 + 2.0 * reach / period;
+  return product;
 }
 
 void GhostReach::require(double needed, double wanted) { raise(needed, wanted); }
@@ -70,7 +86,13 @@ double GhostReach::size_of_box() const
 bool GhostReach::raise(double needed, double wanted)
 {
   if (!matters() || comm->mode != Comm::SINGLE) return false;
-  const double now = reach(), goal = std::max(needed, wanted);
+  if (!(images(needed) < MOST_IMAGES))
+    error->all(FLERR,
+               "{}: needs ghosts as far as {:.6g}, {:.3g} images of each atom in a periodic box: "
+               "use a larger box, shorter edges or a smaller thickness",
+               owner, needed, images(needed));
+  const double now = reach();
+  const double goal = images(wanted) < MOST_IMAGES ? std::max(needed, wanted) : needed;
   if (!(goal > now)) return false;
   double raised = ROOM * goal;
   if (comm->style == TILED) {

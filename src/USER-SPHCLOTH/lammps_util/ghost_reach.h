@@ -6,6 +6,7 @@
 
 #include "pointers.h"
 
+#include <array>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -30,7 +31,9 @@ class GhostReach : protected Pointers {
  private:
   std::string owner;
 
+  std::array<double, 3> periods() const;    // infinite where the box is not periodic
   double shortest_period() const;
+  double images(double reach) const;    // of each atom, itself among them
   bool raise(double needed, double wanted);
 };
 

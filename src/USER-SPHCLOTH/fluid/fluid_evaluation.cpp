@@ -60,7 +60,15 @@ void FluidEvaluation::begin_run()
   model.role.assign(n, Role::NONE);
   model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
-  for (int i = 1; i < n; i++) model.role[i] = type(i).role;
+  model.pressure_scale.assign(n, 1.0);
+  double first = 0.0;    // rest density; if there is no other, all factors are exactly 1
+  for (int i = 1; i < n; i++) {
+    model.role[i] = type(i).role;
+    if (!is_fluid(i)) continue;
+    const double rho0 = equation_of_state(i).rho0;
+    if (first == 0.0) first = rho0;
+    model.pressure_scale[i] = rho0 / first * (rho0 / first);
+  }
   list_reach.assign(n * n, 0.0);
   moved.assign(n, 0);
   moved_here = moved;
@@ -71,10 +79,13 @@ void FluidEvaluation::set_pair(int i, int j, double listed)
   const int n = atom->ntypes + 1;
   FluidModel &model = core->model;
   PairTerms t = mix(i, j);
+  const double scale = model.pressure_scale[i] * model.pressure_scale[j];
+  t.stiffness /= is_fluid(i) && is_fluid(j) ? std::sqrt(scale) : scale;
   // density diffuses within a fluid, not across the step between two
   if (i == j && integrates_density())
     t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);
   model.terms[i * n + j] = model.terms[j * n + i] = t;
+  model.terms[j * n + i].rho0_ratio = 1.0 / t.rho0_ratio;
   if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
   if (t.nu > 0.0) model.friction = Friction::ANY;
   list_reach[i * n + j] = list_reach[j * n + i] = listed;

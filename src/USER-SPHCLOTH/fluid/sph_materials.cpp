@@ -248,6 +248,11 @@ double SPHMaterials::find_support(int i, int j) const
   return is_fluid(i) ? support(i, i) : support(j, j);
 }
 
+static double rho0_ratio(const SPHMaterials::TypeData &a, const SPHMaterials::TypeData &b)
+{
+  return a.eos.rho0 / b.eos.rho0;
+}
+
 // Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
 
 double SPHMaterials::viscosity(int i, int j) const
@@ -259,23 +264,33 @@ double SPHMaterials::viscosity(int i, int j) const
 double SPHMaterials::find_viscosity(int i) const
 {
   double largest = viscosity(i, i);
-  for (int j = 1; j < static_cast<int>(types.size()); j++)
-    if (given(i, j).nu >= 0.0 || given(i, j).alpha >= 0.0)
-      largest = std::max(largest, viscosity(i, j));
+  for (int j = 1; j < static_cast<int>(types.size()); j++) {
+    const double heavier = is_fluid(j) ? std::max(1.0, rho0_ratio(types[j], types[i])) : 1.0;
+    if (given(i, j).nu >= 0.0 || given(i, j).alpha >= 0.0 || heavier > 1.0)
+      largest = std::max(largest, 0.5 * (1.0 + heavier) * viscosity(i, j));
+  }
   return largest;
 }
 
-double SPHMaterials::pressure_factor(int fluid, int boundary) const
+// Half of what drives two fluids apart is the pressure of the other, over the own density.
+
+double SPHMaterials::pressure_factor(int fluid, int other) const
 {
-  const double stiffness = given(fluid, boundary).stiffness;
-  return stiffness > 0.0 ? stiffness / types[fluid].eos.k : 1.0;
+  const double k = types[fluid].eos.k;
+  if (is_fluid(other)) {
+    const double heavier = rho0_ratio(types[other], types[fluid]);
+    return 0.5 * (1.0 + heavier * types[other].eos.k / k);
+  }
+  const double stiffness = given(fluid, other).stiffness;
+  return stiffness > 0.0 ? stiffness / k : 1.0;
 }
+
 
 double SPHMaterials::largest_pressure_factor(int fluid) const
 {
   double largest = 1.0;
   for (int j = 1; j < static_cast<int>(types.size()); j++)
-    if (is_boundary(j)) largest = std::max(largest, pressure_factor(fluid, j));
+    if (is_boundary(j) || is_fluid(j)) largest = std::max(largest, pressure_factor(fluid, j));
   return largest;
 }
 
@@ -335,6 +350,10 @@ PairTerms SPHMaterials::mix(int i, int j) const
   t.monaghan = alpha(i, j) * sound(i, j) * smoothing;
   t.soft = 0.01 * smoothing * smoothing;
   t.rho0 = a.eos.rho0;
+  if (is_fluid(i) && is_fluid(j)) {
+    t.rho0_ratio = rho0_ratio(types[i], types[j]);
+    return t;
+  }
   t.stiffness = of_pair.stiffness > 0.0 ? of_pair.stiffness / a.eos.k : 1.0;
   for (int k : {i, j})
     if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;

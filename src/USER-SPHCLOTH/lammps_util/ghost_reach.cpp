@@ -21,7 +21,7 @@ using namespace LAMMPS_NS;
 static constexpr double ROOM = 1.1;
 
 // Each atom has fewer images than this, before there is no memory for them.
-static constexpr double MOST_IMAGES = 1e4;
+static constexpr double MAX_IMAGES = 1e4;
 
 static constexpr int TILED = 1;    // of Comm::style
 
@@ -86,13 +86,13 @@ double GhostReach::size_of_box() const
 bool GhostReach::raise(double needed, double wanted)
 {
   if (!matters() || comm->mode != Comm::SINGLE) return false;
-  if (!(images(needed) < MOST_IMAGES))
+  if (!(images(needed) < MAX_IMAGES))
     error->all(FLERR,
                "{}: needs ghosts as far as {:.6g}, {:.3g} images of each atom in a periodic box: "
                "use a larger box, shorter edges or a smaller thickness",
                owner, needed, images(needed));
   const double now = reach();
-  const double goal = images(wanted) < MOST_IMAGES ? std::max(needed, wanted) : needed;
+  const double goal = images(wanted) < MAX_IMAGES ? std::max(needed, wanted) : needed;
   if (!(goal > now)) return false;
   double raised = ROOM * goal;
   if (comm->style == TILED) {

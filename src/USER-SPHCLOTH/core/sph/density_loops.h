@@ -49,10 +49,11 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_densities(const Particles &p, b
         const NeighborSpan near = lists(slot, other);
         if (near.n == 0) continue;
         const PairTerms &whole = model.pair(t, other);
-        const double equal = model.mass[other], each = is_fluid(other) ? 1.0 : whole.rho0;
+        const double equal = model.mass[other];
+        const double each = is_fluid(other) ? whole.rho0_ratio : whole.rho0;
         const Neighborhood of{i, near, pair(t, other), masses(p, near, other)};
         rho += whole.kernel.w *
-            (equal > 0.0 ? equal * shape_sum<false>(of, c) : each * shape_sum<true>(of, c));
+            each * (equal > 0.0 ? equal * shape_sum<false>(of, c) : shape_sum<true>(of, c));
       }
       p.rho[i] = rho;
     }
@@ -99,7 +100,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
           const double w = p.mass_or_volume[j] * weight(p, i, j, of_pair.kernel);
-          mass += is_fluid(other) ? w : of_pair.rho0 * w;
+          mass += (is_fluid(other) ? of_pair.rho0_ratio : of_pair.rho0) * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }
       }
@@ -121,7 +122,7 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
       const NeighborSpan found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {
         const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
-        sum += w * p.p_over_rho2[found.of[k]];
+        sum += w * model.pressure_scale[other] * p.p_over_rho2[found.of[k]];
         weights += w;
       }
     }

@@ -3,7 +3,8 @@
 //
 // A fluid particle sums over fluid neighbors (its mass m_j) and over boundary neighbors, walls
 // and cloth, which count with the mass rho0_i V_b that water in their volume V_b would have.
-// Akinci et al., ACM Trans. Graph. 31 (2012) 62.
+// Akinci et al., ACM Trans. Graph. 31 (2012) 62.  A neighbor of another fluid counts likewise, with
+// the mass m_j rho0_i/rho0_j: a density has no step where two fluids meet.
 //
 // This is what the pair style sees; the loops, one set per kernel and precision, are in
 // core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h and rate_loops.h.
@@ -42,7 +43,8 @@ struct PairTerms {
   double monaghan = 0.0;     // alpha c0 h_s of the artificial viscosity
   double soft = 0.0;         // 0.01 h_s^2, keeps its mu finite
   double rho0 = 0.0;         // rest density of the fluid partner of a boundary
-  double stiffness = 1.0;    // pressure on this boundary over the fluid's own pressure
+  double rho0_ratio = 1.0;    // of two fluids: rest density of the first over that of the second
+  double stiffness = 1.0;    // what the recorded pressures count, see pressure_scale
   double diffusion = 0.0;    // 2 delta c0 h_s of the density, two fluids of one type only
 };
 
@@ -52,6 +54,10 @@ struct FluidModel {
   Outputs outputs = Outputs::NOTHING;
   std::vector<Role> role;          // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
+  // [n_types + 1], with which p/rho^2 is recorded: (rho0/R)^2 of a fluid, 1 of a boundary, whose
+  // pressure is the mean of what is recorded around it.  R is one density for all; a pair of fluids
+  // has the stiffness R^2/(rho0_i rho0_j), a fluid and a boundary (R/rho0_i)^2 times the user's.
+  std::vector<double> pressure_scale;
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
   const PairTerms &pair(int i, int j) const { return terms[i * (n_types + 1) + j]; }
 };

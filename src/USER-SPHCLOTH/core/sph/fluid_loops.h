@@ -41,7 +41,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
-  void record(const Particles &p) override { records.record(p, model.role.data()); }
+  void record(const Particles &p) override
+  {
+    records.record(p, model.role.data(), model.pressure_scale.data());
+  }
   void forces(const Particles &, Target) override;
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
   void impulses(const Particles &, const std::vector<int> &slots) override;

@@ -83,7 +83,8 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
 
         const bool asleep = IMPULSE && c.span[k] < Real(0);
         const Real mean = IMPULSE ? (asleep ? span_i : Real(0.5) * (span_i + c.span[k])) : Real(1);
-        Real along = motion.p_over_rho2 + (asleep ? span_i : Real(1)) * c.p_over_rho2[k];
+        Real along =
+            t.stiffness * (motion.p_over_rho2 + (asleep ? span_i : Real(1)) * c.p_over_rho2[k]);
         if (F != Friction::NONE) {
           const Real both = rho_i + rho_j;
           along -=
@@ -98,7 +99,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
           fz += friction * dw;
         }
         sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
-        sums.add(k, mass[k], {fx, fy, fz}, slope * v_dot_r, r);
+        sums.add(k, mass[k], {fx, fy, fz}, t.rho0_ratio * slope * v_dot_r, r);
       });
 }
 
@@ -234,7 +235,8 @@ void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressur
   records.spans.resize(p.n_all);
   acts.resize(p.n_all);
   for (int i = 0; i < p.n_all; i++) {
-    records.motions[i].p_over_rho2 = static_cast<Real>(pressure_time[i]);
+    records.motions[i].p_over_rho2 =
+        static_cast<Real>(model.pressure_scale[p.type[i]] * pressure_time[i]);
     records.spans[i] = static_cast<Real>(span[i]);
     acts[i] = span[i] != 0.0 || pressure_time[i] != 0.0;
   }

@@ -39,13 +39,14 @@ template <class P> struct LoopTerms {
   using Real = typename P::Real;
   using Coordinate = typename P::Coordinate;
 
-  Real inv_support, support_sq, f, nu, monaghan, soft, rho0, stiffness, diffusion;
+  Real inv_support, support_sq, f, nu, monaghan, soft, rho0, rho0_ratio, stiffness, diffusion;
   Coordinate outside;    // a distance along x outside the support
 
   LoopTerms(const PairTerms &t, Real quantum) :
       inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
       f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
-      rho0(Real(t.rho0)), stiffness(Real(t.stiffness)), diffusion(Real(t.diffusion)),
+      rho0(Real(t.rho0)), rho0_ratio(Real(t.rho0_ratio)), stiffness(Real(t.stiffness)),
+      diffusion(Real(t.diffusion)),
       outside(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
   {
   }
@@ -116,13 +117,14 @@ template <class P> class PairColumns {
     record_positions(p, origin, per_quantum);
   }
 
-  SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role)
+  SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role, const double *scale)
   {
     for (int i = 0; i < p.n_all; i++) {
       const bool fluid = role[p.type[i]] == Role::FLUID;
       sites[i].density_or_volume = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
       motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
-                    static_cast<Real>(p.v[3 * i + 2]), static_cast<Real>(p.p_over_rho2[i])};
+                    static_cast<Real>(p.v[3 * i + 2]),
+                    static_cast<Real>(scale[p.type[i]] * p.p_over_rho2[i])};
     }
   }
 

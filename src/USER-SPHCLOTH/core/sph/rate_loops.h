@@ -109,7 +109,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Neighborhood &of, do
         const Real v_dot_r = du * ax + dv * ay + dw * az;
         const double mass_or_volume = FROM_BOUNDARY ? static_cast<double>(density_or_volume)
                                                     : mass[k];
-        Real flow = FROM_BOUNDARY ? t.rho0 * v_dot_r : v_dot_r;
+        Real flow = (FROM_BOUNDARY ? t.rho0 : t.rho0_ratio) * v_dot_r;
         if (DIFFUSION) {
           const Real linear =
               (gradient.x + gx[k]) * r.x + (gradient.y + gy[k]) * r.y + (gradient.z + gz[k]) * r.z;

@@ -24,7 +24,7 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: demo test validate stress equality endure fuzz mutate reliability-page lint docs \
+.PHONY: demo test validate stress equality endure fuzz mutate reference-logs reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
@@ -72,6 +72,10 @@ fuzz: $(VENV)/installed
 # deliberate bugs, each of which a test must catch
 mutate: $(VENV)/installed
 	$(BIN)/python tests/mutate.py --json $(FOUND)/mutate.json
+
+# the logs of the examples on 1 and 4 ranks; 'tests/reference_logs.py --check' compares them
+reference-logs: $(VENV)/installed
+	$(BIN)/python tests/reference_logs.py
 
 # the tables of the page, of whatever the targets above have left
 reliability-page: $(VENV)/installed

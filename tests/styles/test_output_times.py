@@ -148,3 +148,15 @@ def test_dumps_by_time_come_with_the_first_step_that_reaches_it(tmp_path):
     np.testing.assert_allclose(
         times_of_frames(tmp_path / "plain"), time[np.searchsorted(time, wanted)], rtol=1e-14
     )
+
+
+@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
+@pytest.mark.parametrize(("every", "until"), [(1, 0.012), (4, 0.012), (1, 1e-4)])
+def test_the_end_of_a_run_takes_no_row_from_the_log(tmp_path, style, every, until):
+    """A row that is due at the last step but one is written; the second run takes no step."""
+    scene = DAM.format(scheme=f"global until {until}", style=style).replace("run 100", "")
+    more = "thermo_style custom step time dt f_step[28]\nthermo_modify line yaml\n"
+    log = run(write(tmp_path, scene + more + f"thermo {every}\nrun 100\n"))
+    steps = thermo_columns(log)[0].astype(int).tolist()
+    assert 0 < steps[-1] < 100
+    assert steps == sorted({*range(0, steps[-1], every), steps[-1]})

@@ -196,21 +196,6 @@ def test_isolated_particle_flies_free():
     assert np.all(by_id(lmp, "f") == 0)
 
 
-def test_mixed_precision_does_not_depend_on_where_the_box_is():
-    """Integer coordinates: far from the origin the same digits."""
-
-    def forces(shift):
-        lmp = lattice("run 0", setting="precision mixed")
-        lmp.commands_string(f"""
-            change_box all x final {-0.2 + shift} {0.2 + shift} units box
-            displace_atoms all move {shift} 0 0 units box
-            run 0""")
-        return by_id(lmp, "f")
-
-    near, far = forces(0.0), forces(1000.0)
-    np.testing.assert_allclose(far, near, atol=1e-5 * np.abs(near).max())
-
-
 def test_particles_of_no_role_take_no_part(tmp_path):
     """Neither densities nor forces know of them, also after a data file."""
     seen = []

@@ -73,7 +73,8 @@ void OutputTimes::want_thermo(bigint step)
   output->next = std::min(output->next, step);
 }
 
-// As by the command timer, the last step with thermodynamic output.
+// As by the command timer, the last step with thermodynamic output.  A row that is due now is not
+// written yet, and the next one follows from it and from the last step of the run.
 
 void OutputTimes::look_for_end()
 {
@@ -81,8 +82,9 @@ void OutputTimes::look_for_end()
   const double now = physical_time(update), slack = SLACK * update->dt;
   if (now + slack >= until) return timer->force_timeout();
   const bigint next = update->ntimestep + 1;
-  if (now + update->dt + slack < until || output->next_thermo == next) return;
-  want_thermo(next);
+  if (now + update->dt + slack < until) return;
+  update->laststep = std::min(update->laststep, next);
+  if (output->next_thermo > next) want_thermo(next);
 }
 
 void OutputTimes::end_run()

@@ -72,7 +72,7 @@ template <class K, class P>
 void FluidLoops<K, P>::volumes(const Particles &, int type, double *volume)
 {
   const PairTerms &whole = model.pair(type, type);
-  const Terms among_each_other(whole, records.quantum[0]);
+  const Terms among_each_other = in_loops(whole);
   Columns c;
   for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
     const int i = lists.at(slot);

@@ -30,7 +30,12 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   void record_positions(const Particles &p, const Box &box) override
   {
-    records.record_positions(p, box);
+    double inv_support = 0.0;    // of the widest pair
+    for (const PairTerms &t : model.terms)
+      if (t.kernel.inv_support > 0.0 && !(inv_support > 0.0 && inv_support < t.kernel.inv_support))
+        inv_support = t.kernel.inv_support;
+    records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0);
+    f_unit = std::pow(records.unit, -(model.dimension + 1));
   }
   void volumes(const Particles &, int type, double *volume) override;
   void gather(const Particles &, bool sum) override;
@@ -63,19 +68,24 @@ template <class K, class P> class FluidLoops : public Fluid {
   };
 
   Records records;
+  double f_unit = 1.0;    // of an acceleration or a rate: the loops' lengths are in records.unit
   std::vector<Terms> terms;    // as the model's, for this evaluation
   AlignedVector<double> equal_mass;    // [n_types + 1][LANES]
   AlignedVector<double> unequal_mass;    // of the neighbors of one particle
   std::vector<int> acts;    // 1: has an impulse of its own, or a pressure
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
+  Terms in_loops(const PairTerms &t) const
+  {
+    return {t, records.quantum[0], records.unit, f_unit};
+  }
   const Terms &pair(int t, int other) const { return terms[t * (model.n_types + 1) + other]; }
 
   // Once per evaluation: what the loops read of the model, in their precision
   void begin_evaluation()
   {
     terms.clear();
-    for (const PairTerms &of_pair : model.terms) terms.emplace_back(of_pair, records.quantum[0]);
+    for (const PairTerms &of_pair : model.terms) terms.push_back(in_loops(of_pair));
     equal_mass.resize(model.mass.size() * LANES);
     for (std::size_t t = 0; t < model.mass.size(); t++)
       std::fill_n(&equal_mass[t * LANES], LANES, model.mass[t]);

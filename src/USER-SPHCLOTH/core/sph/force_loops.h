@@ -42,13 +42,14 @@ template <class K, class P> template <Outputs OUTPUTS, bool VIRIAL> struct Fluid
     approach_sq[m] = std::max(approach_sq[m], r_sq < support_sq ? speed_sq : Real(0));
   }
 
-  Acceleration total() const
+  Acceleration total(double f_unit, double unit) const
   {
-    Acceleration a{x.total(), y.total(), z.total(), drho.total(), 0.0, {}};
+    Acceleration a{f_unit * x.total(), f_unit * y.total(), f_unit * z.total(),
+                   f_unit * drho.total(), 0.0, {}};
     if (OUTPUTS == Outputs::RATE_AND_APPROACH)
       a.approach = std::sqrt(*std::max_element(approach_sq, approach_sq + LANES));
     if (VIRIAL)
-      for (int m = 0; m < 6; m++) a.virial[m] = 0.5 * virial[m].total();
+      for (int m = 0; m < 6; m++) a.virial[m] = 0.5 * f_unit * unit * virial[m].total();
     return a;
   }
 };
@@ -188,7 +189,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::forces_on(const Particles &p, int slot, i
       across_boundary<F, OUTPUTS, VIRIAL, IMPULSE, true>(
           {i, found, terms_of_pair, masses(p, found, other)}, c, sums);
   }
-  const Acceleration a = sums.total();
+  const Acceleration a = sums.total(f_unit, records.unit);
   if (OUTPUTS == Outputs::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
   if (!n_found) return;
   if (VIRIAL)

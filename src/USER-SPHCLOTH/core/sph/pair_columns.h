@@ -22,6 +22,7 @@ struct DoublePrecision {
 };
 
 // Coordinates are counted in a quantum: their differences are exact however far from the origin.
+// Lengths are in a unit near the support: 1/H^5 is beyond single precision in some units.
 
 struct MixedPrecision {
   using Real = float;
@@ -33,7 +34,8 @@ struct MixedPrecision {
   }
 };
 
-// PairTerms in the precision of the loops
+// PairTerms in the precision of the loops, with lengths in `unit`, a power of 2; masses, speeds and
+// densities keep their units
 
 template <class P> struct LoopTerms {
   using Real = typename P::Real;
@@ -42,11 +44,14 @@ template <class P> struct LoopTerms {
   Real inv_support, support_sq, f, nu, monaghan, soft, rho0, rho0_ratio, stiffness, diffusion;
   Coordinate outside;    // a distance along x outside the support
 
-  LoopTerms(const PairTerms &t, Real quantum) :
-      inv_support(Real(t.kernel.inv_support)), support_sq(Real(t.kernel.support_sq)),
-      f(Real(t.kernel.f)), nu(Real(t.nu)), monaghan(Real(t.monaghan)), soft(Real(t.soft)),
+  // f_unit: of a force, 1/unit^(d+1)
+  LoopTerms(const PairTerms &t, Real quantum, double unit, double f_unit) :
+      inv_support(Real(t.kernel.inv_support * unit)),
+      support_sq(Real(t.kernel.support_sq / (unit * unit))),
+      f(Real(t.kernel.f * unit / f_unit)), nu(Real(t.nu / unit)),
+      monaghan(Real(t.monaghan / unit)), soft(Real(t.soft / (unit * unit))),
       rho0(Real(t.rho0)), rho0_ratio(Real(t.rho0_ratio)), stiffness(Real(t.stiffness)),
-      diffusion(Real(t.diffusion)),
+      diffusion(Real(t.diffusion / unit)),
       outside(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
   {
   }
@@ -96,13 +101,15 @@ template <class P> class PairColumns {
   };
 
   std::array<Real, 3> quantum{1, 1, 1};
+  double unit = 1.0;    // of lengths
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
   std::vector<Real> spans;              // of impulses, empty without them
 
-  void record_positions(const Particles &p, const Fluid::Box &box)
+  void record_positions(const Particles &p, const Fluid::Box &box, double support)
   {
+    unit = P::COUNTED ? std::exp2(std::floor(std::log2(support))) : 1.0;
     sites.resize(p.n_all + LANES);
     motions.resize(p.n_all + LANES);
     std::array<double, 3> origin{0.0, 0.0, 0.0}, per_quantum{1.0, 1.0, 1.0};
@@ -111,7 +118,7 @@ template <class P> class PairColumns {
       for (int d = 0; d < 3; d++) {
         origin[d] = box.lo[d] - box.margin;
         per_quantum[d] = std::ceil(box.length[d] / longest * 0x1p30) / box.length[d];
-        quantum[d] = static_cast<Real>(1.0 / per_quantum[d]);
+        quantum[d] = static_cast<Real>(1.0 / per_quantum[d] / unit);
       }
     }
     record_positions(p, origin, per_quantum);
@@ -131,9 +138,11 @@ template <class P> class PairColumns {
   void record_gradients(const double *gradient, int n)
   {
     gradients.resize(n + LANES);
-    for (int i = 0; i < n; i++)
-      gradients[i] = {static_cast<Real>(gradient[3 * i]), static_cast<Real>(gradient[3 * i + 1]),
-                      static_cast<Real>(gradient[3 * i + 2]), Real(0)};
+    for (int i = 0; i < n; i++) {
+      const double *of = gradient + 3 * i;
+      gradients[i] = {static_cast<Real>(of[0] * unit), static_cast<Real>(of[1] * unit),
+                      static_cast<Real>(of[2] * unit), Real(0)};
+    }
   }
 
   // The one loop over the neighbors of a particle: for each group load(first neighbor), which fills

@@ -70,7 +70,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_gradients(const Particl
       const std::array<double, 3> of_i =
           density_differences({i, found, pair(t, t), masses(p, found, t)}, c)
               .gradient(model.dimension);
-      std::copy(of_i.begin(), of_i.end(), gradient + 3 * i);
+      for (int d = 0; d < 3; d++) gradient[3 * i + d] = of_i[d] / records.unit;
     }
   }
 }
@@ -83,7 +83,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Neighborhood &of, do
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
-  const Real ago = static_cast<Real>(back);
+  const Real ago = static_cast<Real>(back / records.unit);
   using Gradient = typename Records::Gradient;
   const Gradient gradient = DIFFUSION ? records.gradients[of.i] : Gradient();
   alignas(64) Real gx[LANES], gy[LANES], gz[LANES];
@@ -118,7 +118,7 @@ SPHCLOTH_INLINE double FluidLoops<K, P>::density_rate(const Neighborhood &of, do
         }
         rate.of[k] += mass_or_volume * (slope * flow);
       });
-  return rate.total();
+  return f_unit * rate.total();
 }
 
 template <class K, class P>

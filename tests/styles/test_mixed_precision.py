@@ -1,0 +1,58 @@
+"""pair_style sph/tait with precision mixed against double, wherever the box is and in any units."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from reference_sph import lattice
+from scenes import box, header, sph_tait
+
+
+@pytest.mark.parametrize("length", [1e-9, 1e10])
+@pytest.mark.parametrize("density", ["summation", "continuity"])
+def test_mixed_precision_holds_for_any_size_of_the_numbers(length, density):
+    """As in units real, or for drops of nanometers in SI: 1/H^5 is beyond single precision."""
+    given = lambda s: f"precision {s} density {density}"  # noqa: E731
+    double, mixed = (scaled_pair(length, given(s)) for s in ("double", "mixed"))
+    assert np.abs(double).max() > 0
+    np.testing.assert_allclose(mixed, double, rtol=1e-5, atol=1e-5 * np.abs(double).max())
+
+
+def scaled_pair(length, setting):
+    """Forces and rates of two particles that approach each other, with friction, and a wall."""
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f", "sph")
+        + box(" ".join(f"{side * length}" for side in (-1, 1) * 3), 2)
+        + f"mass * {0.125 * length**3}\nregion all block INF INF INF INF INF INF\n"
+        + "".join(
+            f"create_atoms {kind} single {x * length} 0 0 units box\n"
+            for kind, x in ((1, 0), (1, 0.05), (2, -0.04))
+        )
+        + "velocity all ramp vx 0 -2 x -1 1 units box\nset type 1 sph/rho 1010\n"
+        + sph_tait(
+            f"1 1 fluid 1000 c0 20 alpha 0.1 nu {1e-3 * length}",
+            f"2 2 boundary volume {1e-4 * length**3}",
+            support=0.1 * length,
+            options=setting,
+        )
+        + f"neighbor {0.03 * length} bin\ngroup water type 1\ntimestep {1e-3 * length}\n"
+        + "fix step water sph/integrate global\nrun 0\n"
+    )
+    return np.concatenate(
+        [by_id(lmp, "f")[:, 0] / length**2, by_id(lmp, "drho")[:2] * length, by_id(lmp, "rho")[:2]]
+    )
+
+
+def test_mixed_precision_does_not_depend_on_where_the_box_is():
+    """Integer coordinates: far from the origin the same digits."""
+
+    def forces(shift):
+        lmp = lattice("run 0", setting="precision mixed")
+        lmp.commands_string(f"""
+            change_box all x final {-0.2 + shift} {0.2 + shift} units box
+            displace_atoms all move {shift} 0 0 units box
+            run 0""")
+        return by_id(lmp, "f")
+
+    near, far = forces(0.0), forces(1000.0)
+    np.testing.assert_allclose(far, near, atol=1e-5 * np.abs(near).max())

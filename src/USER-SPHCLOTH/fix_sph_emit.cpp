@@ -135,7 +135,8 @@ void FixSPHEmit::init()
         "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
         label, itype, itype, itype);
   // the mass with which a lattice of this spacing is water at rest, by the density sum
-  const double at_rest = fluid->equation_of_state(itype).rho0 / fluid->lattice_sum(itype, spacing);
+  rho0 = fluid->equation_of_state(itype).rho0;
+  const double at_rest = rho0 / fluid->lattice_sum(itype, spacing);
   if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
     error->all(FLERR,
@@ -242,6 +243,7 @@ void FixSPHEmit::add_particle(const Vec3 &position, tagint tag)
   const int i = create_owned_atom(atom, domain, tag, itype, position.data(), groupbit);
   if (i < 0) return;
   for (int d = 0; d < 3; d++) atom->v[i][d] = velocity[d];
+  atom->rho[i] = rho0;    // for continuity, which has no other for it
   if (atom->rmass) atom->rmass[i] = mass;
 }
 

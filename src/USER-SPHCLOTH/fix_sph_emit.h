@@ -51,6 +51,7 @@ class FixSPHEmit : public Fix {
   int itype;
   double spacing;
   double mass;    // of a particle, 0: that of water at rest
+  double rho0 = 0.0;    // its density
   Vec3 center, velocity;
   double extent[2];    // radius of the disc, or the two sides of the rectangle
   bool disc;

@@ -161,6 +161,15 @@ def test_water_that_backs_up_into_the_opening_is_named(capfd, opening, back):
     assert ("particles are where a layer appears, at the time 0.05" in said) == (back > 0.0)
 
 
+def test_what_is_poured_has_the_rest_density_with_continuity():
+    text = POUR.replace("sph/tait 0.1", "sph/tait 0.1 density continuity")
+    lmp = instance()
+    lmp.commands_string(text.format(n=100, dt=1e-3, opening="disc 0 0 0.8 0.12") + "run 60")
+    rho = by_id(lmp, "rho")
+    assert len(rho) > 20
+    assert rho == pytest.approx(np.full(len(rho), 1000.0), rel=1e-9)
+
+
 # 0.002 outside the box when the run ends, 0.012 from where the lists were built
 OUTSIDE = (
     header("f p p", FLUID)

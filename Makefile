@@ -46,10 +46,11 @@ validate: $(VENV)/installed
 # what docs/evidence/reliability.md is made of
 FOUND := build/reliability
 
-# every extreme with every scheme on 1, 2 and 4 ranks: an hour on two cores
+# every extreme with every scheme on 1, 2 and 4 ranks, and 300 random scenes: an hour on two cores
 stress: $(VENV)/installed
 	mkdir -p $(FOUND)
 	$(BIN)/sphcloth stress --json $(FOUND)/stress.json
+	$(BIN)/sphcloth stress random --seed 1 --count 300 --out $(FOUND)/random --json $(FOUND)/random.json
 
 # one scene in many ways: ranks, cuts, newton, balancing, sorting, lists, restart and data files, with every
 # scheme in three boxes: 40 minutes on two cores with other things to do

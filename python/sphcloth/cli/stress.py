@@ -17,6 +17,8 @@ sphcloth stress --quick
 
 sphcloth stress impact-3-normal --scheme global,block --ranks 1,2
 
+sphcloth stress random --seed 1 --count 300
+
 sphcloth stress --json stress.json
 """
 
@@ -24,7 +26,10 @@ sphcloth stress --json stress.json
 def stress(
     case: Annotated[
         str | None,
-        typer.Argument(metavar="CASE", help="Name of a case; all without one; --list shows them."),
+        typer.Argument(
+            metavar="CASE",
+            help="Name of a case; all without one; --list shows them. random: scenes from a seed.",
+        ),
     ] = None,
     scheme: Annotated[
         str | None,
@@ -44,17 +49,22 @@ def stress(
     out: Annotated[
         Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
     ] = None,
+    seed: Annotated[int, typer.Option(help="With random: seed of the first scene.")] = 1,
+    count: Annotated[int, typer.Option(help="With random: how many scenes.")] = 20,
     json_file: JsonFile = None,
     show_list: Annotated[
         bool, typer.Option("--list", help="Show all cases and what must happen.")
     ] = False,
 ) -> None:
-    """Run the extremes; exit code 1 if one of them does not do what it must."""
+    """Run the extremes, or random scenes; exit code 1 if one does not do what it must."""
     from sphcloth.stress import command
 
     console = Console()
     if show_list:
         command.show_cases(console)
         return
+    if case == "random":
+        found = command.stress_random(seed, count, out, json_file, console)
+        raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
     found = command.stress(case, scheme, ranks, quick, out, json_file, console)
     raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)

@@ -16,6 +16,7 @@ from sphcloth.errors import UserError
 from sphcloth.results import mark, versions, write_json
 from sphcloth.stress.case import SCHEMES, Case
 from sphcloth.stress.cases import all_cases
+from sphcloth.stress.random_run import random_scenes
 from sphcloth.stress.runner import Verdict, run_case
 
 
@@ -54,6 +55,33 @@ def stress(
             if json_file is not None:
                 _write(found, json_file, time.monotonic() - start)
     show(chosen, found, console)
+    return found
+
+
+def stress_random(
+    seed: int, count: int, out: Path | None, json_file: Path | None, console: Console
+) -> list[Verdict]:
+    """Run random scenes and return what was found; a scene that fails leaves its files in out.
+
+    Args:
+        seed: of the first scene.
+        count: how many.
+        out: folder for them; None: ``stress-random``.
+        json_file: where the result goes, after each scene; None: nowhere.
+        console: where progress and failures go.
+
+    Raises:
+        UserError: a seed or a count that is none.
+    """
+    found: list[Verdict] = []
+    start = time.monotonic()
+    with console.status("") as status:
+        for one in random_scenes(seed, count, out or Path("stress-random"), console):
+            found.append(one)
+            status.update(f"{one.case}, {len(found)} of {count}")
+            if json_file is not None:
+                _write(found, json_file, time.monotonic() - start)
+    _show_sum(found, console)
     return found
 
 
@@ -98,7 +126,12 @@ def show(cases: Sequence[Case], found: Sequence[Verdict], console: Console) -> N
     for v in breaches:
         where = f"{v.case}, {v.scheme}, {v.ranks} ranks: {'; '.join(v.complaints)}"
         console.print(f"[red]breach[/] {escape(where)}", highlight=False, soft_wrap=True)
-    verdict = f"[red]{len(breaches)} breaches[/]" if breaches else "[green]no breach[/]"
+    _show_sum(found, console)
+
+
+def _show_sum(found: Sequence[Verdict], console: Console) -> None:
+    n = sum(not verdict.passed for verdict in found)
+    verdict = f"[red]{n} breaches[/]" if n else "[green]no breach[/]"
     console.print(f"{len(found)} runs: {verdict}", highlight=False)
 
 

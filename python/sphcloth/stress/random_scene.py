@@ -150,6 +150,10 @@ def draw(seed: int) -> RandomScene:
     _draw_sheet(r, s)
     _draw_surroundings(r, s)
     _draw_water(r, s)
+    if r.random() < 0.2:
+        # nothing acts from outside
+        s |= {"gravity": False, "walls": False, "plate": False, "pins": "none"}
+        s["water"] = "block" if s["water"] == "jet" else s["water"]
     _draw_steps(r, s)
     return RandomScene(**s)
 

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from sphcloth.cli import main
 from sphcloth.errors import UserError
-from sphcloth.validation import validate
+from sphcloth.validation import compare_schemes, schemes, validate
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
 from sphcloth.validation.runner import Runner
@@ -159,6 +159,49 @@ def test_an_error_of_lammps_is_one_line_and_leaves_no_verdict(tmp_path: Path) ->
     assert runner.particle_updates() == 0
 
 
+@pytest.mark.parametrize("scheme", schemes.UNEQUAL)
+def test_a_scheme_that_cannot_be_combined_is_an_error_before_anything_runs(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    scheme: str,
+) -> None:
+    out = tmp_path / "out"
+    given = ["--set", f"scheme={scheme}", "--out", str(out)]
+    assert call(monkeypatch, "standing-wave", *given) == 2
+    message = " ".join(capsys.readouterr().err.split())
+    assert f"--set scheme={scheme}" in message
+    assert "density=continuity" in message
+    assert "add --set density=summation" in message
+    assert not out.exists()
+
+
+def test_every_case_with_water_knows_every_scheme() -> None:
+    cases = compare_schemes.cases_with_schemes("all")
+    assert {"couette", "dam-break", "lintearia", "jet-on-sheet"} <= {case.name for case in cases}
+    for case in cases:
+        assert "pair_style      sph/tait" in case.script.read_text()
+        assert "run_style       sph/adaptive ${scheme}" in case.script.read_text()
+        for scheme in schemes.SCHEMES:
+            settings = {"scheme": scheme, "density": "summation"}
+            schemes.check(case.values(settings, quick=True))
+    with pytest.raises(UserError, match="no case 'pendulum' with a scheme: choose from all, add"):
+        compare_schemes.cases_with_schemes("pendulum")
+
+
+def test_frames_of_block_steps_are_output_times() -> None:
+    values = {"scheme": "block", "gain": 1.0, "ceiling": 4.0}
+    t_end, variables = schemes.clock(values, 3.1, 20, t_settle=1.1)
+    assert variables["limits"] == f"gain 1.0 output {variables['interval']!r}"
+    assert variables["interval"] == pytest.approx(0.1)
+    for time in (variables["t_settle"], t_end):
+        frames = time / variables["interval"]
+        assert 0 < math.ceil(frames) - frames < 1e-5
+    t_end, variables = schemes.clock(values | {"scheme": "global"}, 3.1, 20, t_settle=1.1)
+    assert t_end == 3.1
+    assert variables == {"frames": 20, "t_settle": 1.1, "ceiling": 1.0}
+
+
 # cases in full, as small as they can be
 
 
@@ -178,6 +221,39 @@ def test_a_quick_case_from_end_to_end(tmp_path: Path) -> None:
     assert found["metrics"]["pressure"]["value"] < 0.05
     assert found["particle_updates"] > 1e5
     assert result.passed is all(m["passed"] is not False for m in found["metrics"].values())
+
+
+@pytest.mark.parametrize("scheme", schemes.UNEQUAL)
+def test_a_column_at_rest_by_steps_of_individual_particles(tmp_path: Path, scheme: str) -> None:
+    result = run_hydrostatic(tmp_path, scheme=scheme, time="0.5")
+    assert result.parameters["scheme"] == scheme
+    assert abs(result.metrics["base_force"].value) < 1e-2
+    assert result.metrics["pressure"].value < 0.05
+
+
+def test_the_schemes_of_a_case_side_by_side(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    def measured(case: Case, settings: Mapping[str, str], *rest: object) -> validate.Result:
+        if settings["scheme"] == "individual":
+            raise UserError("LAMMPS failed: lost atoms")
+        metrics = case.judge(dict.fromkeys([q.name for q in case.quantities], 0.5), quick=True)
+        updates = {"constant": 100.0, "global": 110.0, "block": 40.0}[settings["scheme"]]
+        values = case.values(settings, quick=True)
+        return validate.Result(case.name, values, True, 1, metrics, 1.0, updates, {})
+
+    monkeypatch.setattr(compare_schemes, "validate", measured)
+    out = tmp_path / "out"
+    assert call(monkeypatch, "jet", "--schemes", "--quick", "--out", str(out)) == 1
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "0.5 *" in shown
+    assert "no result" in shown
+    assert "jet, individual: LAMMPS failed: lost atoms" in shown
+    assert all(cost in shown for cost in ("1.00", "1.10", "0.40"))
+    written = json.loads((out / "jet" / "schemes.json").read_text())
+    assert list(written) == list(schemes.SCHEMES)
+    assert written["block"]["parameters"]["density"] == "summation"
+    assert call(monkeypatch, "jet", "--schemes", "--set", "scheme=block") == 2
 
 
 def test_settings_change_the_physics_and_the_reference(tmp_path: Path) -> None:

@@ -19,6 +19,8 @@ sphcloth validate --list; sphcloth validate --list hydrostatic
 sphcloth validate hydrostatic --quick
 
 sphcloth validate oscillating-drop --set sigma=0.3 --ranks 2 --json drop.json
+
+sphcloth validate all --schemes --quick
 """
 
 
@@ -38,12 +40,19 @@ def validate(
         Path | None, typer.Option(help="Output folder.", show_default="sphcloth-validate-CASE")
     ] = None,
     json_file: JsonFile = None,
+    schemes: Annotated[
+        bool,
+        typer.Option(
+            "--schemes", help="Run by every scheme of the time step and compare; CASE may be all."
+        ),
+    ] = False,
     show_list: Annotated[
         bool, typer.Option("--list", help="Show all cases, or with CASE its parameters.")
     ] = False,
 ) -> None:
     """Compare a case with its reference solution; exit code 0 only if all limits are met."""
     from sphcloth.examples import parse_settings
+    from sphcloth.validation.compare_schemes import cases_with_schemes, compare_schemes, show
     from sphcloth.validation.validate import find_case, show_case, show_cases
     from sphcloth.validation.validate import validate as run_case
 
@@ -53,8 +62,18 @@ def validate(
         return
     if case is None:
         raise UserError("which case? sphcloth validate --list shows them")
-    found = find_case(case)
     folder = out or Path(f"sphcloth-validate-{case}")
+    if schemes:
+        given = parse_settings(settings or [])
+        if "scheme" in given or json_file is not None:
+            raise UserError("--schemes runs every scheme: leave out --set scheme and --json")
+        compared = [
+            compare_schemes(each, given, ranks, quick, folder / each.name, console)
+            for each in cases_with_schemes(case)
+        ]
+        show(compared, console)
+        raise typer.Exit(0 if all(each.passed for each in compared) else 1)
+    found = find_case(case)
     result = run_case(found, parse_settings(settings or []), ranks, quick, folder, console)
     if json_file is not None:
         result.write(json_file)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sphcloth.trajectory import Frame
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -94,16 +94,17 @@ def _run(flow: Start, values: Mapping[str, Value], runner: Runner, label: str, a
     """Run the script with so many particles across."""
     t_last = TIMES[-1] * flow.gap**2 / flow.nu
     # a little longer than the last time, which is a frame then
+    t_end, clock = schemes.clock(values, t_last * (FRAMES + 0.5) / FRAMES, FRAMES + 0.5)
     return runner.run(
         label,
-        t_last * (FRAMES + 0.5) / FRAMES,
+        t_end,
         {
             **values,
+            **clock,
             "across": across,
             "columns": 2 * math.ceil(values["support"]) + 2,
             "sound": values["sound"] * flow.fastest,
             "lattice": lattice_density(values),
-            "frames": FRAMES + 0.5,
         },
     )
 

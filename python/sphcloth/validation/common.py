@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sphcloth.validation import schemes
 from sphcloth.validation.case import Parameter, Value
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
 
@@ -21,6 +22,8 @@ def numerics(
     disorder: float = 0.1,
     density: str = "summation",
     delta: float = 0.1,
+    scheme: str = "constant",
+    ceiling: float = 4.0,
 ) -> tuple[Parameter, ...]:
     """Return the parameters of the method; their names are those of the scripts' variables.
 
@@ -33,6 +36,8 @@ def numerics(
         disorder: default of the displacement at the start over the spacing.
         density: default of how the density is found.
         delta: default of the diffusion of the density.
+        scheme: default of the scheme of the time step.
+        ceiling: default of the longest step where particles have steps of their own.
     """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
@@ -46,9 +51,7 @@ def numerics(
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
         Parameter("courant", courant, "1", "largest step over smoothing length / c0", 0.01, 1.6),
-        Parameter(
-            "scheme", "constant", "1", "scheme of the time step", choices=("constant", "global")
-        ),
+        *schemes.parameters(scheme, ceiling),
     )
 
 

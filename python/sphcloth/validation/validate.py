@@ -14,7 +14,7 @@ from rich.table import Table
 
 from sphcloth.errors import UserError
 from sphcloth.results import Value, finite, mark, versions, write_json
-from sphcloth.validation import cases
+from sphcloth.validation import cases, schemes
 from sphcloth.validation.case import Case, Metric
 from sphcloth.validation.runner import Runner
 
@@ -104,6 +104,7 @@ def validate(
         UserError: a setting that is not allowed, or LAMMPS failed.
     """
     values = case.values(settings, quick)
+    schemes.check(values)
     out.mkdir(parents=True, exist_ok=True)
     for stale in (f"{case.name}.json", f"{case.name}.png"):
         (out / stale).unlink(missing_ok=True)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
 from sphcloth.references.added_mass_piston import Piston
-from sphcloth.validation import cloth, compare
+from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, numerics
 from sphcloth.validation.runner import Run, Runner
@@ -152,10 +152,14 @@ def _run(
     dropped = ("lightest", "heaviest", "runs", "periods", "sound")
     shared = {name: values[name] for name in values if name not in dropped}
     t_settle = SETTLE * piston.height / piston.sound
+    t_end, clock = schemes.clock(
+        values, t_settle + values["periods"] * piston.period, FRAMES, t_settle, every="10"
+    )
     return runner.run(
         label,
-        t_settle + values["periods"] * piston.period,
+        t_end,
         shared
+        | clock
         | {
             "areal": piston.areal,
             "sound": piston.sound,
@@ -166,8 +170,6 @@ def _run(
             else values["support"] / 3 + 0.5,
             "pluck": PLUCK * values["gravity"] / piston.frequency,
             "damping": DAMPING * piston.sound / piston.height,
-            "t_settle": t_settle,
-            "frames": FRAMES,
         },
     )
 
@@ -175,7 +177,7 @@ def _run(
 def _swing(run: Run, piston: Piston) -> Swing:
     """Return the motion of the sheet since it was let go."""
     time = run.thermo["Time"]
-    start = SETTLE * piston.height / piston.sound
+    start = run.trajectory.times[0]
     free = time > start * (1 + 1e-9)
     return Swing.of(time[free] - start, run.thermo["v_z"][free], piston.frequency)
 

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
 from sphcloth.references.blob_on_free_sheet import Collision
-from sphcloth.validation import cloth, compare
+from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density_in_space, numerics
 from sphcloth.validation.runner import Run, Runner
@@ -53,10 +53,7 @@ PARAMETERS = (
     Parameter("order", "forward", "1", "of a sweep", choices=("forward", "symmetric")),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     Parameter("refined", 1.0, "1", "all time steps over what they would be", 1e-3, 1.0),
-    *(
-        dataclasses.replace(each, default="global") if each.name == "scheme" else each
-        for each in numerics(alpha=0.1, courant=0.5, support=2.0, disorder=0.0)
-    ),
+    *numerics(alpha=0.1, courant=0.5, support=2.0, disorder=0.0, scheme="global"),
 )
 
 QUANTITIES = (
@@ -151,18 +148,18 @@ def _impact(
     collision = Collision(1.0, 1.0, speed * values["sound"], angle)
     # along a grazing path the drop comes down slowly, and must not leave the sheet
     down = max(-float(collision.velocity[2]), 0.3 * collision.speed)
-    t_end = FAR * values["radius"] / down
+    t_end, clock = schemes.clock(values, FAR * values["radius"] / down, FRAMES)
     run = runner.run(
         label or f"{speed:g}_{angle:g}",
         t_end,
         shared
+        | clock
         | {
             "speed": collision.speed,
             "angle": angle,
             "length": values["length"] * values["radius"],
             "width": values["width"] * values["radius"],
             "lattice": lattice_density_in_space(values),
-            "frames": FRAMES,
         },
     )
     masses = float(run.thermo["v_drop"][0]), float(run.thermo["v_cloth"][0])

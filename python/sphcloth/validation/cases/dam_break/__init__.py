@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sphcloth.references import dam_break
 from sphcloth.references.dam_break import Column
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement
@@ -110,17 +110,17 @@ def _run(
     sound = values["sound"] * math.sqrt(2 * column.gravity * column.width)
     t_settle = values["settle"] * math.sqrt(2 * column.width / column.gravity)
     shared = {name: value for name, value in values.items() if name != "settle"}
+    t_end, clock = schemes.clock(values, t_settle + END * column.time, FRAMES, t_settle)
     return runner.run(
         label,
-        t_settle + END * column.time,
+        t_end,
         shared
+        | clock
         | {
             "across": across,
             "sound": sound,
             "lattice": lattice_density(values),
             "damping": DAMPING * sound / (2 * column.width),
-            "t_settle": t_settle,
-            "frames": FRAMES,
         },
     )
 

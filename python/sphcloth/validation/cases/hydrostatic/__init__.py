@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -25,6 +25,7 @@ DAMPING = 3.2
 COARSE_TIME = 10.0
 # last share of the free time in which the column should be at rest
 LATE = 0.1
+FRAMES = 100
 
 PARAMETERS = (
     Parameter("height", 1.0, "m", "undisturbed height H", 1e-3, 100.0),
@@ -103,17 +104,18 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, layers: int) -
     sound = _column(values).sound
     t_settle = values["settle"] * math.sqrt(values["height"] / values["gravity"])
     shared = {name: values[name] for name in values if name not in ("sound", "settle", "time")}
+    t_end, clock = schemes.clock(values, t_settle + time, FRAMES, t_settle, every="1")
     return runner.run(
         label,
-        t_settle + time,
+        t_end,
         shared
+        | clock
         | {
             "layers": layers,
             "sound": sound,
             "lattice": lattice_density(values),
             "base": math.ceil(values["support"]) + 1,
             "damping": DAMPING * sound / values["height"],
-            "t_settle": t_settle,
         },
     )
 
@@ -130,8 +132,11 @@ def _state(frame: Frame, values: Mapping[str, Value], layers: int) -> State:
 
 def _base_force(run: Run) -> float:
     """Return the relative excess of the force on the base over the weight, late in the run."""
-    late = _late(run.thermo["Time"])
-    return float(np.mean(run.thermo["v_base_force"][late] / run.thermo["v_weight"][late]) - 1)
+    time = run.thermo["Time"]
+    late = np.flatnonzero(_late(time)[:-1])
+    share = run.thermo["v_base_force"][late] / run.thermo["v_weight"][late]
+    # the force is that of the coming step
+    return float(np.average(share, weights=np.diff(time)[late]) - 1)
 
 
 def _largest_speed(run: Run) -> float:

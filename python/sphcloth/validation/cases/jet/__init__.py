@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sphcloth.references.jet import Jet
 from sphcloth.trajectory import Frame
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -54,14 +54,16 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the mean force with the momentum that the jet brings."""
     jet = Jet(values["thickness"], values["speed"], values["angle"], values["rho0"])
     pair = Refinement.of(partial(_run, jet, values, runner), coarse_and_fine(values["across"]))
-    forces = pair.each(lambda run, across: _steady(run, _window(jet, values, across)))
+    steady = pair.each(lambda run, across: _steady(run, _window(jet, values, across)))
+    forces = [force for force, _ in steady]
     window = _window(jet, values, values["across"])
-    errors = [float(np.mean(force)) / jet.force - 1 for force in forces]
+    means = [float(np.average(force, weights=steps)) for force, steps in steady]
+    errors = [mean / jet.force - 1 for mean in means]
     _plot(jet, pair.labeled(pair.runs), window, runner.picture)
     first, second = np.array_split(forces[-1], 2)
     return {
         "force": errors[-1],
-        "force_measured": float(np.mean(forces[-1])),
+        "force_measured": means[-1],
         "force_reference": jet.force,
         "force_scatter": float(np.std(forces[-1])) / jet.force,
         "force_halves": float(np.mean(second) / np.mean(first) - 1),
@@ -73,15 +75,16 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
 
 def _run(jet: Jet, values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the script with so many particles over the thickness."""
+    t_end, clock = schemes.clock(values, _window(jet, values, across)[1], FRAMES, every="1")
     return runner.run(
         label,
-        _window(jet, values, across)[1],
+        t_end,
         {
             **values,
+            **clock,
             "across": across,
             "sound": values["sound"] * jet.speed,
             "lattice": lattice_density(values),
-            "frames": FRAMES,
         },
     )
 
@@ -101,10 +104,14 @@ def _window(jet: Jet, values: Mapping[str, Value], across: int) -> tuple[float, 
     return first / jet.speed, last / jet.speed
 
 
-def _steady(run: Run, window: tuple[float, float]) -> NDArray[np.float64]:
-    """Return the force of every step within a window, N/m."""
+def _steady(run: Run, window: tuple[float, float]) -> tuple[NDArray[np.float64], ...]:
+    """Return the force of every step within a window, N/m, and the length of the step, s.
+
+    The force is that of the coming step.
+    """
     time = run.thermo["Time"]
-    return run.thermo["v_force"][(time >= window[0]) & (time <= window[1])]
+    inside = np.flatnonzero((time[:-1] >= window[0]) & (time[:-1] <= window[1]))
+    return run.thermo["v_force"][inside], np.diff(time)[inside]
 
 
 def _flow_off(jet: Jet, run: Run, window: tuple[float, float]) -> dict[str, float]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.trajectory import Frame
-from sphcloth.validation import cloth, compare
+from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density_in_space, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -97,10 +97,12 @@ def _run(
     """Run the script with so many particles over the thickness."""
     dropped = ("stretch",)
     shared = {name: values[name] for name in values if name not in dropped}
+    t_end, clock = schemes.clock(values, _window(jet, values, across)[1], FRAMES, every="1")
     return runner.run(
         label,
-        _window(jet, values, across)[1],
+        t_end,
         shared
+        | clock
         | {
             "across": across,
             "sound": values["sound"] * jet.speed,
@@ -108,7 +110,6 @@ def _run(
             "compliance": values["stretch"] / (jet.rho0 * jet.flow * jet.speed),
             "damping": values["damping"] * jet.speed / jet.thickness,
             "lattice": lattice_density_in_space(values),
-            "frames": FRAMES,
         },
     )
 
@@ -139,7 +140,9 @@ def _balance(
     """Return force, turning and what follows from them, over the steady window."""
     window = _window(jet, values, across)
     time = run.thermo["Time"]
-    forces = _forces(run, values)[(time >= window[0]) & (time <= window[1])]
+    inside = (time >= window[0]) & (time <= window[1])
+    forces = _forces(run, values)[inside]
+    mean = float(np.average(forces, weights=np.diff(time, prepend=0.0)[inside]))
     edge = 0.5 * values["span"] * jet.thickness + OUTSIDE * jet.thickness / across
     velocity = np.concatenate(
         [
@@ -154,10 +157,10 @@ def _balance(
     kept = float(np.hypot(outwards, upwards)) / jet.speed
     first, second = np.array_split(forces, 2)
     return {
-        "force": float(np.mean(forces)) / reference - 1,
-        "force_measured": float(np.mean(forces)),
+        "force": mean / reference - 1,
+        "force_measured": mean,
         "force_reference": reference,
-        "balance": float(np.mean(forces)) / jet.force(turning, kept) - 1,
+        "balance": mean / jet.force(turning, kept) - 1,
         "turning": turning,
         "leaving_speed": float(np.mean(np.linalg.norm(velocity, axis=1))) / jet.speed,
         "force_halves": float(np.mean(second) / np.mean(first) - 1),

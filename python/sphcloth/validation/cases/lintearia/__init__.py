@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import crossings
 from sphcloth.references.lintearia import HeavyLintearia, Lintearia
 from sphcloth.trajectory import Frame
-from sphcloth.validation import cloth, compare
+from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, numerics
 from sphcloth.validation.lattice import cubic_density_sum
@@ -61,10 +61,7 @@ PARAMETERS = (
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
     *cloth.solver(1e-4, 16, method="substeps"),
-    *(
-        replace(each, default="global") if each.name == "scheme" else each
-        for each in numerics(alpha=0.5, courant=0.5, support=2.0)
-    ),
+    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global", ceiling=1.0),
 )
 
 QUANTITIES = (
@@ -186,6 +183,7 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
         label,
         values["settle"] * unit,
         shared
+        | schemes.keywords(values)
         | _start(values, light, values["L"] / across)
         | {
             "across": across,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from sphcloth.references.oscillating_drop import EllipticDrop
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -114,11 +114,14 @@ def _run(
     t_settle = SETTLE / drop.omega
     # a little longer than whole periods: the end of the last one lies inside
     t_end = t_settle + (values["periods"] + 0.1) * drop.period
+    frames = round(FRAMES_PER_PERIOD * (values["periods"] + 0.1))
     shared = {name: value for name, value in values.items() if name != "periods"}
+    t_end, clock = schemes.clock(values, t_end, frames, t_settle)
     return runner.run(
         label,
         t_end,
         shared
+        | clock
         | {
             "across": across,
             "sigma": drop.sigma,
@@ -126,8 +129,6 @@ def _run(
             "lattice": lattice_density(values),
             "room": ROOM * drop.largest,
             "damping": DAMPING * drop.omega,
-            "t_settle": t_settle,
-            "frames": round(FRAMES_PER_PERIOD * (values["periods"] + 0.1)),
         },
     )
 

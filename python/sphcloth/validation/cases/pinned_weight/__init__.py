@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import above_sheet, crossings
 from sphcloth.references.pinned_weight import Load
-from sphcloth.validation import cloth, compare
+from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, numerics
 from sphcloth.validation.lattice import cubic_density_sum
@@ -44,10 +43,7 @@ PARAMETERS = (
     Parameter("drag", 6.4, "sqrt(g/side)", "rate of the drag", 0.1, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
     *cloth.solver(1e-3, 10, method="substeps"),
-    *(
-        replace(each, default="global") if each.name == "scheme" else each
-        for each in numerics(alpha=0.5, courant=0.5, support=2.0)
-    ),
+    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global", ceiling=1.0),
 )
 
 QUANTITIES = (
@@ -114,7 +110,9 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
         "lattice": _lattice(values),
         "t_settle": settle,
     }
-    return runner.run(label, settle + values["time"] * unit, shared | changed)
+    return runner.run(
+        label, settle + values["time"] * unit, shared | schemes.keywords(values) | changed
+    )
 
 
 def _lattice(values: Mapping[str, Value]) -> float:

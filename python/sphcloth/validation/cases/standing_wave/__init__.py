@@ -14,7 +14,7 @@ from scipy.optimize import curve_fit
 
 from sphcloth.errors import UserError
 from sphcloth.references.standing_wave import StandingWave
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
@@ -24,6 +24,8 @@ from sphcloth.validation.runner import Run, Runner
 DAMPING = 0.64
 # share of the layers of the coarse run
 COARSE = 2 / 3
+
+FRAMES = 200
 
 PARAMETERS = (
     Parameter("depth", 1.0, "m", "undisturbed depth H", 1e-3, 100.0),
@@ -105,10 +107,14 @@ def _run(
     width, height = wave.length / columns, wave.depth / layers
     derived = ("sound", "steepness", "settle", "periods")
     shared = {name: value for name, value in values.items() if name not in derived}
+    t_end, clock = schemes.clock(
+        values, t_settle + values["periods"] * wave.period, FRAMES, t_settle
+    )
     return runner.run(
         label,
-        t_settle + values["periods"] * wave.period,
+        t_end,
         shared
+        | clock
         | {
             "layers": layers,
             "columns": columns,
@@ -116,7 +122,6 @@ def _run(
             "lattice": lattice_density(values, height / width),
             "base": math.ceil(values["support"]) + 1,
             "damping": DAMPING * sound / values["depth"],
-            "t_settle": t_settle,
             "surge": values["steepness"] / wave.number * 2 * math.pi / wave.period,
         },
     )

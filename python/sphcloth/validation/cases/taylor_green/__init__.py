@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.references.taylor_green import TaylorGreen
-from sphcloth.validation import compare
+from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import density_sum
 from sphcloth.validation.refinement import Refinement, coarse_and_fine
 from sphcloth.validation.runner import Run, Runner
+
+FRAMES = 100
 
 PARAMETERS = (
     Parameter("reynolds", 100.0, "1", "U L / viscosity", 1.0, 1e4),
@@ -121,11 +123,8 @@ def _run(
     shared = {name: value for name, value in values.items() if name != "until"}
     summed = values["density"] == "summation"
     lattice = density_sum(values["kernel"], values["support"]) if summed else 1.0
-    return runner.run(
-        label,
-        flow.time(values["until"]),
-        shared | {"across": across, "lattice": lattice},
-    )
+    t_end, clock = schemes.clock(values, flow.time(values["until"]), FRAMES)
+    return runner.run(label, t_end, shared | clock | {"across": across, "lattice": lattice})
 
 
 def _plot(flow: TaylorGreen, seen: Mapping[str, Decay], path: Path) -> None:

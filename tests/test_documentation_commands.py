@@ -85,9 +85,12 @@ def check_sphcloth(words: list[str]) -> None:
     if verb == "run":
         find_example(given["example"]).variables(given["size"], settings)
     elif verb == "validate" and given["case"]:
+        from sphcloth.validation.compare_schemes import cases_with_schemes
         from sphcloth.validation.validate import find_case
 
-        find_case(given["case"]).values(settings, given["quick"])
+        name = given["case"]
+        for case in cases_with_schemes(name) if given["schemes"] else [find_case(name)]:
+            case.values(settings, given["quick"])
     elif verb == "tradeoff" and given["scene"] and not given["scene"].endswith(".in"):
         from sphcloth.tradeoff import command
 

@@ -276,7 +276,8 @@ def energy_may_grow(e: Evidence) -> bool:
     dt = float(e.log("Dt", "s").max())
     stiff = of_material(s, mass, dt) < SOFT * substep(s, dt) ** 2 / mass
     dense = max(s.rest_density) * s.spacing**3
-    light = s.contact and s.solver != "substeps" and mass < LIGHT * dense
+    whole = s.solver != "substeps" or s.iterations == 1
+    light = s.contact and whole and mass < LIGHT * dense
     return light or (stiff and s.scheme != "constant")
 
 

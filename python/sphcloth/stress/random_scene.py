@@ -185,6 +185,9 @@ def _draw_sheet(r: random.Random, s: dict[str, Any]) -> None:
     stiff = ("k", r.choice((0.02, 0.1, 0.5, 1.0)))
     rigidity = 10 ** r.uniform(-5, -1) * modulus * dx**2  # N m
     s["hinge"] = r.choice((stiff, ("compliance", 1 / rigidity)))
+    # stiff hinges that contradict each other pull soft edges apart
+    if s["edge"] != ("k", 1.0) and s["hinge"][0] == "k":
+        s["hinge"] = ("k", min(s["hinge"][1], 0.1))
     s["reference"] = r.random() < 0.5
     s["thickness"] = dx * r.uniform(0.05, 0.3)
     s["friction"] = r.choice((0.0, 0.0, r.uniform(0, 1)))

@@ -98,7 +98,9 @@ def compare_schemes(
 
 def show(comparisons: Sequence[Comparison], console: Console) -> None:
     """Print what every scheme measures; a value beyond its limit in red, with a star."""
-    table = Table("case", "quantity", "limit", *SCHEMES)
+    table = Table()
+    for name in ("case", "quantity", "limit", *SCHEMES):
+        table.add_column(name, overflow="fold")
     for comparison in comparisons:
         for row in comparison.rows():
             table.add_row(*row)

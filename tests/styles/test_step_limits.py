@@ -160,3 +160,24 @@ def test_a_vertex_below_the_floor_is_named(scheme):
         with pytest.raises(Exception, match="velocity limit of particle 7 asks for a step"):
             lmp.command("run 0")
         assert np.isfinite(by_id(lmp, "x")).all()
+
+
+@pytest.mark.parametrize("scheme", ["uniform", "block"])
+def test_fluid_that_the_fix_does_not_move_limits_no_step(scheme):
+    """Pulled at, but held: the step is that of the water that moves."""
+    with instance() as lmp:
+        lmp.commands_string(
+            header(atoms=FLUID)
+            + lattice()
+            + box("-0.2 0.2 -0.2 0.2 -0.6 0.6")
+            + filled("low", "INF INF INF INF -0.3 -0.1")
+            + filled("high", "INF INF INF INF 0.1 0.3")
+            + sph_tait("1 1 fluid 1000 c0 10 spacing 0.05")
+            + neighbor(0.03)
+            + "group moving region low\ngroup held region high\n"
+            + "fix pull held addforce 0 0 -100.0\ntimestep 0.01\n"
+            + "fix step moving sph/integrate global gain 1 velocity 0 acoustic 0\n"
+            + ("run_style sph/adaptive block\n" if scheme == "block" else "")
+            + "run 2"
+        )
+        assert lmp.get_thermo("dt") == 0.01

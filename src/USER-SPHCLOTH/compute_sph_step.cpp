@@ -25,6 +25,8 @@ static std::vector<NamedValue> values_of_step()
       {"next/output", TIMES + 2, INTENSIVE},
       {"sleeping", TIMES + 3, EXTENSIVE},
       {"updates/ideal", TIMES + 4, EXTENSIVE},
+      {"wait/max", TIMES + 5, INTENSIVE},
+      {"wait/mean", TIMES + 6, INTENSIVE},
   };
   for (int k = 1; k < N_LIMITS; k++)
     values.push_back({fmt::format("steps/{}", limit_name(Limit(k))), STEPS + k, INTENSIVE});

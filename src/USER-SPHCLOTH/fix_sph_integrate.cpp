@@ -181,8 +181,11 @@ void FixSPHIntegrate::finish_step()
 void FixSPHIntegrate::post_run()
 {
   control.times.end_run();
-  if (comm->me || scheme == SteppingScheme::CONSTANT) return;
-  utils::logmesg(lmp, "{}: steps by limit:{}\n", label, report.steps_in_words());
+  if (scheme == SteppingScheme::CONSTANT) return;
+  const std::string waits =
+      scheme == SteppingScheme::INDIVIDUAL ? label + report.waits_in_words() : "";
+  if (comm->me) return;
+  utils::logmesg(lmp, "{}: steps by limit:{}\n{}", label, report.steps_in_words(), waits);
 }
 
 double FixSPHIntegrate::own_step(int i) const
@@ -200,7 +203,7 @@ double FixSPHIntegrate::compute_vector(int n) { return report.output(n, *stepper
 ------------------------------------------------------------------------- */
 
 struct FixSPHIntegrate::Record {
-  double previous, ceiling, updates, ideal_updates, largest_before;
+  double previous, ceiling, updates, ideal_updates, waits, longest_wait, largest_before;
   Limit limited_by;
   bigint steps;
   double time;
@@ -211,15 +214,18 @@ struct FixSPHIntegrate::Record {
 
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
-  const double mine[2] = {report.updates, report.ideal_updates};
-  double all[2] = {0.0, 0.0};
-  MPI_Reduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, 0, world);
+  const double mine[3] = {report.updates, report.ideal_updates, report.waits};
+  double all[3] = {0.0, 0.0, 0.0}, longest_wait = 0.0;
+  MPI_Reduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, 0, world);
+  MPI_Reduce(&report.longest_wait, &longest_wait, 1, MPI_DOUBLE, MPI_MAX, 0, world);
   if (comm->me) return;
   const StepControl::State state = control.state();
   const Record record{state.previous,
                       options.ceiling,
                       all[0],
                       all[1],
+                      all[2],
+                      longest_wait,
                       state.largest_before,
                       state.limited_by,
                       state.steps,
@@ -240,6 +246,8 @@ void FixSPHIntegrate::restart(char *buf)
   if (!options.ceiling_given) options.ceiling = record.ceiling;
   report.updates = comm->me == 0 ? record.updates : 0.0;
   report.ideal_updates = comm->me == 0 ? record.ideal_updates : 0.0;
+  report.waits = comm->me == 0 ? record.waits : 0.0;
+  report.longest_wait = record.longest_wait;
   report.steps_by_limit = record.steps_by_limit;
   // what each scheme keeps of the atoms follows, see unpack_restart(): a uniform step keeps nothing
   if (record.scheme == SteppingScheme::INDIVIDUAL || record.scheme == SteppingScheme::BLOCK)

@@ -11,6 +11,10 @@ from rich.console import Console
 
 from sphcloth.bench import activity, cloth, coupling, messages, pair, peers, size, watch
 from sphcloth.stress.command import show_cases as show_stress_cases
+from sphcloth.tradeoff import report
+from sphcloth.tradeoff.front import Point
+from sphcloth.tradeoff.scenes import dam_break
+from sphcloth.tradeoff.study import Plan, Study
 from sphcloth.validation.validate import all_cases, show_case, show_cases
 
 FIGURE = {"value": 1234.5, "least": 1198.7, "most": 12345.6}
@@ -115,6 +119,23 @@ TABLES = {
 @pytest.mark.parametrize("name", TABLES)
 def test_no_cell_of_a_benchmark_is_broken(name: str) -> None:
     assert len(lines(TABLES[name], 80)) == len(lines(TABLES[name], 300))
+
+
+def test_a_table_of_settings_shows_all_of_them() -> None:
+    """Settings are folded at spaces, numbers and marks are whole."""
+    label = "overdue yes, ceiling 4, acoustic 1.2"
+    errors = dict.fromkeys(("kinetic", "front", "potential"), 1.2e-3)
+    points = [
+        Point(scheme, label, {}, errors, None, 1.24e6, 123456, 1234.5)
+        for scheme in ("individual", "global")
+    ]
+    plan = Plan(("individual", "global"), {}, {}, {}, 0.01, True)
+    study = Study(dam_break.SCENE, plan, 1, points[0], points, False)
+    shown = lines(lambda console: report.show(study, console), 80)
+    text = " ".join(shown)
+    for whole in ("individual", "acoustic", "overdue", "1.24e+06", "1.2e-03", "potential", "UW"):
+        assert whole in text, whole
+    assert "…" not in text
 
 
 def test_the_list_of_cases_has_one_line_each() -> None:

@@ -38,6 +38,29 @@ def test_few_are_active_and_the_updates_are_counted(folder, monkeypatch):
     assert lmp.extract_fix("step", 0, 1, 2) == pytest.approx(updates, rel=1e-12)
 
 
+@pytest.mark.parametrize("overdue", ["no", "yes"])
+def test_updates_that_are_overdue(folder, monkeypatch, overdue):
+    """(15) alone passes over particles whose step has passed; with (14) they are active."""
+    monkeypatch.chdir(folder)
+    lmp = instance()
+    lmp.commands_string(fall("individual", limits=f"overdue {overdue}") + "run 0 post no")
+    order = lambda: np.argsort(lmp.numpy.extract_atom("id")[: lmp.get_natoms()])  # noqa: E731
+    waits, passed_over = [], 0
+    own, last, _ = np.array(lmp.numpy.extract_fix("step", 1, 2))[order()].T[:3]
+    for _ in range(100):
+        lmp.command("run 1 post no")
+        now = lmp.get_thermo("time")
+        wait = (now - last) / own
+        own, last, active = np.array(lmp.numpy.extract_fix("step", 1, 2))[order()].T[:3]
+        waits.extend(wait[active == 1])
+        passed_over += np.sum(wait[active == 0] > 1 + 1e-9)
+    longest, mean = (lmp.extract_fix("step", 0, 1, n) for n in (31, 32))
+    assert longest == pytest.approx(max(waits), rel=1e-9)
+    assert mean == pytest.approx(np.sum(waits) / lmp.extract_fix("step", 0, 1, 2), rel=1e-9)
+    assert (passed_over > 0) == (overdue == "no")
+    assert (longest > 1.5) == (overdue == "no")
+
+
 def test_inactive_particles_go_on_as_at_the_last_update(folder, monkeypatch):
     """(x, v, rho) of an inactive particle follow from its last update alone: lines 12, 31 to 33."""
     monkeypatch.chdir(folder)

@@ -9,7 +9,10 @@ from scenes import DROP, END, FREE_SHEET, MAKE_DROP
 
 LIMITS = "velocity force acoustic viscous density relative wetted cloth max"
 OF_STEPS = f"{LIMITS} min growth fluctuation output"
-STEP = "dt limit active updates compression clamped {} {} output next/output sleeping updates/ideal"
+STEP = (
+    "dt limit active updates compression clamped {} {} output next/output sleeping updates/ideal "
+    "wait/max wait/mean"
+)
 CLOTH = "force/x force/y force/z strain residual sweeps energy halfkick/x halfkick/y halfkick/z"
 CONTACT = "contacts stops caught overlap impulse/x impulse/y impulse/z force/x force/y force/z cpu"
 

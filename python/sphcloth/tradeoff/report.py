@@ -78,32 +78,32 @@ def _settings_table(study: Study) -> Table:
     quantities = [quantity.name for quantity in study.scene.quantities]
     table = _table(
         f"{study.scene.name}: {study.scene.summary}",
-        ("steps", "updates", "wall s", *(f"error {name}" for name in quantities)),
+        ("updates", "wall s", *(f"error {name}" for name in quantities)),
     )
-    table.add_column("front")
-    table.caption = "front: Pareto front by particle updates (U), by wall time (W)"
+    table.add_column("", no_wrap=True)
+    table.caption = "U, W: on the Pareto front by particle updates, by wall time"
     fronts = {cost: study.front(cost) for cost in COSTS}
     exact = study.reference
     table.add_row("reference", f"{exact.scheme}, {exact.label}", *_cost_cells(exact))
     for point in study.points:
         if point.failure is not None:
-            table.add_row(point.scheme, point.label, "", "", "", "[red]unstable[/]")
+            table.add_row(point.scheme, point.label, "", "", "[red]unstable[/]")
             continue
         errors = [f"{point.errors[name]:.1e}" for name in quantities]
         marks = [mark for cost, mark in MARKS.items() if point in fronts[cost]]
-        table.add_row(point.scheme, point.label, *_cost_cells(point), *errors, " ".join(marks))
+        table.add_row(point.scheme, point.label, *_cost_cells(point), *errors, "".join(marks))
     return table
 
 
-def _cost_cells(point: Point) -> tuple[str, str, str]:
-    return f"{point.steps}", f"{point.updates:.2e}", f"{point.wall_s:.3g}"
+def _cost_cells(point: Point) -> tuple[str, str]:
+    return f"{point.updates:.2e}", f"{point.wall_s:.3g}"
 
 
 def _table(title: str, numbers: Sequence[str]) -> Table:
     """Return a table of settings with these columns of numbers, whose heads are one word a line."""
-    table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1), pad_edge=False)
+    table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     table.add_column("scheme", no_wrap=True)
-    table.add_column("setting")
+    table.add_column("setting", min_width=12)
     for head in numbers:
         table.add_column(head.replace(" ", "\n"), justify="right", no_wrap=True)
     return table

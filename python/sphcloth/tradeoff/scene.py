@@ -37,7 +37,10 @@ LIMITS = (
     "ratio",
     "gain",
     "sleep",
+    "overdue",
 )
+# those of one scheme alone
+ONE_SCHEME = {"overdue": "individual", "ratio": "block", "gain": "block", "sleep": "block"}
 # ceiling of chosen steps over h_s / c_0, in packaged scenes: --vary ceiling=2,8
 CEILING = "4"
 # variables of a packaged scene's script that follow from the scheme and its settings
@@ -206,7 +209,9 @@ class Scene:
         if name in self.defaults and not (self.clock and name == "dt"):
             return True
         if scheme != "constant":
-            return name in LIMITS or name == "ceiling"
+            return name == "ceiling" or (
+                name in LIMITS and ONE_SCHEME.get(name, scheme) in (scheme, AS_WRITTEN)
+            )
         # in packaged scenes constant steps are given over h_s / c_0, or in seconds
         return self.clock is not None and name in ("acoustic", "dt")
 

@@ -95,10 +95,10 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
   parts.limits.for_particles(of, external, [&](int i, const StepLimit &limit) {
     // what this fix does not move limits no step, as where all take the same
     const bool moves = atom->mask[i] & parts.fix->groupbit;
-    const StepLimit own = moves ? limit : StepLimit{parts.options.ceiling, Limit::CEILING};
-    const StepLimit step = control.bounded(own, wanted[i]);
+    const StepLimit allowed = moves ? limit : StepLimit{parts.options.ceiling, Limit::CEILING};
+    const StepLimit step = control.bounded(allowed, wanted[i]);
     if (control.is_too_short(step))
-      rank_error(lmp, FLERR, control.too_short(own, atom->tag[i]));
+      rank_error(lmp, FLERR, control.too_short(allowed, atom->tag[i]));
     wanted[i] = step.dt;
     by[i] = static_cast<double>(step.by);
     tightest.tighten(step.dt, step.by);

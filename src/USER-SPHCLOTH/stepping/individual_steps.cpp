@@ -43,19 +43,23 @@ void IndividualSteps::drift()
   }
 }
 
-// (15): particles whose own step, in whole steps of now, divides the number of the step.  The
-// density of inactive particles is interpolated, line 12.
+// (15): particles whose own step, in whole steps of now, divides the number of the step; and, if
+// asked, (14): those whose own step has passed, which (15) may pass over, since both steps change.
+// The density of inactive particles is interpolated, line 12.
 
 void IndividualSteps::select_active()
 {
-  const double dt = update->dt;
+  const double dt = update->dt, now = physical_time(update);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & parts.fix->groupbit)) continue;
     double *row = parts.rows[i];
-    const bool active = parts.control.steps() % whole_steps(row[UpdateRows::OWN_STEP], dt) == 0;
+    const double own_step = row[UpdateRows::OWN_STEP];
+    const double wait = (now - row[UpdateRows::LAST_UPDATE]) / own_step;
+    const bool active = parts.control.steps() % whole_steps(own_step, dt) == 0 ||
+        (parts.options.overdue && wait > 1.0);
     row[UpdateRows::ACTIVE] = active;
     if (active)
-      parts.report.updates++;
+      parts.report.count_update(wait);
     else
       atom->rho[i] += dt * kept[IndividualColumns::DENSITY_RATE][i];
   }

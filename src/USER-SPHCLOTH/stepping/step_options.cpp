@@ -42,6 +42,8 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
       block.gain = args.at_least(keyword, 1.0);
     else if (keyword == "waking")
       block.waking = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "overdue")
+      overdue = args.choice(keyword, {"no", "yes"});
     else if (keyword == "sleep")
       block.sleep = args.at_least(keyword, 0.0);
     else if (keyword == "min")
@@ -59,7 +61,8 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
       args.unknown(
           keyword,
           "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
-          "fluctuation, output, until, ratio, gain, waking, sleep, min, max, growth, below");
+          "fluctuation, output, until, ratio, gain, waking, sleep, overdue, min, max, growth, "
+          "below");
   }
 }
 

@@ -36,6 +36,7 @@ struct StepOptions {
   double growth = 2.0;    // largest ratio of a step to the one before
   bool ceiling_given = false;
   bool clamp_at_floor = false;    // go on with the floor where a limit is below it
+  bool overdue = false;    // individual steps: are particles updated when their step has passed?
   BlockOptions block;
 
   double floor() const { return min > 0.0 ? min : DEFAULT_MIN * ceiling; }

@@ -31,6 +31,8 @@ double StepReport::output(int n, Stepper &stepper, StepControl &control,
     case NEXT_THERMO_STEP: return static_cast<double>(control.times.next_thermo());
     case SLEEPING_PARTICLES: return has_bins ? sum_of_ranks(stepper.count_sleeping()) : 0.0;
     case IDEAL_UPDATES: return has_bins ? sum_of_ranks(ideal_updates) : 0.0;
+    case LONGEST_WAIT: return max_of_ranks(longest_wait);
+    case MEAN_WAIT: return mean_wait();
     default: break;
   }
   if (n < PARTICLES_BY_LIMIT) return steps_by_limit[n - STEPS_BY_LIMIT + 1];
@@ -48,6 +50,19 @@ double StepReport::active_fraction(const UpdateRows &rows) const
     }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+}
+
+double StepReport::mean_wait() const
+{
+  const double n_updates = sum_of_ranks(updates);
+  return n_updates > 0.0 ? sum_of_ranks(waits) / n_updates : 0.0;
+}
+
+std::string StepReport::waits_in_words() const
+{
+  return fmt::format(
+      ": updates after {:.3g} of the particle's own step on average, {:.3g} at most\n", mean_wait(),
+      max_of_ranks(longest_wait));
 }
 
 std::string StepReport::steps_in_words() const

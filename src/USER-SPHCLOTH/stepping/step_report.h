@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[31].
+// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[33].
 
 #ifndef SPHCLOTH_STEPPING_STEP_REPORT_H
 #define SPHCLOTH_STEPPING_STEP_REPORT_H
@@ -8,6 +8,7 @@
 
 #include "core/timestep/step_limits.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -33,12 +34,17 @@ class StepReport : protected Pointers {
     NEXT_THERMO_STEP,
     SLEEPING_PARTICLES,
     IDEAL_UPDATES,
+    LONGEST_WAIT,
+    MEAN_WAIT,
     N_OUTPUTS
   };
 
   // of this rank: updates so far, and how many there would have been if each particle had taken
   // exactly the step that the limits allow
   double updates = 0.0, ideal_updates = 0.0;
+  // of this rank, individual steps: times between two updates over the step that the particle asked
+  // for at the first, their largest and their sum
+  double longest_wait = 0.0, waits = 0.0;
   std::array<double, sphcloth::N_LIMITS> steps_by_limit{};
 
   StepReport(LAMMPS *lmp_, const StepOptions &options_, int groupbit_) :
@@ -47,6 +53,12 @@ class StepReport : protected Pointers {
   }
 
   void count_step(sphcloth::Limit by) { steps_by_limit[static_cast<int>(by)]++; }
+  void count_update(double wait)
+  {
+    updates++;
+    waits += wait;
+    longest_wait = std::max(longest_wait, wait);
+  }
   // particles by their own limit at its last choice
   void forget_particles() { particles_by_limit.fill(0.0); }
   void count_particle(const sphcloth::StepLimit &limit);
@@ -54,6 +66,7 @@ class StepReport : protected Pointers {
   // collective
   double output(int n, Stepper &, StepControl &, const UpdateRows &) const;
   std::string steps_in_words() const;
+  std::string waits_in_words() const;    // collective
 
  private:
   const StepOptions &options;
@@ -62,6 +75,7 @@ class StepReport : protected Pointers {
   std::array<double, sphcloth::N_OF_PARTICLES + 1> particles_by_limit{};
 
   double active_fraction(const UpdateRows &) const;
+  double mean_wait() const;
   double sum_of_ranks(double mine) const;
   double max_of_ranks(double mine) const;
 };

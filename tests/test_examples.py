@@ -35,6 +35,37 @@ def run(example: str, out: Path, *settings: str) -> tuple[dict, ThermoTable]:
     return json.loads((out / "summary.json").read_text()), ThermoTable.read(out / "log.lammps")
 
 
+# scripts that a user starts from
+SCRIPTS = [
+    *sorted(EXAMPLES.glob("*/in.*")),
+    EXAMPLES.parent / "README.md",
+    EXAMPLES.parent / "docs" / "tutorial.ipynb",
+    EXAMPLES.parent / "docs" / "howto" / "from_a_mesh_to_a_scene.md",
+    EXAMPLES / "live_pour" / "live_pour.py",
+]
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_cloth_is_a_material(script):
+    """A stiffness k follows the step, a compliance does not."""
+    text = script.read_text()
+    variables = dict(re.findall(r'variable +(\w+) +index +"?([^"\n#]+)', text))
+    for style, given in re.findall(r"(bond|dihedral)_coeff +[\d*]+ +([^\n\\]+)", text):
+        words = re.sub(r"\$\{(\w+)\}", lambda found: variables[found[1]], given)
+        assert words.startswith("compliance") or "rest zero" in words, f"{style}_coeff {words}"
+
+
+def test_the_answer_of_pour_follows_neither_step_nor_scheme(tmp_path):
+    """Height of the sheet and water on it."""
+    found = {}
+    for settings in ([], ["dt=0.001"], ["scheme=block"]):
+        summary, log = run("pour", tmp_path / "-".join(settings), *settings)
+        found["-".join(settings)] = log["v_hang"][-1], summary["on_sheet"]
+    heights, water = np.array(list(found.values())).T
+    assert np.ptp(heights) < 0.003, found
+    assert np.ptp(water) < 0.05 * water.mean(), found
+
+
 def test_a_light_sheet_floats_and_a_heavy_one_sinks(tmp_path):
     surface = 0.3
     heights = {}

@@ -43,7 +43,7 @@ bond_coeff      1 compliance 2e-4
 angle_style     zero
 angle_coeff     *
 dihedral_style  pbd
-dihedral_coeff  1 compliance 1.0
+dihedral_coeff  1 compliance 1000
 neighbor        0.03 bin
 neigh_modify    every 1 delay 0 check yes
 

@@ -34,7 +34,7 @@ using namespace sphcloth;
 
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
-    mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
+    held(lmp, this, options), mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
     reference(lmp, label, options.reference, constraints), powers_of_two(false), vertices(lmp),
     holders(lmp, vertices), substepping(lmp, options.solving, constraints, vertices),
     holder_force{}, measured(true), last_residual(0.0), last_energy(0.0)
@@ -71,10 +71,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
   if (!options.rest_property.empty()) take_rest_positions(options.rest_property.c_str());
   if (options.attachbit) want_reaction_forces();
   if (substepping.uses(ClothSolver::SUBSTEPS)) half_kick.turn_on(atom->nmax);
-
-  // a pinned vertex rests until another fix moves it
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && is_pinned(i)) std::fill(atom->v[i], atom->v[i] + 3, 0.0);
+  held.stop_pins();
 }
 
 void FixPBDCloth::take_rest_positions(const char *property)
@@ -129,6 +126,7 @@ void FixPBDCloth::init()
 {
   couplings.clear();
   check_vertices();
+  held.stop_pins();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
@@ -213,29 +211,11 @@ void FixPBDCloth::post_neighbor()
   vertices.attached.clear();
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
-    w[s] = inverse_mass_in_solver(i);
-    if (is_attached(i)) vertices.attached.push_back(s);
+    w[s] = held.inverse_mass_in_solver(i);
+    if (held.is_attached(i)) vertices.attached.push_back(s);
   }
   halo.forward(ClothConstraints::ALL, w);
   vertices.reset(w, substepping.uses(ClothSolver::JACOBI));
-}
-
-bool FixPBDCloth::has_vertex(int i) const { return atom->mask[i] & groupbit; }
-
-bool FixPBDCloth::is_pinned(int i) const { return atom->mask[i] & options.pinbit; }
-
-bool FixPBDCloth::is_attached(int i) const { return atom->mask[i] & options.attachbit; }
-
-bool FixPBDCloth::is_held(int i) const { return atom->mask[i] & options.heldbits(); }
-
-double FixPBDCloth::inverse_mass_in_solver(int i) const
-{
-  return is_pinned(i) ? 0.0 : 1.0 / atom_mass(atom, i);
-}
-
-double FixPBDCloth::inverse_mass(int i) const
-{
-  return is_held(i) ? 0.0 : 1.0 / atom_mass(atom, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -244,7 +224,7 @@ double FixPBDCloth::inverse_mass(int i) const
 
 void FixPBDCloth::post_integrate()
 {
-  if (options.pin_motion) move_pins();
+  held.move_pins(vertices.halo);
   substepping.begin_step({update->dt, powers_of_two});
   if (half_kick.on())
     half_kick.apply(vertices, substepping.substeps(), update->dt, force->ftm2v, atom);
@@ -258,19 +238,6 @@ void FixPBDCloth::post_integrate()
   for (SolverCoupling *coupling : present) coupling->end_step();
   measured = false;
   substepping.end_step();
-}
-
-void FixPBDCloth::move_pins()
-{
-  options.pin_motion.evaluate(igroup);
-  for (int s = 0; s < vertices.halo.n_owned(); s++) {
-    const int i = vertices.halo.atom_of(s);
-    if (!is_pinned(i)) continue;
-    for (int d = 0; d < 3; d++) {
-      atom->v[i][d] = options.pin_motion.velocity(i, d);
-      atom->x[i][d] += update->dt * atom->v[i][d];
-    }
-  }
 }
 
 void FixPBDCloth::begin_couplings()
@@ -314,7 +281,7 @@ void FixPBDCloth::store()
   for (int s = 0; s < vertices.halo.n_owned(); s++) {
     const int i = vertices.halo.atom_of(s);
     const Vertex &p = vertices.p[s], &v = vertices.v[s];
-    if (!is_attached(i)) {
+    if (!held.is_attached(i)) {
       external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
       for (const SolverCoupling *coupling : present) {
         from_couplings += coupling->impulse_on(s);
@@ -342,12 +309,10 @@ void FixPBDCloth::store()
    forces between the cloth and the holders of its vertices
 ------------------------------------------------------------------------- */
 
-void FixPBDCloth::push_held(int i, const Vec3 &impulse) { holders.add_impulse(i, impulse); }
-
 void FixPBDCloth::pre_reverse(int, int)
 {
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && is_attached(i)) {
+    if (atom->mask[i] & groupbit && held.is_attached(i)) {
       const Vec3 force_on = holders.force_on_holder(i);
       for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
     }
@@ -355,7 +320,7 @@ void FixPBDCloth::pre_reverse(int, int)
 
 Eigen::Vector3d FixPBDCloth::reaction_force(int i) const
 {
-  return is_held(i) ? Vec3(-holders.force_on_holder(i)) : Vec3::Zero();
+  return held.is_held(i) ? Vec3(-holders.force_on_holder(i)) : Vec3::Zero();
 }
 
 /* ----------------------------------------------------------------------
@@ -463,13 +428,6 @@ void FixPBDCloth::unpack_restart(int i, int nth)
     half_kick.impulse.unpack(i, from);
   else if (half_kick.on())
     half_kick.forget(i);
-}
-
-int FixPBDCloth::size_restart(int) { return maxsize_restart(); }
-
-int FixPBDCloth::maxsize_restart()
-{
-  return 1 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
 }
 
 struct FixPBDCloth::Record {

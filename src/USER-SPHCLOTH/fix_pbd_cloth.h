@@ -17,6 +17,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/cloth_topology.h"
 #include "cloth/cloth_vertices.h"
 #include "cloth/half_kick_correction.h"
+#include "cloth/held_vertices.h"
 #include "cloth/holder_forces.h"
 #include "cloth/reference_step.h"
 #include "cloth/solver_coupling.h"
@@ -51,8 +52,11 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
+  int size_restart(int) override { return maxsize_restart(); }
+  int maxsize_restart() override
+  {
+    return 1 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
+  }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;
@@ -61,10 +65,13 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   static FixPBDCloth *find(LAMMPS *, const std::string &asking, const std::string &id);
 
   const ClothTopology &topology() const override { return mesh; }
-  bool has_vertex(int atom) const override;
-  double inverse_mass(int owned_atom) const override;
-  double inverse_mass_in_solver(int owned_atom) const override;
-  void push_held(int owned_atom, const Eigen::Vector3d &impulse) override;
+  bool has_vertex(int i) const override { return held.is_vertex(i); }
+  double inverse_mass(int i) const override { return held.inverse_mass(i); }
+  double inverse_mass_in_solver(int i) const override { return held.inverse_mass_in_solver(i); }
+  void push_held(int i, const Eigen::Vector3d &impulse) override
+  {
+    holders.add_impulse(i, impulse);
+  }
 
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
@@ -84,6 +91,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
 
   std::string label;
   ClothOptions options;
+  HeldVertices held;
 
   ParticleColumns rest_x;    // rest position of each vertex, unwrapped
   RestBox rest_box;
@@ -105,10 +113,6 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void take_rest_positions(const char *);
   void check_vertices();
   void check_styles();
-  bool is_pinned(int atom) const;
-  bool is_attached(int atom) const;
-  bool is_held(int atom) const;    // either
-  void move_pins();
   void begin_couplings();
   void load();
   void store();

@@ -51,6 +51,26 @@ def compute(lmp, name):
     return np.array(lmp.numpy.extract_compute(name, 1, 2)[:owned])[order]
 
 
+def test_vertices_that_are_pinned_in_flight_stop():
+    """They were free when the fix was defined; a pin that the user moves keeps its velocity."""
+    fall = (
+        "region corner block INF -0.45 INF INF 0.45 INF\ngroup pins clear\n"
+        "group pins region corner\nfix s cloth pbd/cloth pin pins {moves}\nrun 50\n"
+    )
+    catch = "region now block INF INF INF INF 0.3 INF\ngroup pins region now\n"
+    for moves, velocity in (("", 0.0), ("velocity 0.5 0 0", 0.5)):
+        with sheet(GRAVITY + fall.format(moves=moves)) as lmp:
+            assert np.median(by_id(lmp, "v")[:, 2]) < -0.2
+            lmp.commands_string(catch + "run 0")
+            pinned = by_id(lmp, "x")[:, 2] > 0.3
+            start = by_id(lmp, "x")[pinned]
+            lmp.command("run 20")
+            moved, v = by_id(lmp, "x")[pinned] - start, by_id(lmp, "v")[pinned]
+        assert 10 < pinned.sum() < len(pinned)
+        np.testing.assert_array_equal(v, np.tile([velocity, 0.0, 0.0], (len(v), 1)))
+        np.testing.assert_allclose(moved, v * 20e-3, atol=1e-12)
+
+
 # ---------------------------------------------------------------------- rigid bodies
 
 BODY = "fix body bar rigid single\nfix s cloth pbd/cloth solver gs iterations 30 attach bar "

@@ -42,7 +42,8 @@ def run(scene, folder):
 FREE = replace(
     draw(1), units="si", ranks=1, boundary="f f f", tilt=0.0, water="block", size=(3, 3, 3),
     sheet="rectangle", slope=0.0, pins="none", walls=False, plate=False, gravity=False,
-    coupling="none", contact=True, solver="substeps", order="forward", scheme="constant",
+    coupling="none", contact=True, solver="substeps", iterations=10, order="forward",
+    scheme="constant",
     density="summation", tension="no", shift=False, precision="mixed", areal=10.0, verlet=False,
     dt=5e-4, time=0.06,
 )  # fmt: skip

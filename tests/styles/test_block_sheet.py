@@ -83,13 +83,16 @@ def test_restart_at_an_output_time(wall, tmp_path):
                 break
         else:
             pytest.fail("the sheet has no deferred impulse at any of 20 output times")
-        lmp.commands_string(f"write_restart {tmp_path}/half.bin\nrun 33")
+        go_on = "run 33\n"
+        lmp.commands_string(f"write_restart {tmp_path}/half.bin\n{go_on}")
+        while lmp.extract_fix("step", 0, 1, 27) == 1:
+            lmp.command("run 1")
+            go_on += "run 1\n"
         first = by_id(lmp, "x"), by_id(lmp, "v")
-        end, is_output = momentum_with_sheet(lmp)[0], lmp.extract_fix("step", 0, 1, 27)
+        end = momentum_with_sheet(lmp)[0]
     with instance() as lmp:
-        lmp.commands_string(again + "run 33")
+        lmp.commands_string(again + go_on)
         second = by_id(lmp, "x"), by_id(lmp, "v")
-    assert is_output == 0
     assert np.abs(end - start).max() < 1e-12 * scale
     for one, other in zip(first, second, strict=True):
         assert np.array_equal(one, other)

@@ -272,25 +272,17 @@ double SPHMaterials::find_viscosity(int i) const
   return largest;
 }
 
-// Half of what drives two fluids apart is the pressure of the other, over the own density.
-
-double SPHMaterials::pressure_factor(int fluid, int other) const
+double SPHMaterials::pressure_factor(int fluid, int boundary) const
 {
-  const double k = types[fluid].eos.k;
-  if (is_fluid(other)) {
-    const double heavier = rho0_ratio(types[other], types[fluid]);
-    return 0.5 * (1.0 + heavier * types[other].eos.k / k);
-  }
-  const double stiffness = given(fluid, other).stiffness;
-  return stiffness > 0.0 ? stiffness / k : 1.0;
+  const double stiffness = given(fluid, boundary).stiffness;
+  return stiffness > 0.0 ? stiffness / types[fluid].eos.k : 1.0;
 }
-
 
 double SPHMaterials::largest_pressure_factor(int fluid) const
 {
   double largest = 1.0;
   for (int j = 1; j < static_cast<int>(types.size()); j++)
-    if (is_boundary(j) || is_fluid(j)) largest = std::max(largest, pressure_factor(fluid, j));
+    if (is_boundary(j)) largest = std::max(largest, pressure_factor(fluid, j));
   return largest;
 }
 

@@ -72,9 +72,9 @@ class SPHMaterials : protected Pointers {
   // its own and of those given for its pairs
   double viscosity(int i, int j) const;
   double viscosity(int i) const { return viscosities.empty() ? find_viscosity(i) : viscosities[i]; }
-  // what drives a fluid away from a boundary or another fluid over what drives it from its own; and
-  // the largest of a fluid, at least 1
-  double pressure_factor(int fluid, int other) const;
+  // the pressure of a fluid on a boundary over its own, if the pair has a stiffness; and the
+  // largest of a fluid, at least 1
+  double pressure_factor(int fluid, int boundary) const;
   double largest_pressure_factor(int fluid) const;
   // both until the next read()
   void cache_pair_values();

@@ -26,7 +26,7 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
     if (!fluid->is_fluid(t)) continue;
     its.eos = fluid->equation_of_state(t);
     its.sound = its.eos.sound_speed();
-    its.beside_others = std::sqrt(fluid->largest_pressure_factor(t));
+    its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
     its.viscosity = fluid->viscosity(t);
   }
   cloths.clear();
@@ -97,7 +97,7 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
   s.nu = type.viscosity;
-  s.sound = type.beside_others * type.sound * type.eos.stiffening(s.rho);
+  s.sound = type.at_boundary * type.sound * type.eos.stiffening(s.rho);
   if (options.lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
   const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
   if (in_flight) s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.sound);

@@ -75,7 +75,7 @@ class ParticleLimits : protected Pointers {
   struct FluidType {
     double support = 0.0;    // of boundary types as well
     double viscosity = 0.0, sound = 0.0;
-    double beside_others = 1.0;    // sound beside boundaries and other fluids over its own
+    double at_boundary = 1.0;    // sound there over sound elsewhere
     sphcloth::Tait eos;
   };
   struct Cloth {

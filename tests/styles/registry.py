@@ -174,7 +174,6 @@ class Entry:
         commands: beginnings of commands; every keyword that the style then says it knows is tried.
         flags: pattern of keywords that take no value.
         free: keywords whose value may be any word.
-        fails: check -> why it fails today.
     """
 
     kind: str
@@ -187,7 +186,6 @@ class Entry:
     commands: tuple[str, ...] = ()
     flags: str = ""
     free: str = ""
-    fails: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
         return f"{self.kind} {self.name} in {self.scene}"

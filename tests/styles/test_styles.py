@@ -166,18 +166,9 @@ def assert_close(one: End, other: End, entry: Entry, system: str = "si") -> None
 
 
 def checked(*checks: str):
-    """Parameters: each entry with each check; a check that fails today must go on failing."""
+    """Parameters: each entry with each check."""
     return [
-        pytest.param(
-            entry,
-            check,
-            id=f"{check}-{entry}",
-            marks=[pytest.mark.xfail(reason=entry.fails[check], strict=True)]
-            if check in entry.fails
-            else [],
-        )
-        for entry in ENTRIES
-        for check in checks
+        pytest.param(entry, check, id=f"{check}-{entry}") for entry in ENTRIES for check in checks
     ]
 
 

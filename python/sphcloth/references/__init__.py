@@ -19,6 +19,7 @@ from sphcloth.references.catenary import HangingPolygon
 from sphcloth.references.chain import LinkedPendulum
 from sphcloth.references.couette import CouetteStart
 from sphcloth.references.dam_break import Column
+from sphcloth.references.filled_sheet import FilledSheet
 from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.references.jet import Jet
@@ -38,6 +39,7 @@ __all__ = [
     "Column",
     "CouetteStart",
     "EllipticDrop",
+    "FilledSheet",
     "HangingChain",
     "HangingPolygon",
     "HeavyElastica",

@@ -127,6 +127,10 @@ class Case:
         """The LAMMPS input script."""
         return self.folder / f"in.{self.name}"
 
+    def knows(self, name: str) -> bool:
+        """Tell whether the case has a parameter of this name."""
+        return any(parameter.name == name for parameter in self.parameters)
+
     def values(self, settings: Mapping[str, str], quick: bool) -> dict[str, Value]:
         """Return the value of every parameter: the user's, or else the one of this size.
 

@@ -15,7 +15,7 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # times of the profiles in gap^2 / nu; those of Morris, Fox and Zhu, and the end
@@ -62,7 +62,7 @@ QUANTITIES = (
     *(Quantity(f"profile_{time:g}", "1", f"the same at {time:g} L^2/nu") for time in TIMES),
     Quantity("drag", "1", "relative error of the drag on the lower plate in the end"),
     Quantity("across", "V", "largest speed across the plates"),
-    Quantity("order", "1", "order of convergence of the mean of the profiles' errors"),
+    *order_quantities("of the mean of the profiles' errors"),
     Quantity("order_missing", "1", f"what the order lacks to {ORDER:g}", 0.0, 0.0),
 )
 
@@ -74,19 +74,19 @@ def parameters(*own: Parameter) -> tuple[Parameter, ...]:
 
 
 def measure(flow: Start, values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare their profiles with the series."""
-    pair = Refinement.of(partial(_run, flow, values, runner), coarse_and_fine(values["across"]))
-    errors = [[_error(flow, frame) for frame in _frames(flow, run)] for run in pair.runs]
-    order = pair.order([compare.rms(each) for each in errors])
-    _plot(flow, pair.fine, pair.labeled(errors), runner.picture)
-    drag = pair.fine.thermo["v_lower"][-1]
+    """Run three resolutions and compare their profiles with the series."""
+    refined = Refinement.of(partial(_run, flow, values, runner), three(values["across"]))
+    errors = [[_error(flow, frame) for frame in _frames(flow, run)] for run in refined.runs]
+    orders = refined.orders([compare.rms(each) for each in errors])
+    _plot(flow, refined.fine, refined.labeled(errors), runner.picture)
+    drag = refined.fine.thermo["v_lower"][-1]
     return {
         "profile": max(errors[-1]),
         **{f"profile_{t:g}": error for t, error in zip(TIMES, errors[-1], strict=True)},
         "drag": drag / flow.drag(values["rho0"]) - 1,
-        "across": _largest_across(pair.fine) / flow.fastest,
-        "order": order,
-        "order_missing": max(0.0, ORDER - order) if math.isfinite(order) else math.nan,
+        "across": _largest_across(refined.fine) / flow.fastest,
+        **orders,
+        "order_missing": compare.order_missing(orders, ORDER),
     }
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,29 @@ def order(errors: Sequence[float], resolutions: Sequence[float]) -> float:
     if coarse == 0 or fine == 0:
         return math.nan
     return float(np.log(coarse / fine) / np.log(resolutions[1] / resolutions[0]))
+
+
+def orders(errors: Sequence[float], resolutions: Sequence[float]) -> dict[str, float]:
+    """Return the orders of convergence over several runs, the coarse one first.
+
+    ``order`` is the slope of the logarithms by least squares, ``order_least`` the smallest order
+    between two runs in a row; NaN where an error is zero.
+
+    Args:
+        errors: of the runs; the sign does not matter.
+        resolutions: as in :func:`order`.
+    """
+    if not np.all(np.asarray(errors)):
+        return {"order": math.nan, "order_least": math.nan}
+    slope = np.polyfit(np.log(resolutions), -np.log(np.abs(errors)), 1)[0]
+    pairs = zip(pairwise(errors), pairwise(resolutions), strict=True)
+    return {"order": float(slope), "order_least": min(order(*pair) for pair in pairs)}
+
+
+def order_missing(orders: Mapping[str, float], wanted: float) -> float:
+    """Return what the smallest of the :func:`orders` lacks to the one wanted; NaN if it is none."""
+    least = orders["order_least"]
+    return max(0.0, wanted - least) if math.isfinite(least) else math.nan
 
 
 def tait_pressure(

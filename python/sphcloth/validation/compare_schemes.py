@@ -52,11 +52,7 @@ def cases_with_schemes(name: str) -> list[Case]:
     Raises:
         UserError: the named case has no scheme, or there is no such case.
     """
-    able = {
-        case.name: case
-        for case in all_cases().values()
-        if any(parameter.name == "scheme" for parameter in case.parameters)
-    }
+    able = {case.name: case for case in all_cases().values() if case.knows("scheme")}
     if name != "all" and name not in able:
         raise UserError(f"no case '{name}' with a scheme: choose from all, {', '.join(able)}")
     return list(able.values()) if name == "all" else [able[name]]
@@ -77,7 +73,8 @@ def compare_schemes(
     Raises:
         UserError: a setting that is not allowed.
     """
-    same = {"density": "summation", **settings}
+    densities = {"density": "summation"} if case.knows("density") else {}
+    same = densities | dict(settings)
     case.values(same, quick)
     out.mkdir(parents=True, exist_ok=True)
     results: dict[str, Result | str] = {}

@@ -1,12 +1,14 @@
-"""One scene at several resolutions, and the order of convergence from coarse to fine."""
+"""One scene at three resolutions in a row, and the order of convergence over them."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 from sphcloth.validation import compare
+from sphcloth.validation.case import Quantity
 from sphcloth.validation.runner import Run
 
 T = TypeVar("T")
@@ -44,11 +46,26 @@ class Refinement:
         """Return label -> one value of each run."""
         return dict(zip(self.resolutions, values, strict=True))
 
-    def order(self, errors: Sequence[float]) -> float:
-        """Return the order of convergence of the errors of a coarse and a fine run."""
-        return compare.order(errors, list(self.resolutions.values()))
+    def orders(self, errors: Sequence[float]) -> dict[str, float]:
+        """Return the quantities of :func:`order_quantities`, of the errors of all runs."""
+        return compare.orders(errors, list(self.resolutions.values()))
 
 
-def coarse_and_fine(fine: int, share: float = 0.5, coarsest: int = 1) -> dict[str, int]:
-    """Return the resolutions of two runs: a share of the fine one, and all of it."""
-    return {"coarse": max(coarsest, round(share * fine)), "fine": fine}
+def order_quantities(what: str) -> tuple[Quantity, Quantity]:
+    """Return the quantities that :meth:`Refinement.orders` gives, for the errors of something."""
+    return (
+        Quantity("order", "1", f"order of convergence {what}, over three in a row"),
+        Quantity("order_least", "1", "the smaller of the orders from one to the next"),
+    )
+
+
+def three(fine: int, share: float = 0.5, coarsest: int = 1) -> dict[str, int]:
+    """Return three resolutions in a row, each finer by the same factor.
+
+    Args:
+        fine: the finest one.
+        share: of the fine one, for the coarse run.
+        coarsest: the least for the coarse run.
+    """
+    coarse = max(coarsest, round(share * fine))
+    return {"coarse": coarse, "middle": round(math.sqrt(coarse * fine)), "fine": fine}

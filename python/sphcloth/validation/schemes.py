@@ -32,7 +32,7 @@ def check(values: Mapping[str, Value]) -> None:
         UserError: names the setting, its value and the remedy.
     """
     scheme = values.get("scheme")
-    if scheme in UNEQUAL and values["density"] == "continuity":
+    if scheme in UNEQUAL and values.get("density") == "continuity":
         raise UserError(
             f"--set scheme={scheme}: steps of individual particles need densities by summation, "
             "not density=continuity: add --set density=summation, or take scheme constant or global"

@@ -15,6 +15,7 @@ from sphcloth.references.added_mass_piston import Piston
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, numerics
+from sphcloth.validation.refinement import order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # time in which the water settles on the sheet, which is held, and rate of its damping: h/c0, c0/h
@@ -71,7 +72,7 @@ QUANTITIES = (
     Quantity("flatness", "spacing", "largest rms height of vertices over their mean"),
     Quantity("compressibility", "1", "largest share of it in the reference's period"),
     Quantity("step", "1", "least time step over that of the fluid"),
-    Quantity("order", "1", "order of convergence of the period of the lightest sheet"),
+    *order_quantities("of the period of the lightest sheet"),
 )
 
 
@@ -112,14 +113,14 @@ class Swing:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Pluck sheets of several masses, and the lightest one at half the resolution."""
+    """Pluck sheets of several masses, and the lightest one at two coarser resolutions."""
     masses = np.geomspace(values["lightest"], values["heaviest"], values["runs"])
     pistons = [_piston(values, float(mass)) for mass in masses]
     layers = values["layers"]
     runs = [_run(piston, values, runner, f"{piston.areal:g}", layers) for piston in pistons]
     swings = [_swing(run, piston) for run, piston in zip(runs, pistons, strict=True)]
-    fewer = round(COARSE * layers)
-    coarse = _swing(_run(pistons[0], values, runner, "coarse", fewer), pistons[0])
+    fewer = {label: n for label, n in three(layers, COARSE).items() if label != "fine"}
+    coarse = [_swing(_run(pistons[0], values, runner, *each), pistons[0]) for each in fewer.items()]
     errors = [swing.period / p.period - 1 for swing, p in zip(swings, pistons, strict=True)]
     losses = [swing.loss for swing in swings]
     _plot(pistons, swings, runner.picture)
@@ -134,7 +135,10 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "flatness": max(_flatness(run) for run in runs) * layers / values["height"],
         "compressibility": max(p.period / p.rigid_period - 1 for p in pistons),
         "step": min(_least_step(run, pistons[0], values) for run in runs),
-        "order": compare.order([coarse.period / pistons[0].period - 1, errors[0]], [fewer, layers]),
+        **compare.orders(
+            [*(swing.period / pistons[0].period - 1 for swing in coarse), errors[0]],
+            [*fewer.values(), layers],
+        ),
     }
 
 

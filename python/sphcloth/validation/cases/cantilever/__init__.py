@@ -14,7 +14,7 @@ from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # of the lowest mode of a cantilever: omega = 3.516 sqrt(B / (mass per area * L^4))
@@ -41,18 +41,18 @@ QUANTITIES = (
     Quantity("twist", "L", "difference of height of the two ends of the free edge"),
     Quantity("strain", "1", "largest strain"),
     Quantity("speed", "m/s", "largest speed in the end"),
-    Quantity("order", "1", "order in the links of the drop"),
+    *order_quantities("in the links of the drop"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two numbers of links to rest and compare with the elastica."""
     elastica = HeavyElastica(values["gamma"])
-    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["links"]))
-    fine = pair.fine
+    refined = Refinement.of(partial(_run, values, runner), three(values["links"]))
+    fine = refined.fine
     rows = _rows(fine, values)
     exact = _exact(elastica, values["links"])
-    drops = [-_rows(run, values)[-1, 1] for run in pair.runs]
+    drops = [-_rows(run, values)[-1, 1] for run in refined.runs]
     _plot(elastica, rows, runner.picture)
     last = fine.trajectory[-1]
     return {
@@ -64,7 +64,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "twist": _twist(fine) / values["free"],
         "strain": float(fine.thermo["c_strain"][-1]),
         "speed": float(np.max(np.abs(last.velocities))),
-        "order": pair.order([drop / elastica.drop - 1 for drop in drops]),
+        **refined.orders([drop / elastica.drop - 1 for drop in drops]),
     }
 
 

@@ -13,12 +13,13 @@ from sphcloth.references.catenary import HangingPolygon
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
+from sphcloth.validation.refinement import order_quantities
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the drag in sqrt(g / length)
 DRAG = 4.0
-# time step of the coarse run of the order of convergence, in that of the case
-COARSE = 2.0
+# time steps of the runs of the order of convergence, in that of the case
+STEPS = (4.0, 2.0, 1.0)
 
 PARAMETERS = (
     Parameter("links", 20, "1", "links N", 4, 200),
@@ -39,7 +40,7 @@ QUANTITIES = (
     Quantity("strain", "1", "largest strain of a rigid link"),
     Quantity("speed", "m/s", "largest speed of a joint in the end"),
     Quantity("shape_current", "L", "shape when edges are projected along their current direction"),
-    Quantity("order", "1", "order in dt of shape_current"),
+    *order_quantities("in dt of shape_current"),
 )
 
 
@@ -47,9 +48,10 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run to rest and compare with the polygon, for the order along current directions."""
     polygon = _polygon(values)
     fine = _run(values, runner, "fine")
+    steps = [share * values["dt"] for share in STEPS]
     current = [
         _error(_run({**values, "direction": "current", "dt": dt}, runner, label), polygon)
-        for label, dt in (("coarse", COARSE * values["dt"]), ("current", values["dt"]))
+        for label, dt in zip(("coarse", "middle", "current"), steps, strict=True)
     ]
     joints = _joints(fine)
     weight = (polygon.links + 1) * polygon.mass * polygon.gravity
@@ -62,7 +64,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "strain": float(fine.thermo["c_strain"][-1]),
         "speed": float(np.max(np.abs(fine.trajectory[-1].velocities))),
         "shape_current": current[-1],
-        "order": compare.order(current, [1, COARSE]),
+        **compare.orders(current, [1 / dt for dt in steps]),
     }
 
 

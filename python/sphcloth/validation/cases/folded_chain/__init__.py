@@ -14,7 +14,7 @@ from sphcloth.references import folded_chain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
-from sphcloth.validation.refinement import Refinement
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # the coarse run of the order of convergence: share of the links
@@ -39,17 +39,17 @@ QUANTITIES = (
     Quantity("fall_reference", "1", "the same of a chain of no thickness"),
     Quantity("path", "L", "largest distance of the tip from that of N rigid links"),
     Quantity("strain", "1", "largest strain in any frame"),
-    Quantity("order", "1", "order in the links of the time of the fall"),
+    *order_quantities("in the links of the time of the fall"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two numbers of links and find when the free end is lowest."""
-    links = {"coarse": _odd(COARSE * values["links"]), "fine": _odd(values["links"])}
-    pair = Refinement.of(partial(_run, values, runner), links)
-    fine = pair.fine
+    """Run three numbers of links and find when the free end is lowest."""
+    links = {label: _odd(n) for label, n in three(values["links"], COARSE).items()}
+    refined = Refinement.of(partial(_run, values, runner), links)
+    fine = refined.fine
     free = folded_chain.free_fall(values["length"], values["gravity"])
-    falls = [_time_of_fall(run) / free for run in pair.runs]
+    falls = [_time_of_fall(run) / free for run in refined.runs]
     ideal = folded_chain.fall_over_free_fall()
     chain = folded_chain.folded(links["fine"], values["length"], values["gravity"])
     exact_fall = folded_chain.time_of_fall(chain)
@@ -64,7 +64,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "fall_reference": ideal,
         "path": float(np.max(error)),
         "strain": float(np.max(fine.thermo["c_strain"])),
-        "order": pair.order([fall / ideal - 1 for fall in falls]),
+        **refined.orders([fall / ideal - 1 for fall in falls]),
     }
 
 

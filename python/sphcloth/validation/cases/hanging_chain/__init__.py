@@ -13,6 +13,7 @@ from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
+from sphcloth.validation.refinement import order_quantities
 from sphcloth.validation.runner import Run, Runner
 
 # drag that calms the slowest motion along the chain without a swing, in its angular frequency
@@ -42,7 +43,7 @@ QUANTITIES = (
     Quantity("force_5", "1", "force / weight - 1 with 5 sweeps"),
     Quantity("stretch_5", "1", "stretch / reference - 1 with 5 sweeps"),
     *(Quantity(f"stretch_{n}", "1", f"the same with {n} sweeps") for n in SWEEPS[1:]),
-    Quantity("order", "1", "order in dt of the stretch with 5 sweeps"),
+    *order_quantities("in dt of the stretch with 5 sweeps"),
 )
 
 
@@ -69,7 +70,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "stretch_5": errors[1.0, few],
         "force_5": forces[1.0, few],
         **{f"stretch_{sweeps}": errors.get((1.0, sweeps), math.nan) for sweeps in SWEEPS[1:]},
-        "order": compare.order([errors[1.0, few], errors[0.5, few]], [1, 2]),
+        **compare.orders([errors[share, few] for share in STEPS], [1 / share for share in STEPS]),
     }
 
 

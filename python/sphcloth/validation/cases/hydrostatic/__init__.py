@@ -1,4 +1,4 @@
-"""A column of water at rest, in two dimensions, on a base of particles."""
+"""A column of water at rest, in two or three dimensions, on particles or on a pinned sheet."""
 
 from __future__ import annotations
 
@@ -11,12 +11,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.errors import UserError
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.common import (
+    GRAVITY,
+    REST_DENSITY,
+    WALL,
+    lattice_density,
+    lattice_density_in_space,
+    numerics,
+)
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the column settles, in c0 / H
@@ -26,17 +34,24 @@ COARSE_TIME = 10.0
 # last share of the free time in which the column should be at rest
 LATE = 0.1
 FRAMES = 100
+FLOORS = ("particles", "sheet")
+
+LATTICE = {2: lattice_density, 3: lattice_density_in_space}
 
 PARAMETERS = (
     Parameter("height", 1.0, "m", "undisturbed height H", 1e-3, 100.0),
     REST_DENSITY,
     GRAVITY,
     Parameter("sound", 10.0, "sqrt(g H)", "speed of sound at rest c0", 5.0, 100.0),
-    Parameter("layers", 50, "1", "particles over the height", 24, 400, quick=40),
+    Parameter("layers", 50, "1", "particles over the height", 12, 400, quick=40),
     Parameter("across", 10, "1", "particles over the periodic width", 8, 100),
     Parameter("settle", 6.0, "sqrt(H/g)", "time of damping", 1.0, 1000.0),
     Parameter("time", 100.0, "s", "time of rest without damping", 0.1, 1e4, quick=10.0),
+    Parameter("dimension", 2, "1", "of the scene", 2, 3),
+    Parameter("floor", "particles", "1", "what the water stands on", choices=FLOORS),
     WALL,
+    Parameter("thick", 0.0, "1", "volume of a vertex over spacing^3, 0 for auto", 0.0, 3.0),
+    Parameter("thickness", 0.2, "1", "of contact with a sheet over spacing", 0.01, 1.0),
     *numerics(alpha=0.5, courant=0.5),
 )
 
@@ -48,7 +63,7 @@ QUANTITIES = (
     Quantity("drift", "H", "change of the mean height while at rest", 1e-4, 1e-3),
     Quantity("settlement", "H", "how far the surface sinks"),
     Quantity("settlement_reference", "H", "the same of the Tait column"),
-    Quantity("order", "1", "order of convergence of the pressure"),
+    *order_quantities("of the pressure"),
 )
 
 
@@ -74,11 +89,13 @@ class State:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare the finer one with the Tait column."""
+    """Run three resolutions and compare the finer one with the Tait column."""
+    if values["floor"] == "sheet" and values["dimension"] == 2:
+        raise UserError("--set floor=sheet: a sheet has two dimensions: add --set dimension=3")
     column = _column(values)
-    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["layers"]))
-    fine = pair.fine
-    rest = pair.each(lambda run, layers: _state(run.trajectory[-1], values, layers))
+    refined = Refinement.of(partial(_run, values, runner), three(values["layers"]))
+    fine = refined.fine
+    rest = refined.each(lambda run, layers: _state(run.trajectory[-1], values, layers))
     errors = [compare.rms(state.error(column)[state.inside]) for state in rest]
     _plot(column, rest[-1], fine, runner.picture)
     return {
@@ -89,7 +106,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "drift": _drift(fine) / column.height,
         "settlement": _settlement(column, rest[-1]) / column.height,
         "settlement_reference": column.settlement / column.height,
-        "order": pair.order(errors),
+        **refined.orders(errors),
     }
 
 
@@ -113,7 +130,7 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, layers: int) -
         | {
             "layers": layers,
             "sound": sound,
-            "lattice": lattice_density(values),
+            "lattice": LATTICE[values["dimension"]](values),
             "base": math.ceil(values["support"]) + 1,
             "damping": DAMPING * sound / values["height"],
         },

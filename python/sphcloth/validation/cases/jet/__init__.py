@@ -15,7 +15,7 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # the flow counts as steady from this time after the first contact on, and the end of the jet is
@@ -46,20 +46,20 @@ QUANTITIES = (
     Quantity("sheet_speed", "U", "mean speed of what flows off"),
     Quantity("divided", "1", "share that flows off along the direction of the jet"),
     Quantity("divided_reference", "1", "(1 + cos(angle)) / 2"),
-    Quantity("order", "1", "order of convergence of the force"),
+    *order_quantities("of the force"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare the mean force with the momentum that the jet brings."""
+    """Run three resolutions and compare the mean force with the momentum that the jet brings."""
     jet = Jet(values["thickness"], values["speed"], values["angle"], values["rho0"])
-    pair = Refinement.of(partial(_run, jet, values, runner), coarse_and_fine(values["across"]))
-    steady = pair.each(lambda run, across: _steady(run, _window(jet, values, across)))
+    refined = Refinement.of(partial(_run, jet, values, runner), three(values["across"]))
+    steady = refined.each(lambda run, across: _steady(run, _window(jet, values, across)))
     forces = [force for force, _ in steady]
     window = _window(jet, values, values["across"])
     means = [float(np.average(force, weights=steps)) for force, steps in steady]
     errors = [mean / jet.force - 1 for mean in means]
-    _plot(jet, pair.labeled(pair.runs), window, runner.picture)
+    _plot(jet, refined.labeled(refined.runs), window, runner.picture)
     first, second = np.array_split(forces[-1], 2)
     return {
         "force": errors[-1],
@@ -67,9 +67,9 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "force_reference": jet.force,
         "force_scatter": float(np.std(forces[-1])) / jet.force,
         "force_halves": float(np.mean(second) / np.mean(first) - 1),
-        **_flow_off(jet, pair.fine, window),
+        **_flow_off(jet, refined.fine, window),
         "divided_reference": jet.sheets[0] / jet.thickness,
-        "order": pair.order(errors),
+        **refined.orders(errors),
     }
 
 

@@ -15,7 +15,7 @@ from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density_in_space, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # the flow counts as steady so long after the first contact, and until the end of the jet is so far
@@ -66,20 +66,20 @@ QUANTITIES = (
     Quantity("force_halves", "1", "mean of the second half of the window over the first - 1"),
     Quantity("sag", "B", "of the sheet's middle"),
     Quantity("strain", "1", "largest strain of an edge"),
-    Quantity("order", "1", "order of convergence of the force"),
+    *order_quantities("of the force"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare the force of the pins with the momentum that is turned."""
+    """Run three resolutions and compare the force of the pins with the momentum that is turned."""
     # on a lattice whose summed density is rho0 there is less mass per volume
     mass_per_volume = values["rho0"] / lattice_density_in_space(values)
     jet = TurnedJet(values["thickness"], values["speed"], mass_per_volume)
-    across = coarse_and_fine(values["across"], coarsest=4)
-    pair = Refinement.of(partial(_run, jet, values, runner), across)
-    found = pair.each(partial(_balance, jet, values))
-    fine, window = pair.fine, _window(jet, values, values["across"])
-    _plot(jet, values, pair.labeled(pair.runs), window, found[-1], runner)
+    across = three(values["across"], coarsest=4)
+    refined = Refinement.of(partial(_run, jet, values, runner), across)
+    found = refined.each(partial(_balance, jet, values))
+    fine, window = refined.fine, _window(jet, values, values["across"])
+    _plot(jet, values, refined.labeled(refined.runs), window, found[-1], runner)
     last = fine.trajectory[_steady_frames(fine, window)[-1]]
     sheet = last.select(2).positions
     return {
@@ -87,7 +87,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "passed_through": max(_below(frame) for frame in fine.trajectory),
         "sag": -float(np.min(sheet[:, 2])) / jet.thickness,
         "strain": float(np.max(fine.thermo["v_strain"])),
-        "order": pair.order([each["force"] for each in found]),
+        **refined.orders([each["force"] for each in found]),
     }
 
 

@@ -12,11 +12,12 @@ from sphcloth.references import light_cloth
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
+from sphcloth.validation.refinement import order_quantities
 from sphcloth.validation.runner import Run, Runner
 
 FRAMES = 20
 # the runs of the order of convergence: time steps in that of the case
-REFINED = 0.5
+REFINED = (1.0, 0.5, 0.25)
 
 PARAMETERS = (
     Parameter("rows", 40, "1", "vertices along each side", 6, 400, quick=20),
@@ -39,22 +40,25 @@ QUANTITIES = (
     Quantity(
         "rows", "1", "rms distance of the stiffest sheet's rows from the chain's, over the side"
     ),
-    Quantity("order", "1", "order in dt of that distance"),
+    *order_quantities("in dt of that distance"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run all stiffnesses, and the largest one with half the time step."""
+    """Run all stiffnesses, and the largest one with smaller time steps."""
     deepest = light_cloth.lowest(values["rows"], values["size"], values["gravity"], values["time"])
     stiffnesses = np.geomspace(values["softest"], values["stiffest"], values["runs"])
     runs = [
         _run({**values, "stiffness": float(stiffness)}, runner, f"stiffness_{stiffness:.3g}")
         for stiffness in stiffnesses
     ]
-    halved = {**values, "stiffness": values["stiffest"], "dt": REFINED * values["dt"]}
-    finer = _run(halved, runner, "finer")
+    stiff = {**values, "stiffness": values["stiffest"]}
+    finer = [
+        _run({**stiff, "dt": share * values["dt"]}, runner, f"dt_{share:g}")
+        for share in REFINED[1:]
+    ]
     lowest = [_lowest(run) / deepest - 1 for run in runs]
-    rows = [_rows(run, values) for run in (runs[-1], finer)]
+    rows = [_rows(run, values) for run in (runs[-1], *finer)]
     _plot(runs, stiffnesses, values, deepest, runner.picture)
     return {
         "lowest": max(lowest, key=abs),
@@ -63,7 +67,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "strain_softest": float(np.max(runs[0].thermo["c_strain"])),
         "strain_stiffest": float(np.max(runs[-1].thermo["c_strain"])),
         "rows": rows[0],
-        "order": compare.order(rows, [1, 1 / REFINED]),
+        **compare.orders(rows, [1 / share for share in REFINED]),
     }
 
 

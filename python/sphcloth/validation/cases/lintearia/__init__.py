@@ -20,9 +20,9 @@ from sphcloth.references.lintearia import HeavyLintearia, Lintearia
 from sphcloth.trajectory import Frame
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import GRAVITY, numerics
-from sphcloth.validation.lattice import cubic_density_sum
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.common import GRAVITY, lattice_density_in_space, numerics
+from sphcloth.validation.pool import surface_level
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 MODES = ("wall", "both", "contact", "pressure")
@@ -32,8 +32,6 @@ COARSE, COARSEST = 0.25, 20
 LEAST_ROWS = 3
 # last share of the time over which is averaged
 LATE = 0.15
-# width of the bins in which the surface is looked for, in spacings
-BIN = 0.05
 
 PARAMETERS = (
     Parameter("L", 1.0, "m", "length of the sheet", 1e-2, 100.0),
@@ -74,7 +72,7 @@ QUANTITIES = (
     Quantity("shape", "spacing", "largest distance of a vertex from the curve", 1.0, 1.0),
     Quantity("crossed", "particles", "that went through the sheet between frames", 0, 0),
     Quantity("below", "particles", "that are below the sheet in the end", 0, 0),
-    Quantity("order", "1", "order of convergence of the rms distance from the curve"),
+    *order_quantities("of the rms distance from the curve"),
     Quantity("order_missing", "1", "what the order lacks to 1", 0),
     Quantity("first_layer", "spacing", "mean distance of the lowest particles from the sheet"),
     Quantity("speed", "m/s", "rms speed of the water in the end"),
@@ -131,18 +129,18 @@ class Pool:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions to rest and compare the finer one with the curve."""
+    """Run three resolutions to rest and compare the finer one with the curve."""
     exact = curve_of(values)
     if round(values["layers"] / values["mesh"]) < LEAST_ROWS:
         raise UserError(
             f"mesh {values['mesh']:g} with layers {values['layers']} makes fewer than {LEAST_ROWS} "
             "rows of vertices: take layers larger"
         )
-    pair = Refinement.of(partial(_run, values, runner), resolutions(values))
-    pools = pair.each(lambda run, across: pool_of(run, values, across))
-    fine, pool = pair.fine, pools[-1]
-    _plot(exact, pair.labeled(pools), fine, runner.picture)
-    order = pair.order([compare.rms(each.distances(exact)) for each in pools])
+    refined = Refinement.of(partial(_run, values, runner), resolutions(values))
+    pools = refined.each(lambda run, across: pool_of(run, values, across))
+    fine, pool = refined.fine, pools[-1]
+    _plot(exact, refined.labeled(pools), fine, runner.picture)
+    orders = refined.orders([compare.rms(each.distances(exact)) for each in pools])
     return {
         "lift": pool.pull[1] / exact.lift - 1,
         "tension": pool.tension(exact.light) / exact.tension - 1,
@@ -151,10 +149,10 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "sag": pool.sag / exact.sag - 1,
         "depth": pool.depth / exact.depth - 1,
         "shape": float(np.max(pool.distances(exact))) / pool.spacing,
-        "crossed": max(_crossed(run) for run in pair.runs),
+        "crossed": max(_crossed(run) for run in refined.runs),
         "below": max(each.below for each in pools),
-        "order": order,
-        "order_missing": max(0.0, 1.0 - order) if math.isfinite(order) else math.nan,
+        **orders,
+        "order_missing": compare.order_missing(orders, 1.0),
         "first_layer": pool.first_layer / pool.spacing,
         "speed": float(np.mean(fine.thermo["v_speed"][_late(fine.thermo["Time"])])),
         "tension_reference": exact.tension,
@@ -165,7 +163,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
 
 def resolutions(values: Mapping[str, Value]) -> dict[str, int]:
     """Return particles over L of the two runs."""
-    return coarse_and_fine(values["across"], COARSE, COARSEST)
+    return three(values["across"], COARSE, COARSEST)
 
 
 def curve_of(values: Mapping[str, Value]) -> HeavyLintearia:
@@ -188,17 +186,10 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
         | {
             "across": across,
             "sound": values["sound"] * math.sqrt(values["gravity"] * light.depth),
-            "lattice": _lattice(values),
+            "lattice": lattice_density_in_space(values),
             "drag": values["drag"] / unit,
         },
     )
-
-
-def _lattice(values: Mapping[str, Value]) -> float:
-    """Return the density that particles on a lattice find over their mass per volume."""
-    if values["density"] == "continuity":
-        return 1.0
-    return cubic_density_sum(values["kernel"], values["support"])
 
 
 def _start(values: Mapping[str, Value], light: Lintearia, spacing: float) -> dict[str, Value]:
@@ -263,20 +254,10 @@ def _rows(frame: Frame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _level(water: NDArray, frames: int, spacing: float, values: Mapping[str, Value]) -> float:
-    """Return the height of the surface: where half of the water of the inside is missing.
-
-    The mass in a layer of one spacing is looked at, in the middle third of the pool.
-    """
+    """Return the height of the surface in the middle third of the pool."""
     near = np.abs(water[:, 0]) < np.max(water[:, 0]) / 3
-    heights, window = water[near, 1], round(1 / BIN)
-    edges = np.arange(np.min(heights) - spacing, np.max(heights) + 2 * spacing, BIN * spacing)
-    counts = np.convolve(np.histogram(heights, edges)[0], np.ones(window), "same")
     strip = 2 * np.max(water[:, 0]) / 3
-    full = frames * values["layers"] * strip / spacing
-    middle = (edges[:-1] + edges[1:]) / 2
-    top = np.flatnonzero(counts >= full / 2)[-1]
-    share = (counts[top] - full / 2) / (counts[top] - counts[top + 1])
-    return float(middle[top] + share * BIN * spacing)
+    return surface_level(water[near, 1], frames * values["layers"] * strip / spacing, spacing)
 
 
 def _below(water: NDArray, sheet: NDArray) -> int:

@@ -16,7 +16,7 @@ from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import REST_DENSITY, lattice_density, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # while the drop settles: rate of the damping and time, in omega and 1/omega
@@ -45,7 +45,7 @@ QUANTITIES = (
     Quantity("energy_loss", "1", "loss of energy per period over the kinetic energy at first"),
     Quantity("motion_loss", "1", "the same of the energy of the strained drop as a whole"),
     Quantity("rest_radius", "R", "radius at rest by the second moments - R"),
-    Quantity("order", "1", "order of convergence of the semi-axes' rms error"),
+    *order_quantities("of the semi-axes' rms error"),
 )
 
 
@@ -87,23 +87,23 @@ class Motion:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare the finer one with the ideal drop."""
+    """Run three resolutions and compare the finer one with the ideal drop."""
     drop = EllipticDrop(values["sigma"] * values["omega"], values["omega"])
-    pair = Refinement.of(partial(_run, drop, values, runner), coarse_and_fine(values["across"]))
-    seen = [Motion.of(run) for run in pair.runs]
+    refined = Refinement.of(partial(_run, drop, values, runner), three(values["across"]))
+    seen = [Motion.of(run) for run in refined.runs]
     period = seen[-1].period(drop, values["periods"])
     rms = [compare.rms(each.errors(drop)) for each in seen]
-    _plot(drop, pair.labeled(seen), runner.picture)
+    _plot(drop, refined.labeled(seen), runner.picture)
     return {
         "semi_axis": float(np.max(np.abs(seen[-1].errors(drop)))),
         "semi_axis_rms": rms[-1],
         "period": period / drop.period - 1,
         "period_measured": period,
         "period_reference": drop.period,
-        "energy_loss": _energy_loss(pair.fine, drop, values),
-        "motion_loss": _motion_loss(pair.fine, drop, values),
+        "energy_loss": _energy_loss(refined.fine, drop, values),
+        "motion_loss": _motion_loss(refined.fine, drop, values),
         "rest_radius": seen[-1].rest_radius / values["radius"] - 1,
-        "order": pair.order(rms),
+        **refined.orders(rms),
     }
 
 

@@ -15,10 +15,11 @@ from sphcloth.references.pendulum import pendulum_period
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY
+from sphcloth.validation.refinement import order_quantities
 from sphcloth.validation.runner import Run, Runner
 
-# time steps of the coarse runs of the order of convergence, in that of the fine ones
-COARSE = 2.0
+# time steps of the runs of the order of convergence, in that of the case
+STEPS = {"coarse": 4.0, "middle": 2.0, "fine": 1.0}
 ORDER = 1.9
 FRAMES = 200
 
@@ -39,24 +40,25 @@ QUANTITIES = (
     Quantity("tip", "L", "the same in the end"),
     Quantity("energy", "1", "largest change of the energy over m g L"),
     Quantity("strain", "1", "largest strain in the end"),
-    Quantity("order", "1", "order in dt of the path"),
+    *order_quantities("in dt of the path"),
     Quantity("order_missing", "1", "what the order lacks to 1.9", 0.0, 0.0),
     Quantity("order_period", "1", "order in dt of the period"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run one link and the chain with two time steps each."""
+    """Run one link and the chain with three time steps each."""
     expected = pendulum_period(values["length"], values["gravity"], math.radians(values["angle"]))
     single = {**values, "links": 1, "time": 1.05 * expected}
-    swings = [run_pendulum(coarser(single), runner, "period_coarse")]
-    swings.append(run_pendulum(single, runner, "period_fine"))
+    swings = [
+        run_pendulum(coarser(single, n), runner, f"period_{label}") for label, n in STEPS.items()
+    ]
     periods = [_period(run) / expected - 1 for run in swings]
     level = {**values, "angle": 90.0}
-    runs = [run_pendulum(coarser(level), runner, "coarse"), run_pendulum(level, runner, "fine")]
+    runs = [run_pendulum(coarser(level, n), runner, label) for label, n in STEPS.items()]
     errors = [path_errors(run, values) for run in runs]
     largest = [float(np.max(error)) for error in errors]
-    order = compare.order(largest, _rates(runs))
+    orders = compare.orders(largest, _rates(runs))
     _plot(runs, errors, values, runner.picture)
     return {
         "period": periods[-1],
@@ -65,9 +67,9 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "tip": float(errors[-1][-1]),
         "energy": _energy(runs[-1], values),
         "strain": float(runs[-1].thermo["c_strain"][-1]),
-        "order": order,
-        "order_missing": max(0.0, ORDER - order),
-        "order_period": compare.order(periods, _rates(swings)),
+        **orders,
+        "order_missing": compare.order_missing(orders, ORDER),
+        "order_period": compare.orders(periods, _rates(swings))["order"],
     }
 
 
@@ -76,9 +78,9 @@ def _rates(runs: list[Run]) -> list[float]:
     return [1 / float(run.thermo["Dt"][-1]) for run in runs]
 
 
-def coarser(values: Mapping[str, Value]) -> dict[str, Value]:
-    """Return the parameters of the coarse run."""
-    return {**values, "dt": COARSE * values["dt"]}
+def coarser(values: Mapping[str, Value], share: float) -> dict[str, Value]:
+    """Return the parameters with so many times the time step."""
+    return {**values, "dt": share * values["dt"]}
 
 
 def run_pendulum(values: Mapping[str, Value], runner: Runner, label: str) -> Run:

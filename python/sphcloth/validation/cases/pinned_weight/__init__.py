@@ -15,9 +15,8 @@ from sphcloth.metrics import above_sheet, crossings
 from sphcloth.references.pinned_weight import Load
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import GRAVITY, numerics
-from sphcloth.validation.lattice import cubic_density_sum
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.common import GRAVITY, lattice_density_in_space, numerics
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 MODES = ("both", "contact", "wall")
@@ -55,7 +54,7 @@ QUANTITIES = (
     Quantity("contact_on_pins", "1", "impulse of contact on pins / weight / time"),
     Quantity("scatter", "1", "rms of the vertical force between rows / weight"),
     Quantity("pins_coarse", "1", "pins in the coarse run"),
-    Quantity("order", "1", "order of convergence of the vertical force"),
+    *order_quantities("of the vertical force"),
     Quantity("sag", "m", "depth of the lowest vertex below the pins"),
     Quantity("sag_coarse", "m", "the same in the coarse run"),
     Quantity("strain", "1", "largest strain of an edge"),
@@ -65,12 +64,13 @@ QUANTITIES = (
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions to rest and weigh them."""
+    """Run three resolutions to rest and weigh them."""
     load = _load(values)
-    pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["across"]))
-    runs = coarse, fine = pair.runs
+    refined = Refinement.of(partial(_run, values, runner), three(values["across"]))
+    runs = refined.runs
+    coarse, fine = runs[0], refined.fine
     errors = [_mean(run, "v_pins_z") / load.weight - 1 for run in runs]
-    _plot(load, pair, runner.picture)
+    _plot(load, refined, runner.picture)
     return {
         "pins": errors[-1],
         "pins_by_atom": _mean(fine, "v_atoms_z") / load.weight - 1,
@@ -81,7 +81,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         / load.weight,
         "scatter": float(np.std(fine.thermo["v_pins_z"][_late(fine)])) / load.weight,
         "pins_coarse": errors[0],
-        "order": pair.order(errors),
+        **refined.orders(errors),
         "sag": _sag(fine),
         "sag_coarse": _sag(coarse),
         "strain": _mean(fine, "c_strain"),
@@ -107,19 +107,12 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
         "water": load.water,
         "sound": sound,
         "drag": values["drag"] / unit,
-        "lattice": _lattice(values),
+        "lattice": lattice_density_in_space(values),
         "t_settle": settle,
     }
     return runner.run(
         label, settle + values["time"] * unit, shared | schemes.keywords(values) | changed
     )
-
-
-def _lattice(values: Mapping[str, Value]) -> float:
-    """Return the density that particles on a lattice find over their mass per volume."""
-    if values["density"] == "continuity":
-        return 1.0
-    return cubic_density_sum(values["kernel"], values["support"])
 
 
 def _late(run: Run) -> NDArray[np.bool_]:
@@ -145,17 +138,17 @@ def _sag(run: Run) -> float:
     return -float(np.min(run.trajectory[-1].select(2).positions[:, 2]))
 
 
-def _plot(load: Load, pair: Refinement, path: Path) -> None:
+def _plot(load: Load, refined: Refinement, path: Path) -> None:
     """Draw the force of the pins over time, and a cut through the middle of the fine run."""
     figure, (force, cut) = compare.panels(1, 2)
-    for label, run in pair.labeled(pair.runs).items():
+    for label, run in refined.labeled(refined.runs).items():
         # the first row is printed before there is anything to average
         time, lift = run.thermo["Time"][1:], run.thermo["v_pins_z"][1:]
         force.plot(time, lift / load.weight, label=label)
     force.axhline(1, color="k", lw=0.5)
     force.set(xlabel="time (s)", ylabel="force of the pins / weight", ylim=(0.9, 1.1))
     force.legend()
-    frame = pair.fine.trajectory[-1]
+    frame = refined.fine.trajectory[-1]
     for kind, mark, label in ((1, ".", "water"), (2, "x", "sheet")):
         x, y, z = frame.select(kind).positions.T
         middle = np.abs(y) < load.side / 30

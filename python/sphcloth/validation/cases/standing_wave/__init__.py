@@ -17,7 +17,7 @@ from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 # rate of the damping while the water settles, in c0 / H
@@ -48,7 +48,7 @@ QUANTITIES = (
     Quantity("second_order", "1", "relative change of the period by this steepness, in theory"),
     Quantity("damping", "1/s", "rate at which the amplitude falls"),
     Quantity("residual", "1", "rms of what the damped cosine leaves over the first amplitude"),
-    Quantity("order", "1", "order of convergence of the period"),
+    *order_quantities("of the period"),
 )
 
 
@@ -79,13 +79,13 @@ class Oscillation:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare their periods with linear theory."""
+    """Run three resolutions and compare their periods with linear theory."""
     wave = StandingWave(values["depth"], values["length"], values["gravity"])
-    layers = coarse_and_fine(values["layers"], COARSE)
-    pair = Refinement.of(partial(_run, wave, values, runner), layers)
-    seen = [_oscillation(run, wave) for run in pair.runs]
+    layers = three(values["layers"], COARSE)
+    refined = Refinement.of(partial(_run, wave, values, runner), layers)
+    seen = [_oscillation(run, wave) for run in refined.runs]
     errors = [each.period / wave.period - 1 for each in seen]
-    _plot(wave, pair.labeled(seen), runner.picture)
+    _plot(wave, refined.labeled(seen), runner.picture)
     return {
         "period": errors[-1],
         "period_measured": seen[-1].period,
@@ -93,7 +93,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "second_order": wave.second_order(values["steepness"] / wave.number),
         "damping": seen[-1].fit[1],
         "residual": seen[-1].residual,
-        "order": pair.order(errors),
+        **refined.orders(errors),
     }
 
 

@@ -16,7 +16,7 @@ from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import numerics
 from sphcloth.validation.lattice import density_sum
-from sphcloth.validation.refinement import Refinement, coarse_and_fine
+from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
 FRAMES = 100
@@ -51,7 +51,7 @@ QUANTITIES = (
     Quantity("rate_reference", "1/s", "8 pi^2 / Re"),
     Quantity("velocity", "U", "rms error of the velocities, largest over time"),
     Quantity("density", "1", "largest departure of the density over rho0"),
-    Quantity("order", "1", "order of convergence of decay"),
+    *order_quantities("of decay"),
 )
 
 
@@ -97,12 +97,12 @@ class Decay:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run two resolutions and compare the decay of the finer one with the exact one."""
+    """Run three resolutions and compare the decay of the finer one with the exact one."""
     flow = TaylorGreen(values["reynolds"])
-    pair = Refinement.of(partial(_run, flow, values, runner), coarse_and_fine(values["across"]))
-    seen = [Decay.of(run, flow) for run in pair.runs]
-    _plot(flow, pair.labeled(seen), runner.picture)
-    fine, thermo = seen[-1], pair.fine.thermo
+    refined = Refinement.of(partial(_run, flow, values, runner), three(values["across"]))
+    seen = [Decay.of(run, flow) for run in refined.runs]
+    _plot(flow, refined.labeled(seen), runner.picture)
+    fine, thermo = seen[-1], refined.fine.thermo
     errors = [each.rate(each.largest) / flow.rate - 1 for each in seen]
     return {
         "decay": errors[-1],
@@ -112,7 +112,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "rate_reference": flow.rate,
         "velocity": float(np.max(fine.errors)),
         "density": float(max(np.max(thermo["v_most"]) - 1, 1 - np.min(thermo["v_least"]))),
-        "order": pair.order(errors),
+        **refined.orders(errors),
     }
 
 

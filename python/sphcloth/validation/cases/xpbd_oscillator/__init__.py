@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 from sphcloth.references.xpbd_oscillator import Oscillator
 from sphcloth.validation import cloth, compare
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
+from sphcloth.validation.refinement import order_quantities
 from sphcloth.validation.runner import Run, Runner
 
 # sweeps of the second run, in those of the first
 MORE = 10
+# runs of the order of convergence: eighths of a step in half a period
+REFINED = (32, 64, 128)
 
 PARAMETERS = (
     Parameter("mass", 1.0, "kg", "mass", 1e-6, 1e6),
@@ -30,18 +33,18 @@ QUANTITIES = (
     Quantity("motion_more", "start", "the same with ten times the iterations", 1e-12, 1e-12),
     Quantity("magnitude", "1", "of the eigenvalue of a (sub)step"),
     Quantity("numerical", "start", "largest distance from the oscillator without steps"),
-    Quantity("order", "1", "order in dt of that distance"),
+    *order_quantities("in dt of that distance"),
 )
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run few and more iterations, and for the order two smaller steps."""
+    """Run few and more iterations, and for the order three smaller steps."""
     run = _run(values, runner, "few")
     more = {**values, "iterations": MORE * values["iterations"]}
     _plot(run, values, runner.picture)
     finer = [
         _distance(_run(each, runner, f"order_{refined}"), each)
-        for refined in (32, 64)
+        for refined in REFINED
         for each in [_finer(values, refined)]
     ]
     return {
@@ -49,7 +52,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "motion_more": _error(_run(more, runner, "more"), more),
         "magnitude": abs(_oscillator(values).eigenvalue),
         "numerical": _distance(run, values),
-        "order": compare.order(finer, [1, 2]),
+        **compare.orders(finer, REFINED),
     }
 
 

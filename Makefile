@@ -52,10 +52,12 @@ stress: $(VENV)/installed
 	$(BIN)/sphcloth stress --json $(FOUND)/stress.json
 	$(BIN)/sphcloth stress random --seed 1 --count 300 --out $(FOUND)/random --json $(FOUND)/random.json
 
-# one scene in many ways: ranks, cuts, newton, balancing, sorting, lists, restart and data files, with every
-# scheme in three boxes: 40 minutes on two cores with other things to do
+# two scenes in many ways: ranks, cuts, newton, balancing, sorting, lists, restart and data files, with every
+# scheme in three boxes and in two: a quarter of an hour and an hour on one core with other things to do
 equality: $(VENV)/installed
-	$(BIN)/python -m sphcloth.stress.equality --json $(FOUND)/equality.json
+	failed=0; for size in small:equality large:equality_large; do \
+	  $(BIN)/python -m sphcloth.stress.equality --size $${size%:*} --json $(FOUND)/$${size#*:}.json || failed=1; \
+	  done; exit $$failed
 
 # a million steps, an hour of pouring, ten thousand instances
 endure: $(VENV)/installed

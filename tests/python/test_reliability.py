@@ -3,18 +3,20 @@
 import itertools
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from sphcloth.errors import UserError
+from sphcloth.log import ThermoTable
 from sphcloth.programs import YIELDING, lammps_on
 from sphcloth.stress import endurance, page
-from sphcloth.stress.case import SPACING
 from sphcloth.stress.endurance import Growth, Memory, Sample
-from sphcloth.stress.equality import SAME_PLACE, Found, Scene, Way
+from sphcloth.stress.equality import LARGE, SAME, SMALL, End, Found, Scene, Way, keep
 
 PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "reliability.md"
 
@@ -32,9 +34,9 @@ def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):
 
 
 def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path):
-    scene = Scene("tilted", "block", tmp_path)
+    scene = Scene(SMALL, "tilted", "block", tmp_path)
     same = scene.way(Way("two ranks", 2, {"grid": "1 2 1"}))
-    assert same.passed and 0 < same.place < SAME_PLACE
+    assert same.passed and 0 < same.place < SAME
     other = scene.way(Way("another step", 1, {"dt": 5e-4}))
     assert not other.passed and not other.complaint
     failed = scene.way(Way("no such kind", 1, {"sort": "no such kind"}))
@@ -42,14 +44,51 @@ def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path)
 
 
 def test_contact_at_a_face_that_moves_does_not_depend_on_when_lists_are_renewed(tmp_path):
-    scene = Scene("deforming", "constant", tmp_path)
-    assert scene.way(Way("lists at each step", 2, {"check": "no"})).place < 1e-9 * SPACING
+    scene = Scene(SMALL, "deforming", "constant", tmp_path)
+    assert scene.way(Way("lists at each step", 2, {"check": "no"})).place < 1e-9
 
 
 @pytest.mark.parametrize(("place", "complaint"), [(1e-20, ""), (0.0, "no end"), (None, "")])
 def test_a_restart_is_the_same_to_the_last_bit_or_fails(place, complaint):
     assert not Found("periodic", "block", "restart", 1, True, place, 0.0, complaint).passed
     assert Found("periodic", "block", "restart", 1, True, 0.0, 0.0, "").passed
+
+
+def test_a_jet_and_a_weir_are_the_same_on_two_ranks(tmp_path):
+    scene = Scene(replace(LARGE, steps=100), "tilted", "block", tmp_path)
+    assert scene.plain.counted["v_poured"] == 32 and scene.plain.counted["v_drained"] > 0
+    same = scene.way(Way("two ranks", 2, {"grid": "1 2 1"}))
+    assert same.passed and 0 < same.place < SAME
+    log = ThermoTable.read(tmp_path / "plain" / "log.lammps")
+    present = len(scene.plain.rows)
+    assert scene._counted(log, present) == scene.plain.counted
+    with pytest.raises(UserError, match=f"{present - 1} atoms, but {present} came and did not go"):
+        scene._counted(log, present - 1)
+    pushed = log["v_keeps_x"] + 1e-9 * log["v_each_sum"].max() * np.arange(len(log))
+    with pytest.raises(UserError, match=r"1.0e-09 of the momentum is lost, allowed 1e-10"):
+        scene._counted(ThermoTable(log.columns | {"v_keeps_x": pushed}, 0.0), present)
+
+
+def test_other_particles_or_counts_are_no_same_end():
+    rows, moved = np.zeros((2, 7)), np.array([0, 0, 0, 3, 0, 5, 0])
+    end = End(rows, {"v_poured": 16.0})
+    assert end.differs(End(rows + moved, {"v_poured": 16.0})).tolist() == [3, 5]
+    with pytest.raises(UserError, match="v_poured is 16 instead of 32"):
+        end.differs(End(rows, {"v_poured": 32.0}))
+    with pytest.raises(UserError, match="other particles"):
+        end.differs(End(rows + 1, {"v_poured": 16.0}))
+    with pytest.raises(UserError, match="other particles"):
+        end.differs(End(rows[:1], {"v_poured": 16.0}))
+
+
+def test_what_was_found_takes_the_place_of_the_same_box_and_scheme(tmp_path):
+    file = tmp_path / "new" / "equality.json"
+    found = [Found("tilted", scheme, "a", 2, False, 0.0, 0.0, "") for scheme in ("block", "global")]
+    keep(found[:1], file)
+    keep(found[1:], file)
+    keep([replace(found[0], way="b"), replace(found[0], way="c")], file)
+    rows = [(row["scheme"], row["way"]) for row in json.loads(file.read_text())]
+    assert rows == [("global", "a"), ("block", "b"), ("block", "c")]
 
 
 def test_mass_and_momentum_stay():
@@ -96,7 +135,11 @@ EXAMPLES = {
     },
     "equality.json": [
         {"way": "2 ranks", "ranks": 2, "box": "tilted", "scheme": "block", "passed": True,
-         "place": 1e-14 * SPACING, "complaint": ""},
+         "place": 1e-14, "complaint": ""},
+    ],
+    "equality_large.json": [
+        {"way": "4 ranks", "ranks": 4, "box": "tilted", "scheme": "block", "passed": False,
+         "place": None, "complaint": "there are other particles"},
     ],
     "kill.json": [
         {"scheme": "block", "ranks": 2, "in_time": True, "had_file": False, "complaint": ""},
@@ -116,6 +159,8 @@ XML = """<testsuite><testcase name="test_each[bond]"><properties><property name=
 ROWS = [
     "**3 runs of 1 cases, 1 breaches.**",
     "**1 ends compared, 0 differ.**",
+    "**1 ends compared, 1 differ.**",
+    "| 4 ranks | **there are other particles** |",
     "**7 commands and files.**",
     "**1 of 1 bugs caught.**",
     "| block | 1 runs, 0 breaches | 1 runs, 0 breaches | 1 runs, 1 breaches |",

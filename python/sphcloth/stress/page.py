@@ -17,7 +17,6 @@ import typer
 from rich.console import Console
 
 from sphcloth.errors import UserError
-from sphcloth.stress.case import SPACING
 
 MEGABYTE = 2.0**20
 
@@ -86,7 +85,7 @@ def _difference(one: dict | None) -> str:
         return ""
     if one["place"] is None:
         return f"**{one['complaint'][:60]}**"
-    text = f"{one['place'] / SPACING:.0e}" if one["place"] else "0"
+    text = f"{one['place']:.0e}" if one["place"] else "0"
     return text if one["passed"] else f"**{text}**"
 
 
@@ -187,6 +186,7 @@ def instances(path: Path) -> str:
 TABLES: dict[str, tuple[str, Callable[[Path], str]]] = {
     "stress": ("stress.json", extremes),
     "equality": ("equality.json", equality),
+    "equality_large": ("equality_large.json", equality),
     "kill": ("kill.json", kills),
     "mutate": ("mutate.json", bugs),
     "fuzz": ("fuzz.xml", fuzz),

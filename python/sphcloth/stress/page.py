@@ -17,15 +17,10 @@ import typer
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.results import markdown_table as table
 from sphcloth.stress.case import SPACING
 
 MEGABYTE = 2.0**20
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a Markdown table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)
 
 
 def _by(found: Sequence[dict], *names: str) -> dict[tuple, list[dict]]:

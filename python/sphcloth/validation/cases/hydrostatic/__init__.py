@@ -1,4 +1,4 @@
-"""A column of water at rest, in two dimensions, on a base of particles."""
+"""A column of water at rest, in two dimensions, on a base of particles or on a plane."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sphcloth.errors import UserError
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.trajectory import Frame
 from sphcloth.validation import compare, schemes
@@ -36,6 +37,7 @@ PARAMETERS = (
     Parameter("across", 10, "1", "particles over the periodic width", 8, 100),
     Parameter("settle", 6.0, "sqrt(H/g)", "time of damping", 1.0, 1000.0),
     Parameter("time", 100.0, "s", "time of rest without damping", 0.1, 1e4, quick=10.0),
+    Parameter("floor", "particles", "1", "the base", choices=("particles", "plane")),
     WALL,
     *numerics(alpha=0.5, courant=0.5),
 )
@@ -43,6 +45,8 @@ PARAMETERS = (
 QUANTITIES = (
     Quantity("pressure", "rho0 g H", "L2 of p - rho0 g d, inside", 0.01, 0.01),
     Quantity("pressure_everywhere", "rho0 g H", "the same with the free surface"),
+    Quantity("lowest", "rho0 g d", "mean of p - rho0 g d in the lowest layer"),
+    Quantity("lowest_height", "spacing", "mean height of the lowest layer over the base"),
     Quantity("base_force", "1", "force on the base / weight - 1", 1e-3, 1e-3),
     Quantity("speed", "sqrt(g H)", "largest speed of a particle at rest", 1e-3, 1e-3),
     Quantity("drift", "H", "change of the mean height while at rest", 1e-4, 1e-3),
@@ -75,6 +79,10 @@ class State:
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run two resolutions and compare the finer one with the Tait column."""
+    if values["floor"] == "plane" and values["wall"] == "extrapolate":
+        raise UserError(
+            "--set floor=plane: a plane has no wall=extrapolate: add --set wall=mirror or own"
+        )
     column = _column(values)
     pair = Refinement.of(partial(_run, values, runner), coarse_and_fine(values["layers"]))
     fine = pair.fine
@@ -84,6 +92,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     return {
         "pressure": errors[-1],
         "pressure_everywhere": compare.rms(rest[-1].error(column)),
+        **_lowest(column, rest[-1], values["layers"]),
         "base_force": _base_force(fine),
         "speed": _largest_speed(fine) / math.sqrt(column.gravity * column.height),
         "drift": _drift(fine) / column.height,
@@ -128,6 +137,17 @@ def _state(frame: Frame, values: Mapping[str, Value], layers: int) -> State:
         frame.columns["rho"], column.rho0, column.sound, column.gamma, values["tension"] == "yes"
     )
     return State(depth, pressure, frame.positions[:, 1], depth > 2 * reach)
+
+
+def _lowest(column: TaitColumn, rest: State, layers: int) -> dict[str, float]:
+    """Return error and height of the layer that lies on the base."""
+    spacing = column.height / layers
+    lowest = rest.depth > column.height - spacing
+    exact = column.pressure(rest.depth[lowest])
+    return {
+        "lowest": float(np.mean(rest.pressure[lowest] / exact - 1)),
+        "lowest_height": float(np.mean(rest.level[lowest])) / spacing,
+    }
 
 
 def _base_force(run: Run) -> float:

@@ -2,8 +2,8 @@
 
 ``python -m sphcloth.validation.membrane pull --out FOLDER`` pulls sheets of all patterns at several
 angles; Young's modulus and Poisson's ratio beside those of the infinite net. ``... shear`` shears
-them both ways, ``... top`` and ``... corners`` hang up sheets of rigid edges, ``... stretch`` one of
-rigid and of compliant edges with several solvers.
+them both ways, ``... top`` and ``... corners`` hang up sheets of rigid edges, ``... stretch`` sheets
+of rigid and of compliant edges with several solvers.
 """
 
 from __future__ import annotations

@@ -290,6 +290,7 @@ def test_the_period_is_roughly_right_at_coarse_resolution(
     [
         ("couette", {"gap": "2e-3", "lid": "1e-5"}, {"profile": 0.02, "drag": 0.02}),
         ("poiseuille", {"nu": "2e-6"}, {"profile": 0.03, "drag": 0.02}),
+        ("couette", {"plates": "particles"}, {"profile": 0.2, "drag": 0.1}),
         ("jet", {"across": "12", "angle": "60", "speed": "3"}, {"force": 0.1, "divided": 0.9}),
         ("dam-break", {"across": "24", "width": "0.1"}, {"front": 0.15, "energy_loss": 0.2}),
     ],
@@ -302,6 +303,15 @@ def test_a_flow_is_roughly_right_at_coarse_resolution(
     for quantity, limit in limits.items():
         assert abs(result.metrics[quantity].value) < limit
     assert (tmp_path / f"{name}.png").is_file()
+
+
+def test_a_column_may_stand_on_a_plane(tmp_path: Path) -> None:
+    """Its first layer meets twice the pressure, since the plane pushes half as hard."""
+    metrics = run_hydrostatic(tmp_path, floor="plane", wall="own", time="2").metrics
+    assert abs(metrics["base_force"].value) < 1e-3
+    assert 0.7 < metrics["lowest"].value < 2 and 0 <= metrics["lowest_height"].value < 0.5
+    with pytest.raises(UserError, match=r"floor=plane: .*--set wall=mirror"):
+        run_hydrostatic(tmp_path, floor="plane")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 from xml.etree import ElementTree
@@ -17,14 +17,9 @@ import typer
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.results import markdown_table as table
 
 MEGABYTE = 2.0**20
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a Markdown table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)
 
 
 def _by(found: Sequence[dict], *names: str) -> dict[tuple, list[dict]]:

@@ -2,7 +2,8 @@
 
 ``python -m sphcloth.validation.membrane pull --out FOLDER`` pulls sheets of all patterns at several
 angles; Young's modulus and Poisson's ratio beside those of the infinite net. ``... shear`` shears
-them both ways, ``... top`` and ``... corners`` hang up sheets of rigid edges.
+them both ways, ``... top`` and ``... corners`` hang up sheets of rigid edges, ``... stretch``
+sheets of rigid and of compliant edges with several solvers.
 """
 
 from __future__ import annotations
@@ -42,6 +43,16 @@ REST = 8.0
 TOP = ((20, (5, 20, 80)), (40, (5, 20, 80)))
 CORNERS = ((20, (5, 20, 80, 320)),)
 SEEDS = (1, 2, 3)
+
+# hung up by its upper side, of edges of these compliances in m/N, with these iterations
+SOLVERS = (
+    ("substeps", "start", (2, 5, 10, 20), (0.0, 1e-5, 1e-4, 1e-3)),
+    ("gs", "current", (5, 20, 80), (0.0, 1e-4)),
+)
+HEAVY = {"what": "hang", "held": "top", "cells": 20, "areal": 4.0, "dt": 1e-3, "every": 500}
+# hung flat, so that it does not swing
+STILL = {"disorder": 0.0, "drag": 20.0}
+STILL_FOR = 2.0
 
 
 @dataclass(frozen=True)
@@ -263,6 +274,34 @@ def top_study(runner: Runner) -> list[dict[str, object]]:
     ]
 
 
+def stretch(
+    runner: Runner, solver: str, direction: str, iterations: int, compliance: float
+) -> dict[str, object]:
+    """Hang up a sheet of 4 kg/m^2 and return how much longer than 1 m it hangs, in m."""
+    edges = {"edge": compliance, "diagonal": compliance, "border": compliance}
+    numbers = {"solver": solver, "direction": direction, "iterations": iterations}
+    label = f"{solver}_{iterations}_{compliance:g}"
+    run = runner.run(label, STILL_FOR, {**HEAVY, **STILL, **edges, **numbers})
+    last = run.trajectory[-1]
+    return {
+        "solver": f"{solver}, {direction}",
+        "iterations": iterations,
+        "compliance": compliance,
+        "longer": -0.5 - float(np.min(last.positions[:, 2])),
+        "speed": float(np.max(np.linalg.norm(last.velocities, axis=1))),
+    }
+
+
+def stretch_study(runner: Runner) -> list[dict[str, object]]:
+    """Return how far sheets stretch by their solver and by their compliance."""
+    return [
+        stretch(runner, solver, direction, iterations, compliance)
+        for solver, direction, counts, compliances in SOLVERS
+        for iterations in counts
+        for compliance in compliances
+    ]
+
+
 def corner_study(runner: Runner) -> list[dict[str, object]]:
     """Return sheets that hang from two corners, and draw those of the most sweeps."""
     found, shown = [], {}
@@ -334,6 +373,7 @@ STUDIES: Mapping[str, Callable[[Runner], Points]] = {
     "shear": shear_study,
     "top": top_study,
     "corners": corner_study,
+    "stretch": stretch_study,
 }
 
 

@@ -222,7 +222,9 @@ def _plot(impacts: Mapping[tuple[float, float], Impact], runner: Runner) -> None
         title = f"{angle:g} degrees; dotted: kinetic"
         energy.set(xlabel="time / end", ylabel="energy / that at first", title=title)
         energy.legend()
-        frame = chosen[max(chosen)].run.trajectory[FRAMES // 2]
+        frames = chosen[max(chosen)].run.trajectory
+        # a constant step is longer than the interval of the frames at the largest speed
+        frame = frames[len(frames) // 2]
         for kind, marker in ((2, "k."), (1, ".")):
             x, _, z = frame.select(kind).positions.T
             side.plot(x, z, marker, ms=1)

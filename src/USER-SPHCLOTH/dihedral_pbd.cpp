@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "error.h"
 #include "lammps_util/arg_reader.h"
+#include "lammps_util/lammps_version.h"
 #include "memory.h"
 #include "modify.h"
 
@@ -17,7 +18,7 @@ static const std::string COEFF = "dihedral_coeff (pbd)";
 DihedralPBD::DihedralPBD(LAMMPS *lmp_) : Dihedral(lmp_)
 {
   writedata = 1;
-  reinitflag = 0;
+  release::not_for_fix_adapt(this);
 }
 
 DihedralPBD::~DihedralPBD()

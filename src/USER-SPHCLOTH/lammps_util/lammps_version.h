@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What LAMMPS's releases do differently.  The only place that asks which release is compiled for,
+// SPHCLOTH_LAMMPS_VERSION, its date as yyyymmdd; see "Releases of LAMMPS" in CONTRIBUTING.md.
+
+#ifndef SPHCLOTH_LAMMPS_UTIL_LAMMPS_VERSION_H
+#define SPHCLOTH_LAMMPS_UTIL_LAMMPS_VERSION_H
+
+#include "comm.h"
+#include "domain.h"
+#include "pair.h"
+#include "pointers.h"
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#ifndef SPHCLOTH_LAMMPS_VERSION
+#error "SPHCLOTH_LAMMPS_VERSION, LAMMPS's release date yyyymmdd, comes from cmake or Install.sh"
+#elif SPHCLOTH_LAMMPS_VERSION < 20240829
+#error "SPHCLOTH needs LAMMPS 29 Aug 2024 or newer"
+#endif
+
+namespace LAMMPS_NS::release {
+
+constexpr int VERSION = SPHCLOTH_LAMMPS_VERSION;
+
+// Since 12 Jun 2025 LAMMPS is told where it is called from.
+
+inline void minimum_image(const Domain *domain, double *delta)
+{
+#if SPHCLOTH_LAMMPS_VERSION >= 20250612
+  domain->minimum_image(FLERR, delta);
+#else
+  domain->minimum_image(delta);
+#endif
+}
+
+// Before 12 Jun 2025 fix adapt knows no dihedrals, and not all releases have the flag.
+
+template <class DihedralStyle> void not_for_fix_adapt([[maybe_unused]] DihedralStyle *style)
+{
+#if SPHCLOTH_LAMMPS_VERSION >= 20250612
+  style->reinitflag = 0;
+#endif
+}
+
+// Values per particle that are fewer than comm_forward.  Before 4 Feb 2025 a pair style could not
+// name their number.
+
+inline void forward_comm(Comm *comm, Pair *pair, int size)
+{
+#if SPHCLOTH_LAMMPS_VERSION >= 20250204
+  comm->forward_comm(pair, size);
+#else
+  const int largest = std::exchange(pair->comm_forward, size);
+  comm->forward_comm(pair);
+  pair->comm_forward = largest;
+#endif
+}
+
+// LAMMPS has utils::print() since 4 Feb 2025.
+
+template <typename... Args>
+void print(std::FILE *fp, fmt::format_string<Args...> format, Args &&...args)
+{
+  std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), fp);
+}
+
+}    // namespace LAMMPS_NS::release
+
+#endif

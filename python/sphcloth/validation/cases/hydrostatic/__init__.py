@@ -174,6 +174,8 @@ def _base_force(run: Run) -> float:
     """Return the relative excess of the force on the base over the weight, late in the run."""
     time = run.thermo["Time"]
     late = np.flatnonzero(_late(time)[:-1])
+    if not np.any(np.diff(time)[late]):
+        raise UserError("--set time: too short for two rows of the log at rest: take it larger")
     share = run.thermo["v_base_force"][late] / run.thermo["v_weight"][late]
     # the force is that of the coming step
     return float(np.average(share, weights=np.diff(time)[late]) - 1)

@@ -128,6 +128,15 @@ def test_a_weight_on_a_sheet_that_is_a_wall_hangs_at_the_pins(tmp_path: Path) ->
         assert result.metrics[name].passed, (name, result.metrics[name].value)
 
 
+def test_the_example_pour_hangs_on_its_pins(tmp_path: Path) -> None:
+    result = run_case("pour", tmp_path, across="14", time="1.5", water="0.02")
+    for name in ("momentum", "crossed"):
+        assert result.metrics[name].passed, (name, result.metrics[name].value)
+    assert abs(result.metrics["pins"].value) < 0.05
+    assert abs(result.metrics["sag"].value) < 0.05
+    assert (tmp_path / "pour.png").stat().st_size > 10_000
+
+
 def test_a_pool_on_a_sheet_stays_above_it_and_is_drawn(tmp_path: Path) -> None:
     result = run_case("lintearia", tmp_path, settle="1", layers="3")
     for name in ("crossed", "below", "length"):

@@ -33,7 +33,7 @@ using namespace sphcloth;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), fluid(nullptr),
     limits(lmp_, options), control(lmp_, options, label, groupbit), report(lmp_, options, groupbit),
-    scheme(SteppingScheme::CONSTANT), run_style_drives(false), has_moved(false)
+    scheme(SteppingScheme::CONSTANT), run_style_drives(false), has_moved(false), restored_step(0.0)
 {
   time_integrate = 1;
   nevery = 1;
@@ -91,6 +91,7 @@ void FixSPHIntegrate::init()
   const SteppingScheme wanted = run_style ? run_style->stepping_scheme() : options.scheme;
   options.check(wanted, control.times, fluid->integrates_density(), label, error);
   use_scheme(wanted, BlockClock());
+  take_up_restored_step();
   if (update->whichflag == 2 && updates_some())
     error->all(FLERR,
                "{}: with run_style sph/adaptive {} minimize would update the particles that are "
@@ -126,6 +127,18 @@ void FixSPHIntegrate::check_group()
         "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
         "walls out",
         label, group->names[igroup], any_wrong);
+}
+
+// The step of the script is the ceiling.  How far ghosts reach, and by that the order of sums,
+// follows from the step before setup() chooses one.
+
+void FixSPHIntegrate::take_up_restored_step()
+{
+  if (restored_step > 0.0 && scheme != SteppingScheme::CONSTANT) {
+    update->update_time();
+    update->dt = restored_step;
+  }
+  restored_step = 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -203,7 +216,7 @@ double FixSPHIntegrate::compute_vector(int n) { return report.output(n, *stepper
 ------------------------------------------------------------------------- */
 
 struct FixSPHIntegrate::Record {
-  double previous, ceiling, updates, ideal_updates, waits, longest_wait, largest_before;
+  double previous, next, ceiling, updates, ideal_updates, waits, longest_wait, largest_before;
   Limit limited_by;
   bigint steps;
   double time;
@@ -221,6 +234,7 @@ void FixSPHIntegrate::write_restart(FILE *fp)
   if (comm->me) return;
   const StepControl::State state = control.state();
   const Record record{state.previous,
+                      update->dt,
                       options.ceiling,
                       all[0],
                       all[1],
@@ -242,6 +256,7 @@ void FixSPHIntegrate::restart(char *buf)
   keep_restored_time(update);
   control.restore(
       {record.previous, record.largest_before, record.limited_by, record.steps, record.time});
+  restored_step = record.next;
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
   if (!options.ceiling_given) options.ceiling = record.ceiling;
   report.updates = comm->me == 0 ? record.updates : 0.0;

@@ -91,6 +91,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   std::unique_ptr<Stepper> stepper;
   bool run_style_drives;
   bool has_moved;    // since the setup
+  double restored_step;    // the next one when a restart file was written; 0: none, or in force
 
   // particles that are due, and not all in each evaluation?
   bool updates_some() const
@@ -98,6 +99,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
     return scheme == SteppingScheme::INDIVIDUAL || scheme == SteppingScheme::BLOCK;
   }
   void check_group();
+  void take_up_restored_step();
   void use_scheme(SteppingScheme, const BlockClock &);
 };
 

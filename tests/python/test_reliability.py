@@ -69,6 +69,16 @@ def test_a_jet_and_a_weir_are_the_same_on_two_ranks(tmp_path):
         scene._counted(ThermoTable(log.columns | {"v_keeps_x": pushed}, 0.0), present)
 
 
+def test_a_restart_far_below_the_ceiling_of_the_step_is_the_same_to_the_last_bit(tmp_path):
+    """Contact chooses how far ghosts reach by the speed, which grows, and the step."""
+    script = tmp_path / "in.contact_alone"
+    text = LARGE.script.read_text().replace("2 2 boundary", "2 2 none")
+    script.write_text(text.replace("cloth/contact 0.03", "cloth/contact 0.02"))
+    alone = replace(LARGE, script=script, steps=40, piece=20, every=0)
+    found = Scene(alone, "periodic", "global", tmp_path).restarts(1, 1, 20)
+    assert found.exact and found.passed
+
+
 def test_other_particles_or_counts_are_no_same_end():
     rows, moved = np.zeros((2, 7)), np.array([0, 0, 0, 3, 0, 5, 0])
     end = End(rows, {"v_poured": 16.0})

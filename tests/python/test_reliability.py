@@ -79,6 +79,12 @@ def test_a_restart_far_below_the_ceiling_of_the_step_is_the_same_to_the_last_bit
     assert found.exact and found.passed
 
 
+def test_an_inactive_particle_that_comes_to_a_rank_where_all_are_active_stays_inactive(tmp_path):
+    """One does, from the upper rank at step 309."""
+    scene = Scene(replace(LARGE, steps=310, every=0), "periodic", "block", tmp_path)
+    assert scene.way(Way("upper and lower rank", 2, {"grid": "1 1 2"})).passed
+
+
 def test_other_particles_or_counts_are_no_same_end():
     rows, moved = np.zeros((2, 7)), np.array([0, 0, 0, 3, 0, 5, 0])
     end = End(rows, {"v_poured": 16.0})

@@ -72,7 +72,8 @@ void BlockSteps::select_active()
     n++;
   }
   parts.report.updates += n_active;
-  tell_active(n_active == n);
+  // not by the particles of this rank alone: an inactive one may come from another in this step
+  tell_active(state.coarsest == 0 && n_active == n && !sleeping.enabled());
 }
 
 void BlockSteps::note_pair_forces()

@@ -44,6 +44,7 @@ TESTS = (
 
 # what a package does beside its styles: LAMMPS lists it and converts its restart files
 CONVERTED = """\
+units si
 atom_style sph
 region box block 0 1 0 1 0 1
 create_box 1 box
@@ -52,8 +53,8 @@ create_atoms 1 box
 mass 1 15.625
 comm_modify vel yes
 pair_style sph/tait 0.5
-pair_coeff 1 1 fluid 1000.0 sound 10.0
-fix step all sph/integrate
+pair_coeff 1 1 fluid 1000.0 c0 10.0
+fix step all sph/integrate constant
 info styles pair fix
 run 2
 write_restart package.restart
@@ -138,7 +139,12 @@ def build_lammps(tree: Path, build: Path, jobs: int, with_package: bool) -> None
 
 
 def site(folder: Path, tree: Path, build: Path, plugin: Path | None) -> dict[str, str]:
-    """Make a folder of Python packages for this LAMMPS; return the environment that uses it."""
+    """Make a folder of Python packages for this LAMMPS; return the environment that uses it.
+
+    The module of the sources knows by the end of its path, python/lammps, that pip has not
+    installed it.
+    """
+    folder = folder / "python"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(tree / "python/lammps", folder / "lammps")
     (folder / "lammps/executable.py").write_text(EXECUTABLE.format(lmp=str(build / "lmp")))

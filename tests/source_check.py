@@ -55,7 +55,8 @@ comm_modify vel yes
 pair_style sph/tait 0.5
 pair_coeff 1 1 fluid 1000.0 c0 10.0
 fix step all sph/integrate constant
-info styles pair fix
+info styles pair
+info styles fix
 run 2
 write_restart package.restart
 """
@@ -65,7 +66,8 @@ EXECUTABLE = """\
 import subprocess, sys
 
 def lmp():
-    raise SystemExit(subprocess.call([{lmp!r}, *sys.argv[1:]]))
+    # the launcher speaks to its ranks through open files
+    raise SystemExit(subprocess.call([{lmp!r}, *sys.argv[1:]], close_fds=False))
 """
 
 
@@ -180,7 +182,7 @@ def check_package(folder: Path, environment: dict[str, str]) -> None:
     if missing or not (folder / "package.restart").exists():
         sys.exit(f"source_check: the package does not run, or lacks {missing}:\n{said}")
     call(*lmp, "-restart2data", "package.restart", "package.data", **options)
-    call(*lmp, "-restart2dump", "package.restart", "atom", "package.dump", **options)
+    call(*lmp, "-restart2dump", "package.restart", "all", "atom", "package.dump", **options)
     call(*lmp, "-restart2info", "package.restart", **options)
     if "Pair Coeffs # sph/tait" not in (folder / "package.data").read_text():
         sys.exit("source_check: -restart2data did not write the coefficients of sph/tait")

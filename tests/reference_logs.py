@@ -59,9 +59,10 @@ def apart(log: Path, example: str) -> tuple[float, str]:
     """
     ours, one, four = columns(log), *(columns(log_of(example, ranks)) for ranks in (1, 4))
     worst = (0.0, "")
-    if {name: len(column) for name, column in ours.items()} != {n: len(c) for n, c in one.items()}:
-        return np.inf, "other columns or rows"
-    for name, column in ours.items():
+    if {name: len(ours.get(name, ())) for name in one} != {n: len(c) for n, c in one.items()}:
+        return np.inf, "columns or rows are missing"
+    for name in one:  # a column that the example has since is in no log
+        column = ours[name]
         reference, other = np.array(one[name]), np.array(four[name])
         scale = max(np.nanmax(np.abs(reference)), 1e-300)
         drift = np.maximum.accumulate(np.nan_to_num(np.abs(reference - other)))

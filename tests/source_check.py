@@ -44,6 +44,7 @@ TESTS = (
 
 # what a package does beside its styles: LAMMPS lists it and converts its restart files
 CONVERTED = """\
+units si
 atom_style sph
 region box block 0 1 0 1 0 1
 create_box 1 box
@@ -52,9 +53,10 @@ create_atoms 1 box
 mass 1 15.625
 comm_modify vel yes
 pair_style sph/tait 0.5
-pair_coeff 1 1 fluid 1000.0 sound 10.0
-fix step all sph/integrate
-info styles pair fix
+pair_coeff 1 1 fluid 1000.0 c0 10.0
+fix step all sph/integrate constant
+info styles pair
+info styles fix
 run 2
 write_restart package.restart
 """
@@ -64,7 +66,8 @@ EXECUTABLE = """\
 import subprocess, sys
 
 def lmp():
-    raise SystemExit(subprocess.call([{lmp!r}, *sys.argv[1:]]))
+    # the launcher speaks to its ranks through open files
+    raise SystemExit(subprocess.call([{lmp!r}, *sys.argv[1:]], close_fds=False))
 """
 
 
@@ -138,7 +141,12 @@ def build_lammps(tree: Path, build: Path, jobs: int, with_package: bool) -> None
 
 
 def site(folder: Path, tree: Path, build: Path, plugin: Path | None) -> dict[str, str]:
-    """Make a folder of Python packages for this LAMMPS; return the environment that uses it."""
+    """Make a folder of Python packages for this LAMMPS; return the environment that uses it.
+
+    The module of the sources knows by the end of its path, python/lammps, that pip has not
+    installed it.
+    """
+    folder = folder / "python"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(tree / "python/lammps", folder / "lammps")
     (folder / "lammps/executable.py").write_text(EXECUTABLE.format(lmp=str(build / "lmp")))
@@ -174,7 +182,7 @@ def check_package(folder: Path, environment: dict[str, str]) -> None:
     if missing or not (folder / "package.restart").exists():
         sys.exit(f"source_check: the package does not run, or lacks {missing}:\n{said}")
     call(*lmp, "-restart2data", "package.restart", "package.data", **options)
-    call(*lmp, "-restart2dump", "package.restart", "atom", "package.dump", **options)
+    call(*lmp, "-restart2dump", "package.restart", "all", "atom", "package.dump", **options)
     call(*lmp, "-restart2info", "package.restart", **options)
     if "Pair Coeffs # sph/tait" not in (folder / "package.data").read_text():
         sys.exit("source_check: -restart2data did not write the coefficients of sph/tait")

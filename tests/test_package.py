@@ -69,7 +69,8 @@ def test_no_environment_variable_is_needed(monkeypatch, tmp_path):
             [*command, "-in", script], cwd=tmp_path, capture_output=True, text=True, check=True
         ).stdout
         for kind, name in STYLES:
-            assert f"{kind} style plugin {name}" in out
+            if kind != "run" or lammps_release() >= 20250722:  # LAMMPS listed none before
+                assert f"{kind} style plugin {name}" in out
 
 
 @pytest.mark.parametrize(("kind", "name"), STYLES)

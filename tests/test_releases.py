@@ -84,6 +84,16 @@ def stubs(folder: Path, release: int) -> None:
             template <class F, class... Args> std::string format(F, Args &&...) { return {}; }
             }""",
         "pair.h": "#pragma once\nnamespace LAMMPS_NS { struct Pair { int comm_forward; }; }",
+        "lammps.h": "#pragma once\nnamespace LAMMPS_NS { struct Update; struct LAMMPS { Update *update; }; }",
+        "update.h": """#pragma once
+            #include <map>
+            #include <string>
+            namespace LAMMPS_NS {
+            struct Integrate;
+            struct Update {
+              std::map<std::string, Integrate *(*)(LAMMPS *, int, char **)> *integrate_map;
+            };
+            }""",
         "comm.h": f"""#pragma once
             namespace LAMMPS_NS {{ struct Pair; struct Comm {{ {FORWARD_COMM[release]} }}; }}""",
         "domain.h": f"""#pragma once

@@ -169,7 +169,9 @@ def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:
         detail = f"{len(found)} separate runs of {found[0]} rank"
         return Check(name, False, detail, f"use the mpiexec of mpich: {program('mpiexec')}")
     loaded = re.findall(r"(\w+) style plugin (\S+)", output)
-    missing = [" ".join(style) for style in STYLES if style not in loaded]
+    # before 22 Jul 2025 run styles are not in LAMMPS's list: they are checked in Python
+    expected = [style for style in STYLES if style[0] != "run"]
+    missing = [" ".join(style) for style in expected if style not in loaded]
     found_well = Check(name, True, f"one run, ranks: {found[0]}, all styles")
     return _check_styles(name, missing, output) or found_well
 

@@ -136,6 +136,9 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("command", "sph_write", "tables of a kernel or an equation of state");
   plugin.creator.v1 = &create<CreateCloth>;
   add("command", "create_cloth", "sheet of vertices, bonds, triangles and hinges");
-  plugin.creator.v2 = &create_with_args<SPHAdaptive>;
-  add("run", "sph/adaptive", "adaptive time steps");
+  if (release::LOADS_RUN_STYLES) {
+    plugin.creator.v2 = &create_with_args<SPHAdaptive>;
+    add("run", "sph/adaptive", "adaptive time steps");
+  } else
+    release::add_run_style<SPHAdaptive>(static_cast<LAMMPS *>(lmp), "sph/adaptive");
 }

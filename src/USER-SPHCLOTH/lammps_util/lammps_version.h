@@ -7,8 +7,10 @@
 
 #include "comm.h"
 #include "domain.h"
+#include "lammps.h"
 #include "pair.h"
 #include "pointers.h"
+#include "update.h"
 
 #include <cstdio>
 #include <string>
@@ -64,6 +66,18 @@ template <typename... Args>
 void print(std::FILE *fp, fmt::format_string<Args...> format, Args &&...args)
 {
   std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), fp);
+}
+
+// Before 22 Jul 2025 LAMMPS loads no run styles from plugins, but it creates those that it finds in
+// its map.
+
+constexpr bool LOADS_RUN_STYLES = VERSION >= 20250722;
+
+template <class RunStyle> void add_run_style(LAMMPS *lmp, const char *name)
+{
+  (*lmp->update->integrate_map)[name] = [](LAMMPS *lammps, int narg, char **arg) -> Integrate * {
+    return new RunStyle(lammps, narg, arg);
+  };
 }
 
 }    // namespace LAMMPS_NS::release

@@ -32,7 +32,9 @@ RESULT = re.compile(
 CHOSEN = ("default", "number", "index", "value")
 SIZES = "`--size`"
 COMMAND = re.compile(r"`((?:sphcloth|make|lmp -in|pytest) [^`]+|python -m sphcloth[^`]*)`")
-COST = re.compile(r"\b(?:wall time|updates|seconds?|minutes?|hours?|\d s|rounds)\b", re.IGNORECASE)
+COST = re.compile(
+    r"\b(?:wall times?|updates|seconds?|minutes?|hours?|\d+ s|rounds)\b", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)

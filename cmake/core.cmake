@@ -10,8 +10,8 @@ target_compile_features(sphcloth_core PUBLIC cxx_std_17)
 target_include_directories(sphcloth_core PUBLIC "${CMAKE_CURRENT_LIST_DIR}/../src/USER-SPHCLOTH")
 target_link_libraries(sphcloth_core PUBLIC Eigen3::Eigen)
 target_link_libraries(sphcloth_core PRIVATE sphcloth_checks)
-if(SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE OR SPHCLOTH_GUIDE)
-  # loops compiled for several CPUs take minutes with checks in them
+if(SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE OR SPHCLOTH_GUIDE OR SPHCLOTH_QUICK_BUILD)
+  # loops compiled for several CPUs take minutes, above all with checks in them
   target_compile_definitions(sphcloth_core PUBLIC SPHCLOTH_SINGLE_TARGET)
 endif()
 # Vectors without a second OpenMP runtime; errno and trapping semantics would keep square roots

@@ -117,6 +117,52 @@ def bugs(path: Path) -> str:
     return _told(told, table(["bug", "caught by", "s"], rows))
 
 
+def mutants(path: Path) -> str:
+    """Mutants by folder and by operator, and a verdict on each that the tests did not see."""
+    found = json.loads(path.read_text())
+    all_of_them = found["mutants"]
+    caught = sum(bool(one["caught"]) for one in all_of_them)
+    equivalent = sum(bool(one["equivalent"]) for one in all_of_them)
+    told = (
+        f"{len(all_of_them)} of {found['count']} mutants tried, of {found['places']} places: "
+        f"{caught} caught, {equivalent} equivalent, {len(all_of_them) - caught - equivalent} left."
+    )
+    heads = ["mutants", "caught by the tests there were", "by new tests", "equivalent", "left"]
+    parts = [
+        table(
+            [head, *heads], [[name, *_counts(of)] for (name,), of in _by(all_of_them, key).items()]
+        )
+        for head, key in (("folder", "folder"), ("operator", "operator"))
+    ]
+    verdicts = [
+        [f"`{Path(one['file']).name}:{one['line']}`", _code(one), _verdict(one)]
+        for one in all_of_them
+        if one["survived"] or not one["caught"]
+    ]
+    return _told(told, "\n\n".join([*parts, table(["place", "mutant", "verdict"], verdicts)]))
+
+
+def _counts(some: Sequence[dict]) -> list[int]:
+    at_first = sum(bool(one["caught"]) and not one["survived"] for one in some)
+    caught = sum(bool(one["caught"]) for one in some)
+    equivalent = sum(bool(one["equivalent"]) for one in some)
+    left = len(some) - caught - equivalent
+    return [len(some), at_first, caught - at_first, equivalent, left]
+
+
+def _code(one: dict) -> str:
+    """Return both ways to write it, as a cell of a table."""
+    ways = [f"`` {way} ``" for way in (one["right"], one["wrong"]) if way]
+    ways += ["nothing"] * (2 - len(ways))
+    return " → ".join(ways).replace("|", "\\|")
+
+
+def _verdict(one: dict) -> str:
+    if one["caught"]:
+        return f"caught by {_test(one['caught'])}"
+    return f"equivalent: {one['equivalent']}" if one["equivalent"] else "**not caught**"
+
+
 def _test(caught: str) -> str:
     file, _, test = caught.partition("::")
     if not test:
@@ -189,6 +235,7 @@ TABLES: dict[str, tuple[str, Callable[[Path], str]]] = {
     "equality": ("equality.json", equality),
     "kill": ("kill.json", kills),
     "mutate": ("mutate.json", bugs),
+    "mutants": ("mutants.json", mutants),
     "fuzz": ("fuzz.xml", fuzz),
     "steps": ("steps.json", steps),
     "pour": ("pour.json", pouring),

@@ -78,7 +78,7 @@ class MutatedTree(Tree):
         self.written = written
         super().__init__(folder)
         self.reached = (folder / "reached").absolute()
-        self.record_file = (folder / "record.json").absolute()
+        self.record_file = (folder / "recorded.json").absolute()
         self.environment["PYTHONPATH"] += f":{self.sources / 'tests'}"
 
     def text_of(self, source: Path) -> bytes:

@@ -89,7 +89,7 @@ class Run:
         """Try the tests of a file with the mutants that are not caught yet."""
         for mutant in self.population.described():
             number, digest = mutant["number"], self.digests[target]
-            one = self.known.setdefault(number, mutant | UNTRIED)
+            one = self.known[number] = UNTRIED | self.known.get(number, {}) | mutant
             if number in numbers and not one["caught"] and one["tried"].get(target) != digest:
                 if not self.left():
                     return
@@ -162,12 +162,12 @@ class Run:
         self.results.write_text(json.dumps(what, indent=1) + "\n")
 
 
-def key(mutant: dict) -> tuple[str, ...]:
+def key(mutant: dict) -> tuple:
     """Return what identifies a mutant while lines move."""
-    return tuple(mutant[name] for name in ("file", "code", "right", "wrong"))
+    return tuple(mutant[name] for name in ("file", "code", "column", "right", "wrong"))
 
 
-def equivalents() -> dict[tuple[str, ...], str]:
+def equivalents() -> dict[tuple, str]:
     """Return why no behavior differs, of the mutants that have been argued about."""
     entries = tomllib.loads(EQUIVALENT.read_text())["mutant"]
     return {key(entry): entry["reason"] for entry in entries}

@@ -32,6 +32,7 @@ def test_equivalent_mutants_fit_the_sources():
     """Each names a line of code that is there, and a reason."""
     for entry in tomllib.loads((ROOT / "tests/mutation/equivalent.toml").read_text())["mutant"]:
         assert entry["code"] in (SOURCE / entry["file"]).read_text(), entry
+        assert 0 <= entry["column"] < len(entry["code"]), entry
         assert len(entry["reason"]) > 20 and entry["right"] != entry["wrong"]
 
 

@@ -59,14 +59,17 @@ class Population:
 
     def _described(self, number: int, mutant: Mutant) -> dict:
         text = self.sources[mutant.file]
-        lines = text.decode().splitlines()
+        begin = text.rfind(b"\n", 0, mutant.start) + 1
+        line = text[begin:].split(b"\n", 1)[0].decode()
+        indent = len(line) - len(line.lstrip())
         return {
             "number": number,
             "file": mutant.file,
             "folder": mutant.folder,
             "line": mutant.line,
             "operator": mutant.operator,
-            "code": lines[mutant.line - 1].strip(),
+            "code": line.strip(),
+            "column": len(text[begin : mutant.start].decode()) - indent,
             "right": mutant.readable(mutant.right, text),
             "wrong": mutant.readable(mutant.wrong, text),
         }

@@ -121,18 +121,17 @@ def mutants(path: Path) -> str:
     """Mutants by folder and by operator, and a verdict on each that the tests did not see."""
     found = json.loads(path.read_text())
     all_of_them = found["mutants"]
-    caught = sum(bool(one["caught"]) for one in all_of_them)
-    equivalent = sum(bool(one["equivalent"]) for one in all_of_them)
+    total, _, _, equivalent, open_, left = _counts(all_of_them)
     told = (
-        f"{len(all_of_them)} of {found['count']} mutants tried, of {found['places']} places: "
-        f"{caught} caught, {equivalent} equivalent, {len(all_of_them) - caught - equivalent} left."
+        f"{total} mutants of {found['places']} places: {total - equivalent - open_ - left} caught, "
+        f"{equivalent} equivalent, {left} not caught, {open_} not tried with all tests yet."
     )
-    heads = ["mutants", "caught by the tests there were", "by new tests", "equivalent", "left"]
+    heads = ["mutants", "caught", "by new tests", "equivalent", "open", "not caught"]
     parts = [
         table(
-            [head, *heads], [[name, *_counts(of)] for (name,), of in _by(all_of_them, key).items()]
+            [head, *heads], [[name, *_counts(of)] for (name,), of in _by(all_of_them, head).items()]
         )
-        for head, key in (("folder", "folder"), ("operator", "operator"))
+        for head in ("folder", "operator")
     ]
     verdicts = [
         [f"`{Path(one['file']).name}:{one['line']}`", _code(one), _verdict(one)]
@@ -143,11 +142,18 @@ def mutants(path: Path) -> str:
 
 
 def _counts(some: Sequence[dict]) -> list[int]:
-    at_first = sum(bool(one["caught"]) and not one["survived"] for one in some)
-    caught = sum(bool(one["caught"]) for one in some)
-    equivalent = sum(bool(one["equivalent"]) for one in some)
-    left = len(some) - caught - equivalent
-    return [len(some), at_first, caught - at_first, equivalent, left]
+    """Return how many: all, caught by old tests, by new ones, equivalent, open, not caught."""
+    kinds = [_kind(one) for one in some]
+    names = ("caught", "new", "equivalent", "open", "left")
+    return [len(some), *(kinds.count(name) for name in names)]
+
+
+def _kind(one: dict) -> str:
+    if one["caught"]:
+        return "new" if one["survived"] else "caught"
+    if one["equivalent"]:
+        return "equivalent"
+    return "left" if one["survived"] else "open"
 
 
 def _code(one: dict) -> str:
@@ -158,9 +164,14 @@ def _code(one: dict) -> str:
 
 
 def _verdict(one: dict) -> str:
-    if one["caught"]:
-        return f"caught by {_test(one['caught'])}"
-    return f"equivalent: {one['equivalent']}" if one["equivalent"] else "**not caught**"
+    match _kind(one):
+        case "equivalent":
+            return f"equivalent: {one['equivalent']}"
+        case "left":
+            return "**not caught**"
+        case "open":
+            return f"open: not caught by {len(one['tried'])} files of tests"
+    return f"caught by {_test(one['caught'])}"
 
 
 def _test(caught: str) -> str:

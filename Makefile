@@ -7,6 +7,9 @@ RANKS  ?= 2
 TESTS  ?= tests/styles
 SECONDS_EACH ?= 60
 SIZE   ?= small
+# of mutants
+SEED   ?= 1
+COUNT  ?= 200
 # tests that run side by side
 WORKERS ?= 2
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
@@ -24,7 +27,8 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: source-check dist demo test validate stress equality endure fuzz mutate reference-logs reliability-page lint docs \
+.PHONY: source-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
+        reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
@@ -74,7 +78,12 @@ fuzz: $(VENV)/installed
 
 # deliberate bugs, each of which a test must catch
 mutate: $(VENV)/installed
-	$(BIN)/python tests/mutate.py --json $(FOUND)/mutate.json
+	$(BIN)/python tests/mutate.py --folder build/mutate --json $(FOUND)/mutate.json
+
+# bugs drawn at random, of which the tests must catch nine of ten; goes on where it was ended
+mutate-random: $(VENV)/strict
+	$(BIN)/python tests/mutate_random.py --seed $(SEED) --count $(COUNT) --folder build/mutants-$(SEED)-$(COUNT) \
+	  --json $(FOUND)/mutants.json
 
 # the logs of the examples on 1 and 4 ranks; 'tests/reference_logs.py --check' compares them
 reference-logs: $(VENV)/installed

@@ -11,8 +11,8 @@ target_include_directories(sphcloth_core PUBLIC "${CMAKE_CURRENT_LIST_DIR}/../sr
 target_link_libraries(sphcloth_core PUBLIC Eigen3::Eigen)
 target_link_libraries(sphcloth_core PRIVATE sphcloth_checks)
 option(SPHCLOTH_SINGLE_TARGET "compile for the oldest CPU alone: builds faster, runs slower" OFF)
-if(SPHCLOTH_SINGLE_TARGET OR SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE OR SPHCLOTH_GUIDE)
-  # loops compiled for several CPUs take minutes with checks in them
+if(SPHCLOTH_SINGLE_TARGET OR SPHCLOTH_QUICK_BUILD OR SPHCLOTH_SANITIZE OR SPHCLOTH_COVERAGE OR SPHCLOTH_GUIDE)
+  # loops compiled for several CPUs take minutes, above all with checks in them
   target_compile_definitions(sphcloth_core PUBLIC SPHCLOTH_SINGLE_TARGET)
 endif()
 option(SPHCLOTH_OLD_SYMBOLS "call only what the C and C++ libraries of manylinux_2_28 have" OFF)

@@ -2,12 +2,14 @@
 
 ``python tests/mutate.py [NAME ...]`` copies the sources, puts one bug after the other in, builds
 and runs the tests that should see it. A test that sees a bug must pass without it. Nothing of the
-tree or the installed package is touched.
+tree or the installed package is touched. What a run has written to ``--json`` is not run again, as
+long as the sources, the bug and its tests are the same.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import os
 import re
@@ -29,8 +31,13 @@ BIN = Path(sys.executable).parent
 # s, for the tests of one bug: an endless loop does not pass either.  Counted in waits of a second
 # each, since a machine may stop all processes for longer
 PATIENCE = 300
+COPIED = ("src", "cmake", "python", "tests", "examples", "docs")
+DECIDING = ("src", "cmake", "tests/core", "tests/styles")
 CORE = "tests/core"  # the part of it that needs no library
 TEST_FAILURE = 201  # exit code of a program of Boost.Test
+CORES = f"-j{len(os.sched_getaffinity(0))}"
+# an order of magnitude fewer seconds for a header that all loops include
+QUICK = ("-DCMAKE_BUILD_TYPE=Release", "-DSPHCLOTH_QUICK_BUILD=ON")
 
 
 @dataclass(frozen=True)
@@ -46,6 +53,15 @@ class Bug:
     def places(self) -> int:
         """Return how often the sources hold what is replaced: once, if the list is up to date."""
         return (ROOT / SOURCE / self.file).read_text().count(self.old)
+
+    def state(self) -> str:
+        """Return a digest of the bug, the C++ and the tests that must see it."""
+        digest = hashlib.sha256(f"{self.file}\0{self.old}\0{self.new}\0{self.tests}".encode())
+        for path in sorted(one for name in DECIDING for one in (ROOT / name).rglob("*")):
+            other = path.match("test_*.py") and path.name not in self.tests
+            if path.suffix in (".h", ".cpp", ".cmake", ".txt", ".py") and not other:
+                digest.update(str(path.relative_to(ROOT)).encode() + path.read_bytes())
+        return digest.hexdigest()[:16]
 
 
 STEPPING, RANKS = "tests/styles/test_stepping.py", "tests/styles/test_styles.py::test_ranks"
@@ -185,16 +201,16 @@ class Tree:
         self.sources, self.build, self.core = folder / "tree", folder / "build", folder / "core"
         self.right = folder / "right.so"
         self.sound: set[str] = set()
-        for name in ("src", "cmake", "python", "tests", "examples", "docs"):
+        for name in COPIED:
             shutil.copytree(
                 ROOT / name,
                 self.sources / name,
                 ignore=_no_rubbish,
                 dirs_exist_ok=True,
-                copy_function=_copy_if_changed,
+                copy_function=self._copy_if_changed,
             )
         for name in ("CMakeLists.txt", "pyproject.toml", "README.md", "LICENSE"):
-            _copy_if_changed(ROOT / name, self.sources / name)
+            self._copy_if_changed(ROOT / name, self.sources / name)
         self.environment = os.environ | {
             "PYTHONPATH": str(self.sources / "python"),
             "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}",
@@ -202,26 +218,36 @@ class Tree:
         self.plugin = self.sources / "python" / "sphcloth" / "lib" / "sphclothplugin.so"
         self.plugin.parent.mkdir(exist_ok=True)
 
+    def text_of(self, source: Path) -> bytes:
+        """Return what the copy of a file holds."""
+        return source.read_bytes()
+
+    def _copy_if_changed(self, source: str | Path, target: str | Path) -> None:
+        """Whatever is copied is newer than what was built of it, also where a bug was left in."""
+        text = self.text_of(Path(source))
+        if not Path(target).exists() or Path(target).read_bytes() != text:
+            Path(target).write_bytes(text)
+
     def prepare(self, bugs: list[Bug]) -> None:
         """Configure and build what the bugs need, without any of them."""
-        release = ("-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}")
+        quick = (*QUICK, f"-DPython_EXECUTABLE={sys.executable}")
         if any(bug.tests == CORE for bug in bugs):
-            self._must("cmake", "-S", self.sources / CORE, "-B", self.core, *release)
+            self._must("cmake", "-S", self.sources / CORE, "-B", self.core, *quick)
             self.make_core()
             self._must(self.core / "test_core_plain")
         if any(bug.tests != CORE for bug in bugs):
-            self._must("cmake", "-S", self.sources, "-B", self.build, *release)
+            self._must("cmake", "-S", self.sources, "-B", self.build, *quick)
             self.make()
             shutil.copy(self.plugin, self.right)
 
     def make(self) -> None:
         """Build the plugin and put it into the package."""
-        self._must("cmake", "--build", self.build, "-j2")
+        self._must("cmake", "--build", self.build, CORES)
         self._install(self.build / "sphclothplugin.so")
 
     def make_core(self) -> None:
         """Build the tests of headers."""
-        self._must("cmake", "--build", self.core, "-j2", "--target", "test_core_plain")
+        self._must("cmake", "--build", self.core, CORES, "--target", "test_core_plain")
 
     def _install(self, library: Path) -> None:
         self.plugin.unlink(missing_ok=True)
@@ -305,44 +331,73 @@ class Tree:
         return self._run(*command, patience=PATIENCE)
 
 
-def _copy_if_changed(source: str | Path, target: str | Path) -> None:
-    """Whatever is copied is newer than what was built of it, also where a bug was left in."""
-    if not Path(target).exists() or Path(target).read_bytes() != Path(source).read_bytes():
-        shutil.copyfile(source, target)
-
-
 def _no_rubbish(_: str, names: list[str]) -> set[str]:
     return {name for name in names if name in ("__pycache__", "lib") or name.endswith(".png")}
 
 
-def main() -> int:
-    """Return 0 if every bug is caught."""
+def told(results: list[dict]) -> Table:
+    """Return the table of what is known."""
+    table = Table("bug", "file", "caught by")
+    for one in results:
+        table.add_row(one["bug"], one["file"], one["caught"] or "[red]none[/]")
+    return table
+
+
+def recorded(path: Path | None) -> dict[str, dict]:
+    """Return the results of earlier runs by the state they are of."""
+    if path is None or not path.is_file():
+        return {}
+    return {one["state"]: one for one in json.loads(path.read_text()) if "state" in one}
+
+
+def write(path: Path | None, results: list[dict]) -> None:
+    """Keep the results at once: a run may be ended at any time."""
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(results, indent=2) + "\n")
+
+
+def parsed() -> argparse.Namespace:
+    """Return the arguments."""
     parser = argparse.ArgumentParser()
     parser.add_argument("names", nargs="*", help="bugs whose name holds one of these; all without")
     parser.add_argument("--folder", type=Path, help="keep copy and build here, for another time")
-    parser.add_argument("--json", type=Path, help="write the result here")
-    given = parser.parse_args()
+    parser.add_argument("--json", type=Path, help="write the results here, and go on from them")
+    parser.add_argument("--count", type=int, default=len(BUGS), help="run no more bugs than these")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Return 0 if every bug that was chosen is caught, also those left for another run."""
+    given = parsed()
     bugs = [b for b in BUGS if not given.names or any(name in b.name for name in given.names)]
     if old := [
         f"{b.name}: {b.places()} times in {b.file}: {b.old!r}" for b in bugs if b.places() != 1
     ]:
         sys.exit("\n".join(old))
-    table, found = Table("bug", "file", "caught by"), []
+    known, states = recorded(given.json), {bug.state(): bug for bug in BUGS}
+    chosen = [state for state, bug in states.items() if bug in bugs]
     with tempfile.TemporaryDirectory() as scratch:
         tree = Tree((given.folder or Path(scratch)).absolute())
-        tree.prepare(bugs)
-        for bug in bugs:
-            begin = time.monotonic()
-            seen = tree.caught(bug)
-            seconds = round(time.monotonic() - begin)
-            found.append({"bug": bug.name, "file": bug.file, "caught": seen, "seconds": seconds})
-            table.add_row(bug.name, bug.file, seen or "[red]none[/]")
-            print(f"{bug.name}: {seen or 'none'} ({seconds} s)", flush=True)
-    Console().print(table)
-    if given.json is not None:
-        given.json.parent.mkdir(parents=True, exist_ok=True)
-        given.json.write_text(json.dumps(found, indent=2) + "\n")
-    return 0 if all(one["caught"] for one in found) else 1
+        new = [state for state in chosen if state not in known][: given.count]
+        tree.prepare([states[state] for state in new])
+        for state in new:
+            known[state] = {**outcome(tree, states[state]), "state": state}
+            write(given.json, [known[one] for one in states if one in known])
+    results = [known[state] for state in chosen if state in known]
+    Console().print(told(results))
+    left = len(chosen) - len(results)
+    print(f"{left} bugs are left for another run")
+    return 0 if all(one["caught"] for one in results) and not left else 1
+
+
+def outcome(tree: Tree, bug: Bug) -> dict:
+    """Run the tests of a bug; tell and return what came out."""
+    begin = time.monotonic()
+    seen = tree.caught(bug)
+    seconds = round(time.monotonic() - begin)
+    print(f"{bug.name}: {seen or 'none'} ({seconds} s)", flush=True)
+    return {"bug": bug.name, "file": bug.file, "caught": seen, "seconds": seconds}
 
 
 if __name__ == "__main__":

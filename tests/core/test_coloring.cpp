@@ -5,8 +5,10 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <array>
 #include <set>
 #include <utility>
+#include <vector>
 
 using namespace sphcloth;
 
@@ -22,6 +24,12 @@ BOOST_AUTO_TEST_CASE(no_two_constraints_of_one_color_share_a_vertex)
   for (std::size_t m = 0; m < mesh.hinges.size(); m++)
     for (int v : mesh.hinges[m]) BOOST_CHECK(seen.insert({color[m], v}).second);
   BOOST_CHECK(n > 0 && n < 40);
+}
+
+BOOST_AUTO_TEST_CASE(no_constraints_have_no_color)
+{
+  int n = 7;
+  BOOST_CHECK(color_constraints(std::vector<std::array<int, 2>>(), 3, n).empty() && n == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

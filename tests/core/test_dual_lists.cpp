@@ -115,6 +115,25 @@ BOOST_AUTO_TEST_CASE(inner_list_holds_all_within_the_support_while_particles_mov
   BOOST_CHECK(w.inner_skin(1, 1) > 0.0 && w.inner_skin(1, 1) < 0.5 * SKIN);
 }
 
+BOOST_AUTO_TEST_CASE(inner_list_leaves_out_what_is_outside_its_skin)
+{
+  Watched w;
+  int n = 0;
+  for (int i = 0; i < w.owned; i++) {
+    const int slot = w.lists.slot(i);
+    w.lists.refresh(slot);
+    const double reach = SUPPORT + w.lists.inner_skin(slot, 1) + 1e-5;    // and rounding
+    BOOST_CHECK(reach < SUPPORT + SKIN);
+    const NeighborSpan front = w.lists(slot, 1);
+    for (const int *j = front.of; j < front.of + front.n; j++, n++) {
+      double r_sq = 0.0;
+      for (int d = 0; d < 3; d++) r_sq += std::pow(w.walk.x[3 * i + d] - w.walk.x[3 * *j + d], 2);
+      BOOST_CHECK(r_sq < reach * reach);
+    }
+  }
+  BOOST_CHECK(n > 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_list_that_is_pruned_late_is_as_good_as_one_pruned_at_once)
 {
   Watched w;

@@ -111,6 +111,63 @@ def bugs(path: Path) -> str:
     return _told(told, table(["bug", "caught by", "s"], rows))
 
 
+def mutants(path: Path) -> str:
+    """Mutants by folder and by operator, and a verdict on each that the tests did not see."""
+    found = json.loads(path.read_text())
+    all_of_them = found["mutants"]
+    total, _, _, equivalent, open_, left = _counts(all_of_them)
+    told = (
+        f"{total} mutants of {found['places']} places: {total - equivalent - open_ - left} caught, "
+        f"{equivalent} equivalent, {left} not caught, {open_} not tried with all tests yet."
+    )
+    heads = ["mutants", "caught", "by new tests", "equivalent", "open", "not caught"]
+    parts = [
+        table(
+            [head, *heads], [[name, *_counts(of)] for (name,), of in _by(all_of_them, head).items()]
+        )
+        for head in ("folder", "operator")
+    ]
+    verdicts = [
+        [f"`{Path(one['file']).name}:{one['line']}`", _code(one), _verdict(one)]
+        for one in all_of_them
+        if one["survived"] or not one["caught"]
+    ]
+    return _told(told, "\n\n".join([*parts, table(["place", "mutant", "verdict"], verdicts)]))
+
+
+def _counts(some: Sequence[dict]) -> list[int]:
+    """Return how many: all, caught by old tests, by new ones, equivalent, open, not caught."""
+    kinds = [_kind(one) for one in some]
+    names = ("caught", "new", "equivalent", "open", "left")
+    return [len(some), *(kinds.count(name) for name in names)]
+
+
+def _kind(one: dict) -> str:
+    if one["caught"]:
+        return "new" if one["survived"] else "caught"
+    if one["equivalent"]:
+        return "equivalent"
+    return "left" if one["survived"] else "open"
+
+
+def _code(one: dict) -> str:
+    """Return both ways to write it, as a cell of a table."""
+    ways = [f"`` {way} ``" for way in (one["right"], one["wrong"]) if way]
+    ways += ["nothing"] * (2 - len(ways))
+    return " → ".join(ways).replace("|", "\\|")
+
+
+def _verdict(one: dict) -> str:
+    match _kind(one):
+        case "equivalent":
+            return f"equivalent: {one['equivalent']}"
+        case "left":
+            return "**not caught**"
+        case "open":
+            return f"open: not caught by {len(one['tried'])} files of tests"
+    return f"caught by {_test(one['caught'])}"
+
+
 def _test(caught: str) -> str:
     file, _, test = caught.partition("::")
     if not test:
@@ -184,6 +241,7 @@ TABLES: dict[str, tuple[str, Callable[[Path], str]]] = {
     "equality_large": ("equality_large.json", equality),
     "kill": ("kill.json", kills),
     "mutate": ("mutate.json", bugs),
+    "mutants": ("mutants.json", mutants),
     "fuzz": ("fuzz.xml", fuzz),
     "steps": ("steps.json", steps),
     "pour": ("pour.json", pouring),

@@ -1,0 +1,1 @@
+"""Mutants drawn at random: ``python tests/mutate_random.py``."""

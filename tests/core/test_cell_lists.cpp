@@ -84,13 +84,6 @@ BOOST_AUTO_TEST_CASE(lists_of_several_types_each_pair_with_its_reach)
   check_lists(cloud(500, 3, 1, 1, 1, 8), 400, 3, reach);
 }
 
-BOOST_AUTO_TEST_CASE(a_type_without_particles_has_none_listed)
-{
-  Cloud p = cloud(300, 2, 1, 1, 1, 8);
-  for (int &t : p.type) t = 2 * t - 1;    // 1 and 3
-  check_lists(p, 200, 3, std::vector<double>(16, 0.3));
-}
-
 BOOST_AUTO_TEST_CASE(no_owned_particle_or_none_at_all)
 {
   const std::vector<double> reach{0, 0, 0, 0.21};

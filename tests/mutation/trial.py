@@ -191,5 +191,6 @@ def _failed_test(code: int, out: str) -> str:
         return failed[1]
     if code in (2, 3, 4, 5) and "::" not in out:
         sys.exit(f"tests could not be run ({code}):\n{out[-3000:]}")
-    started = re.findall(r"^(\S+\.py::.*?)(?: PASSED.*| FAILED.*| Fatal Python.*)?$", out, re.MULTILINE)
+    end = r"(?: PASSED.*| FAILED.*| Fatal Python.*)?$"
+    started = re.findall(rf"^(\S+\.py::.*?){end}", out, re.MULTILINE)
     return f"{started[-1] if started else 'pytest'}: ended with {code}"

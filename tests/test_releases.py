@@ -84,7 +84,8 @@ def stubs(folder: Path, release: int) -> None:
             template <class F, class... Args> std::string format(F, Args &&...) { return {}; }
             }""",
         "pair.h": "#pragma once\nnamespace LAMMPS_NS { struct Pair { int comm_forward; }; }",
-        "lammps.h": "#pragma once\nnamespace LAMMPS_NS { struct Update; struct LAMMPS { Update *update; }; }",
+        "lammps.h": "#pragma once\n"
+        "namespace LAMMPS_NS { struct Update; struct LAMMPS { Update *update; }; }",
         "update.h": """#pragma once
             #include <map>
             #include <string>

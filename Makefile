@@ -178,7 +178,7 @@ $(VENV)/strict: $(VENV)/installed
 # the tests of core/, which need neither LAMMPS nor MPI
 build/core/test_core: $(VENV)/installed $(wildcard tests/core/*)
 	$(BIN)/cmake -S tests/core -B build/core -DCMAKE_BUILD_TYPE=Release -DPython_EXECUTABLE=$(BIN)/python
-	$(BIN)/cmake --build build/core
+	$(BIN)/cmake --build build/core --parallel $(WORKERS)
 
 clean:
 	rm -rf build dist demo $(VENV)

@@ -146,7 +146,7 @@ def _check_python(probed: dict, output: str) -> Check:
     if probed["plugin_release"] is None:
         return Check(name, False, f"no {PLUGIN} in {plugin_path()}", REINSTALL)
     remedy = "" if probed["announced"] else ANNOUNCE
-    return _check_styles(name, probed["missing"], output) or Check(
+    return _check_styles(name, probed["missing"], len(STYLES), output) or Check(
         name, True, "all registered", remedy
     )
 
@@ -173,14 +173,14 @@ def _check_lmp(name: str, command: list[str], worlds: list[int]) -> Check:
     expected = [style for style in STYLES if style[0] != "run"]
     missing = [" ".join(style) for style in expected if style not in loaded]
     found_well = Check(name, True, f"one run, ranks: {found[0]}, all styles")
-    return _check_styles(name, missing, output) or found_well
+    return _check_styles(name, missing, len(expected), output) or found_well
 
 
-def _check_styles(name: str, missing: list[str], output: str) -> Check | None:
+def _check_styles(name: str, missing: list[str], expected: int, output: str) -> Check | None:
     """Return a failed check that names the missing styles, None if there are none."""
     if not missing:
         return None
-    absent = "all" if len(missing) == len(STYLES) else ", ".join(missing)
+    absent = "all" if len(missing) == expected else ", ".join(missing)
     return Check(
         name, False, f"missing styles: {absent}. {_first_error(output)}".strip(), REINSTALL
     )

@@ -129,7 +129,7 @@ def test_a_weight_on_a_sheet_that_is_a_wall_hangs_at_the_pins(tmp_path: Path) ->
 
 
 def test_the_example_pour_hangs_on_its_pins(tmp_path: Path) -> None:
-    result = run_case("pour", tmp_path, across="14", time="1.5", water="0.02")
+    result = run_case("pour", tmp_path, across="14", time="2", water="0.02")
     for name in ("momentum", "crossed"):
         assert result.metrics[name].passed, (name, result.metrics[name].value)
     assert abs(result.metrics["pins"].value) < 0.05

@@ -13,7 +13,6 @@ import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +22,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from sphcloth.errors import UserError
 from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
+from sphcloth.plugin import PLUGIN, lammps_release, plugin_folder
 from sphcloth.programs import installed_version
 from sphcloth.results import write_json
 from sphcloth.run import (
@@ -293,6 +293,6 @@ def _fingerprint(script: Path) -> str:
 @cache
 def _code() -> str:
     """Return the versions and a hash of the plugin: another build is another result."""
-    plugin = resources.files("sphcloth") / "lib" / "sphclothplugin.so"
+    plugin = plugin_folder(lammps_release()) / PLUGIN
     versions = [installed_version(name) for name in ("lammps", "sphcloth")]
     return " ".join([*versions, hashlib.sha256(plugin.read_bytes()).hexdigest()])

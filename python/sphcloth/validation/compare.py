@@ -36,13 +36,13 @@ def orders(errors: Sequence[float], resolutions: Sequence[float]) -> dict[str, f
     """Return the orders of convergence over several runs, the coarse one first.
 
     ``order`` is the slope of the logarithms by least squares, ``order_least`` the smallest order
-    between two runs in a row; NaN where an error is zero.
+    between two runs in a row; NaN where an error is zero or no number.
 
     Args:
         errors: of the runs; the sign does not matter.
         resolutions: as in :func:`order`.
     """
-    if not np.all(np.asarray(errors)):
+    if not (np.all(errors) and np.all(np.isfinite(errors))):
         return {"order": math.nan, "order_least": math.nan}
     slope = np.polyfit(np.log(resolutions), -np.log(np.abs(errors)), 1)[0]
     pairs = zip(pairwise(errors), pairwise(resolutions), strict=True)

@@ -271,7 +271,7 @@ def _plot(pool: Pool, path: Path) -> None:
 
 CASE = Case(
     "pour",
-    "the example pour at rest: sag, depth and pins of a filled sheet of springs",
+    "the example pour at rest: filled sheet of springs",
     PARAMETERS,
     QUANTITIES,
     measure,

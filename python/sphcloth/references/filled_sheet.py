@@ -112,13 +112,13 @@ class FilledSheet:
             force = self._force(x)
             residual = float(np.max(np.linalg.norm(force[~self.held], axis=1)))
             if residual <= BALANCED * self.weight:
-                return self._result(x, residual)
+                return self._result(x, force, residual)
             step = self._newton(x, force)
             x, energy = self._descend(x, step, force, energy)
         raise UserError(f"the sheet is not at rest: {residual:.3g} N are left after {STEPS} steps")
 
-    def _result(self, x: NDArray[np.float64], residual: float) -> AtRest:
-        lift = -float(np.sum(self._force(x)[self.held, 2]))
+    def _result(self, x: NDArray, force: NDArray, residual: float) -> AtRest:
+        lift = -float(np.sum(force[self.held, 2]))
         return AtRest(x, self._level(x), lift, residual)
 
     def _descend(

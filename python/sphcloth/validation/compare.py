@@ -19,6 +19,11 @@ def rms(values: ArrayLike) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
+def late(times: NDArray[np.float64], share: float) -> NDArray[np.bool_]:
+    """Tell which times are in the last share of a run, over which is averaged."""
+    return times >= times[-1] - share * (times[-1] - times[0])
+
+
 def order(errors: Sequence[float], resolutions: Sequence[float]) -> float:
     """Return the order of convergence between two runs, the coarse one first.
 

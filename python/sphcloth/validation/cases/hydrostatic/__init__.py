@@ -173,7 +173,7 @@ def _lowest(column: TaitColumn, rest: State, layers: int) -> dict[str, float]:
 def _base_force(run: Run) -> float:
     """Return the relative excess of the force on the base over the weight, late in the run."""
     time = run.thermo["Time"]
-    late = np.flatnonzero(_late(time)[:-1])
+    late = np.flatnonzero(compare.late(time, LATE)[:-1])
     if not np.any(np.diff(time)[late]):
         raise UserError("--set time: too short for two rows of the log at rest: take it larger")
     share = run.thermo["v_base_force"][late] / run.thermo["v_weight"][late]
@@ -183,14 +183,10 @@ def _base_force(run: Run) -> float:
 
 def _largest_speed(run: Run) -> float:
     """Return the largest speed of a particle late in the run, m/s."""
-    late = np.flatnonzero(_late(run.trajectory.times))
+    late = np.flatnonzero(compare.late(run.trajectory.times, LATE))
     return max(
         float(np.max(np.linalg.norm(run.trajectory[frame].velocities, axis=1))) for frame in late
     )
-
-
-def _late(times: NDArray) -> NDArray[np.bool_]:
-    return times >= times[-1] - LATE * (times[-1] - times[0])
 
 
 def _drift(run: Run) -> float:

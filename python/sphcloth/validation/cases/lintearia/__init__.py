@@ -154,7 +154,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         **orders,
         "order_missing": compare.order_missing(orders, 1.0),
         "first_layer": pool.first_layer / pool.spacing,
-        "speed": float(np.mean(fine.thermo["v_speed"][_late(fine.thermo["Time"])])),
+        "speed": float(np.mean(fine.thermo["v_speed"][compare.late(fine.thermo["Time"], LATE)])),
         "tension_reference": exact.tension,
         "sag_reference": exact.sag,
         "depth_reference": exact.depth,
@@ -220,10 +220,10 @@ def pool_of(run: Run, values: Mapping[str, Value], across: int) -> Pool:
     """Average over the last frames and rows of the log."""
     spacing = values["L"] / across
     width = values["layers"] * spacing
-    frames = [run.trajectory[at] for at in np.flatnonzero(_late(run.trajectory.times))]
+    frames = [run.trajectory[at] for at in np.flatnonzero(compare.late(run.trajectory.times, LATE))]
     arc, sheets = zip(*(_rows(frame) for frame in frames), strict=True)
     steps = np.linalg.norm(np.diff(sheets, axis=1), axis=2)
-    sheet, rows = np.mean(sheets, axis=0), _late(run.thermo["Time"])
+    sheet, rows = np.mean(sheets, axis=0), compare.late(run.thermo["Time"], LATE)
     pins = float(np.mean(sheet[[0, -1], 1]))
     pull = (run.thermo[name][rows].mean() / width for name in ("v_pull_x", "v_pull_z"))
     waters = [frame.select(1).positions[:, [0, 2]] for frame in frames]
@@ -238,10 +238,6 @@ def pool_of(run: Run, values: Mapping[str, Value], across: int) -> Pool:
         float(np.mean([_first_layer(w, s, spacing) for w, s in zip(waters, sheets, strict=True)])),
         _below(waters[-1], sheets[-1]),
     )
-
-
-def _late(times: NDArray) -> NDArray[np.bool_]:
-    return times >= times[-1] - LATE * (times[-1] - times[0])
 
 
 def _rows(frame: Frame) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

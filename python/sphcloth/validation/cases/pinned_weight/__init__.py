@@ -117,7 +117,7 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
 
 def _late(run: Run) -> NDArray[np.bool_]:
     time = run.thermo["Time"]
-    return time >= time[-1] - LATE * (time[-1] - time[0])
+    return compare.late(time, LATE)
 
 
 def _mean(run: Run, name: str) -> float:

@@ -99,7 +99,7 @@ class Pool:
     def frames(self) -> list[Frame]:
         """The last frames."""
         times = self.run.trajectory.times
-        return [self.run.trajectory[at] for at in np.flatnonzero(late(times))]
+        return [self.run.trajectory[at] for at in np.flatnonzero(compare.late(times, LATE))]
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:
@@ -123,7 +123,7 @@ class Pool:
         flat = self.vertices.copy()
         side = np.max(np.abs(flat[:, :2]))
         bowl = 4 / 3 * self.exact_sag * np.prod(1 - (flat[:, :2] / side) ** 2, axis=1)
-        flat[~self.sheet.held, 2] -= bowl[~self.sheet.held] + flat[~self.sheet.held, 2] - self.pins
+        flat[~self.sheet.held, 2] = self.pins - bowl[~self.sheet.held]
         return self.sheet.at_rest(flat)
 
     @cached_property
@@ -182,7 +182,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     refined = Refinement.of(partial(_run, values, runner), three(values["across"]))
     pools = refined.each(lambda run, across: Pool(run, values, across))
     pool, fine = pools[-1], refined.fine
-    force = fine.thermo["v_pins"][late(fine.thermo["Time"])] / pool.sheet.weight
+    force = fine.thermo["v_pins"][compare.late(fine.thermo["Time"], LATE)] / pool.sheet.weight
     _plot(pool, runner.picture)
     return {
         "pins": float(np.mean(force)) - 1,
@@ -201,11 +201,6 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "speed_sheet": pool.speed(2),
         **refined.orders([each.depth_error for each in pools]),
     }
-
-
-def late(times: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which times are in the last share of a run, over which is averaged."""
-    return times >= times[-1] - LATE * (times[-1] - times[0])
 
 
 def particle_mass(spacing: float) -> float:

@@ -18,8 +18,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mutate import ROOT, SOURCE
-from mutation.population import Population, sources
-from mutation.trial import CORE, MutatedTree, Record
+from mutation.population import Population, faults, sources
+from mutation.record import CORE, Record, target_of
+from mutation.sites import FAULT
+from mutation.trial import MutatedTree
+from mutation.trials import Trials
 from rich.console import Console
 from rich.table import Table
 
@@ -27,8 +30,9 @@ STYLES = "tests/styles"
 # draws at random itself
 NOT_REPEATED = {"tests/styles/test_fuzz.py"}
 MORE = ("tests/test_examples.py",)
-UNTRIED = {"caught": "", "tried": {}, "left": {}, "reached_by": 0, "seconds": 0.0}
-UNTRIED |= {"survived": False}  # all tests that there were; if caught at all, by a new one
+# s of recorded time that tests may take with one mutant, before the next mutant has its turn
+BUDGETS = (10.0, 40.0, 120.0)
+UNTRIED = {"caught": "", "new": False, "judged": False, "reached_by": 0, "tried": 0, "left": 0}
 EQUIVALENT = ROOT / "tests/mutation/equivalent.toml"
 
 
@@ -41,122 +45,165 @@ class Run:
     population: Population
     tree: MutatedTree
     end: float
-    digests: dict[str, str] = field(default_factory=dict)
+    patience: float
     record: Record = field(default_factory=Record)
-    sound: set[str] = field(default_factory=set)
+    trials: Trials = field(default_factory=Trials)
     known: dict[int, dict] = field(default_factory=dict)
 
-    def left(self) -> bool:
-        """Return whether there is time for more."""
-        return time.monotonic() < self.end
+    def left(self) -> float:
+        """Return for how many seconds more tests may be started."""
+        return self.end - time.monotonic()
 
     def recorded(self, target: str) -> bool:
-        """Run a file of tests without a mutant, unless that is known or there is no time for it."""
-        path = self.folder / "record.json"
-        known = json.loads(path.read_text()) if path.is_file() else {}
+        """Run a file of tests without a mutant, as far as that is not known and there is time."""
+        path = self.folder / "records" / f"{target.replace('/', '.')}.json"
         digest = self._digest(target)
-        if known.get(target, {}).get("digest") != digest:
-            if not self.left():
+        known = json.loads(path.read_text()) if path.is_file() else {}
+        if known.get("digest") != digest:
+            known = {"digest": digest, "complete": False, "tests": {}}
+        if not known["complete"]:
+            if self.left() < 0:
                 return False
-            known[target] = {"digest": digest, "tests": self._recorded(target)}
+            known |= self._recorded(target, known["tests"])
+            path.parent.mkdir(exist_ok=True)
             path.write_text(json.dumps(known))
-        self.digests[target] = digest
-        self.record.tests |= known[target]["tests"]
-        return True
+        self.record.tests |= known["tests"]
+        self.trials.digests |= {name: digest for name in known["tests"]}
+        if known["complete"]:
+            self.trials.first.setdefault(target, sorted(known["tests"]))
+        return known["complete"]
 
-    def _recorded(self, target: str) -> dict[str, dict]:
+    def _recorded(self, target: str, known: dict[str, dict]) -> dict:
         begin = time.monotonic()
         if target == CORE:
             tests = {case: self.tree.record_case(case) for case in self.tree.cases()}
+            found = {"complete": True, "tests": tests}
         else:
-            tests = self.tree.record_file_of(target)
-        failed = [name for name, test in tests.items() if not test["passed"]]
+            found = self.tree.record_file_of(target, known, self.left())
+        failed = [name for name, test in found["tests"].items() if not test["passed"]]
         print(
-            f"{target}: {len(tests)} tests, {time.monotonic() - begin:.0f} s,"
+            f"{target}: {len(found['tests'])} tests, {time.monotonic() - begin:.0f} s,"
             f" without a mutant fail: {', '.join(failed) or 'none'}",
             flush=True,
         )
-        return tests
+        return found
 
     def _digest(self, target: str) -> str:
         digest = hashlib.sha256(f"{self.population.state()} {self.population.passed_over}".encode())
         folder, pattern = ("tests/core", "*.cpp") if target == CORE else (".", target)
-        for path in sorted((ROOT / folder).glob(pattern)):
+        for path in sorted((self.tree.sources / folder).glob(pattern)):
             digest.update(path.read_bytes())
         return digest.hexdigest()[:16]
 
-    def try_all(self, target: str, numbers: list[int], patience: float) -> None:
-        """Try the tests of a file with the mutants that are not caught yet."""
-        for mutant in self.population.described():
-            number, digest = mutant["number"], self.digests[target]
-            one = self.known[number] = UNTRIED | self.known.get(number, {}) | mutant
-            if number in numbers and not one["caught"] and one["tried"].get(target) != digest:
-                if not self.left():
-                    return
-                self._try(one, target, patience)
-                self.write()
+    def try_all(self, numbers: list[int]) -> bool:
+        """Try the mutants in rounds of more and more time; return whether that came to an end."""
+        for budget in (*(one for one in BUDGETS if one < self.patience), self.patience):
+            for number in numbers:
+                if self.left() < 0:
+                    return False
+                self._try(number, budget)
+        return True
 
-    def _try(self, one: dict, target: str, patience: float) -> None:
-        begin = time.monotonic()
-        caught, left, reaching = self._caught(one["number"], target, patience)
-        one["caught"] = caught
-        one["tried"] = one["tried"] | {target: self.digests[target]}
-        one["left"] = {k: n for k, n in one["left"].items() if k != target} | {target: left}
-        one["reached_by"] += reaching
-        one["seconds"] = round(one["seconds"] + time.monotonic() - begin, 1)
-        if not caught and set(targets([])) <= set(one["tried"]):
-            one["survived"] = True
-        if reaching:
+    def _try(self, number: int, budget: float) -> None:
+        """Run tests until one fails, all that reach the mutant have passed or the time is spent."""
+        one = self.known[number]
+        before = one["judged"]
+        while not one["caught"]:
+            spent = self.record.seconds(self.trials.passed_by(number))
+            chunk = self._next(number, budget - spent) if spent < budget else []
+            if not chunk:
+                break
+            one["caught"] = self._failing(number, chunk)
+            self._describe(one)
+            self._keep()
+        self._describe(one)
+        if one["judged"] and not before:
             place = f"{one['file']}:{one['line']}"
-            print(f"{one['number']} {place}: {caught or f'not by {target}'}", flush=True)
+            print(f"{number} {place}: {one['caught'] or 'not caught'}", flush=True)
 
-    def _caught(self, number: int, target: str, patience: float) -> tuple[str, int, int]:
-        """Return the test that fails, how many were left out as too slow, and how many reach it."""
-        direct, shared = self.record.reaching(number, target)
-        spent, tried = 0.0, 0
-        for chunk, seconds in self.record.chunks(direct + shared):
-            if spent > patience:
-                return "", len(direct + shared) - tried, len(direct)
-            spent, tried = spent + seconds, tried + len(chunk)
-            if failed := self._failing(number, chunk, seconds):
-                return failed, 0, len(direct)
-        return "", 0, len(direct)
+    def _next(self, number: int, seconds: float) -> list[str]:
+        """Return tests of one call: first the cases of core/, then by what a catch costs."""
+        folder = self.known[number]["folder"]
+        passed, caught = self.trials.history(
+            one for n, one in self.known.items() if one["folder"] == folder
+        )
+        done = set(self.trials.passed_by(number))
+        direct = self.record.reaching(number)
+        for names in (
+            [name for name in direct if target_of(name) == CORE],
+            direct,
+            self.record.beside(direct),
+        ):
+            if left := [name for name in names if name not in done]:
+                order = self.record.ordered(left, passed, caught)
+                return order if target_of(order[0]) == CORE else self.record.first(order, seconds)
+        return []
 
-    def _failing(self, number: int, chunk: list[str], seconds: float) -> str:
+    def _failing(self, number: int, chunk: list[str]) -> str:
         """A test that fails without the mutant, too, says nothing."""
         while chunk:
+            seconds = self.record.seconds(chunk)
             failed = self.tree.failing(number, chunk, seconds)
             test = failed.split(": ")[0]
-            if not failed or test in self.sound or test not in chunk:
+            if not failed:
+                self.trials.note(number, chunk)
+                return ""
+            if test in self.trials.sound or test not in chunk:
                 return failed
             if not self.tree.failing(None, [test], seconds):
-                self.sound.add(test)
+                self.trials.sound.add(test)
                 return failed
             print(f"{test} fails alone without a mutant", flush=True)
             self.record.tests[test]["passed"] = False
             chunk = [name for name in chunk if name != test]
         return ""
 
+    def _describe(self, one: dict) -> None:
+        """Count the tests, and say whether all that may be run have been."""
+        number = one["number"]
+        reaching = self.record.reaching(number)
+        passed = self.trials.passed_by(number)
+        one["reached_by"] = len(reaching)
+        one["left"] = len(set(reaching) - set(passed))
+        one["tried"] = len(passed)
+        one["judged"] = bool(
+            one["caught"] or not one["left"] or self.record.seconds(passed) >= self.patience
+        )
+        one["new"] = bool(one["caught"]) and self.trials.is_new(one["caught"].split(": ")[0])
+
     def load(self) -> None:
-        """Take the results of an earlier run of the same mutants."""
+        """Take what is known of the same mutants."""
+        before = {}
         if self.results.is_file():
-            before = json.loads(self.results.read_text())
-            if before["state"] == self.population.state():
-                self.known = {one["number"]: one for one in before["mutants"]}
+            kept = json.loads(self.results.read_text())
+            if kept["state"] == self.population.state():
+                before = {one["number"]: one for one in kept["mutants"] + kept["faults"]}
+        for mutant in self.population.described():
+            self.known[mutant["number"]] = UNTRIED | before.get(mutant["number"], {}) | mutant
+        self.trials = Trials.kept(self.folder / "trials.json", self.population.state())
+
+    def _keep(self) -> None:
+        self.trials.keep(self.folder / "trials.json", self.population.state())
+        self.write()
 
     def write(self) -> None:
         """Keep the results, with what is known of equivalence today."""
         self.results.parent.mkdir(parents=True, exist_ok=True)
         reasons = equivalents()
+        all_ = [
+            one | {"equivalent": reasons.get(key(one), "")} for _, one in sorted(self.known.items())
+        ]
         what = {
             "state": self.population.state(),
             "seed": self.population.seed,
             "count": self.population.count,
+            "patience": self.patience,
             "places": sum(map(len, self.population.orders.values())),
             "passed_over": len(self.population.passed_over),
-            "mutants": [
-                one | {"equivalent": reasons.get(key(one), "")}
-                for _, one in sorted(self.known.items())
+            "mutants": [one for one in all_ if one["operator"] != FAULT],
+            "faults": [
+                one | {"what": fault["what"]}
+                for one, fault in zip(all_[self.population.count :], faults(), strict=True)
             ],
         }
         self.results.write_text(json.dumps(what, indent=1) + "\n")
@@ -204,7 +251,7 @@ def told(known: dict[int, dict]) -> Table:
     for number, one in sorted(known.items()):
         if not one["caught"]:
             place = f"{one['file']}:{one['line']}"
-            counts = (str(one["reached_by"]), str(sum(one["left"].values())))
+            counts = (str(one["reached_by"]), str(one["left"]))
             table.add_row(str(number), place, one["right"], one["wrong"], *counts)
     return table
 
@@ -227,22 +274,23 @@ def main() -> int:
     """Return 0 if all has been run, whatever was found."""
     given = parsed()
     end = time.monotonic() + 60 * given.minutes
-    population = Population(sources(ROOT / SOURCE), given.seed, given.count)
-    tree = built(given.folder.absolute(), population)
-    run = Run(given.folder.absolute(), given.json, population, tree, end)
+    population = Population(sources(ROOT / SOURCE), given.seed, given.count, faults=faults())
+    folder = given.folder.absolute()
+    tree = built(folder, population)
+    run = Run(folder, given.json, population, tree, end, given.patience)
     run.load()
-    numbers = given.numbers or list(range(given.count))
-    for target in targets(given.tests):
-        if not run.recorded(target):
-            break
-        run.try_all(target, numbers, given.patience)
+    # an argued one is tried behind all others, which puts the argument to the test
+    argued = [number for number, one in run.known.items() if key(one) in equivalents()]
+    numbers = given.numbers or sorted(run.known, key=lambda number: number in argued)
+    complete = all(run.recorded(target) for target in targets(given.tests))
+    complete = complete and run.try_all(numbers)
     run.write()
     Console().print(told(run.known))
     caught = sum(bool(one["caught"]) for one in run.known.values())
     print(f"{caught} of {len(run.known)} mutants caught")
-    if not run.left():
+    if not complete:
         print("there is more to run: the same command goes on")
-    return 0 if run.left() else 1
+    return 0 if complete else 1
 
 
 if __name__ == "__main__":

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import json
+import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from .schemata import with_mutants
-from .sites import Mutant, drawn
+from .sites import FAULT, Mutant, drawn, hole
 
 FOLDERS = ("core", "stepping", "contact")
+# what the sources had wrong once: tried with those drawn, and counted apart
+FAULTS = Path(__file__).with_name("faults.toml")
 
 
 @dataclass
@@ -22,6 +25,7 @@ class Population:
     seed: int
     count: int
     passed_over: set[tuple[str, int, int]] = field(default_factory=set)
+    faults: list[dict] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Draw in each file all its places once."""
@@ -34,7 +38,7 @@ class Population:
         for file, order in self.orders.items():
             right = [m for m in order if (file, m.start, m.end) not in self.passed_over]
             chosen += right[: self.shares[file]]
-        return chosen
+        return chosen + [_put_back(self.sources[one["file"]], one) for one in self.faults]
 
     def written(self) -> dict[str, bytes]:
         """Return the files that have mutants, with all of them as choices."""
@@ -76,7 +80,7 @@ class Population:
 
     def state(self) -> str:
         """Return a digest of the sources and the draw."""
-        digest = hashlib.sha256(f"{self.seed} {self.count}".encode())
+        digest = hashlib.sha256(f"{self.seed} {self.count} {self.faults}".encode())
         for file, text in sorted(self.sources.items()):
             digest.update(file.encode() + text)
         return digest.hexdigest()[:16]
@@ -90,6 +94,21 @@ class Population:
         """Take what was passed over in an earlier run with the same sources."""
         if path.is_file() and (known := json.loads(path.read_text()))["state"] == self.state():
             self.passed_over = {tuple(one) for one in known["passed_over"]}
+
+
+def faults() -> list[dict]:
+    """Return the faults of the past: file, right and wrong expression, and what went wrong."""
+    return tomllib.loads(FAULTS.read_text())["fault"]
+
+
+def _put_back(text: bytes, fault: dict) -> Mutant:
+    """Return a fault as a mutant, in whose right expression others may lie."""
+    right = fault["right"].encode()
+    if text.count(right) != 1:
+        raise ValueError(f"{fault['file']} has {text.count(right)} times: {fault['right']}")
+    start = text.index(right)
+    end, line = start + len(right), text.count(b"\n", 0, start) + 1
+    return Mutant(fault["file"], start, end, line, FAULT, hole(start, end), fault["wrong"])
 
 
 def sources(folder: Path) -> dict[str, bytes]:

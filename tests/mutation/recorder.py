@@ -1,7 +1,8 @@
 """A plugin of pytest: which mutants each test reaches, and how long it takes.
 
 What a fixture for several tests reaches counts for each test that uses it. ``SPHCLOTH_RECORD``
-names the file for the results.
+names the file of the results; the tests that it holds are not run again, and none is started after
+``SPHCLOTH_RECORD_SECONDS``.
 """
 
 from __future__ import annotations
@@ -20,13 +21,23 @@ class Recorder:
     """Reads and clears the bytes that the plugin of LAMMPS sets, also those of other ranks."""
 
     def __init__(self) -> None:
-        """Open the file that the C++ writes to."""
+        """Open the file that the C++ writes to, and take what is recorded already."""
+        self.results = Path(os.environ["SPHCLOTH_RECORD"])
+        self.tests: dict[str, dict] = json.loads(self.results.read_text())["tests"]
+        self.end = time.monotonic() + float(os.environ["SPHCLOTH_RECORD_SECONDS"])
+        self.left = 0
         with open(os.environ["SPHCLOTH_MUTANTS_REACHED"], "r+b") as file:
             self.bytes = mmap.mmap(file.fileno(), 0)
         self.kept: set[int] = set()  # of the test, from before its fixtures
         self.of_fixture: dict[str, tuple[set[int], float]] = {}
         self.made: set[str] = set()  # in the test that runs
-        self.tests: dict[str, dict] = {}
+
+    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
+        """Leave out what is recorded."""
+        known = [item for item in items if item.nodeid in self.tests]
+        items[:] = [item for item in items if item.nodeid not in self.tests]
+        config.hook.pytest_deselected(items=known)
+        self.left = len(items)
 
     def take(self) -> set[int]:
         """Return what was reached since the last call."""
@@ -50,6 +61,10 @@ class Recorder:
             seconds += 0.0 if name in self.made else alone
         test = self.tests.setdefault(item.nodeid, {"passed": True})
         test |= {"seconds": round(seconds, 2), "shared": shared, "reached": sorted(reached)}
+        self.left -= 1
+        self.write()
+        if time.monotonic() > self.end:
+            item.session.shouldstop = "no time for more"
         return done
 
     @pytest.hookimpl(wrapper=True)
@@ -74,8 +89,13 @@ class Recorder:
         )
 
     def pytest_sessionfinish(self) -> None:
-        """Write what was recorded."""
-        Path(os.environ["SPHCLOTH_RECORD"]).write_text(json.dumps(self.tests, indent=0))
+        """Tell that all is recorded, also where nothing was left."""
+        self.write()
+
+    def write(self) -> None:
+        """Keep what is recorded, since a run may be ended at any time."""
+        what = {"complete": self.left == 0, "tests": self.tests}
+        self.results.write_text(json.dumps(what, indent=0))
 
 
 def _shared_fixtures(item: pytest.Item) -> list[str]:

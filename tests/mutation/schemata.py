@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from .sites import HOLE, Mutant
+from .sites import FAULT, HOLE, Mutant
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
@@ -16,7 +16,7 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 def with_mutants(text: bytes, numbered: Sequence[tuple[int, Mutant]]) -> bytes:
     """Return a file in which each mutant is a choice by its number; lines keep their numbers."""
     # of two at one place the outer first
-    order = sorted(numbered, key=lambda one: (one[1].start, -one[1].end, -one[1].statement))
+    order = sorted(numbered, key=lambda one: (one[1].start, -one[1].end, -_rank(one[1])))
     return _written(text, 0, len(text), order).encode()
 
 
@@ -49,6 +49,11 @@ def _choice(text: bytes, number: int, mutant: Mutant, lower: list[tuple[int, Mut
     else:
         code = f"SPHCLOTH_CHOICE({number}, ({right}), ({wrong}))"
     return code + "\n" * lines
+
+
+def _rank(mutant: Mutant) -> int:
+    """A fault is a choice between whole expressions, with mutants in the right one."""
+    return 2 if mutant.operator == FAULT else int(mutant.statement)
 
 
 def _between(mutants: list[tuple[int, Mutant]], start: int, end: int) -> list[tuple[int, Mutant]]:

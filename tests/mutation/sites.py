@@ -22,6 +22,7 @@ DECORATION = re.compile(rb"SPHCLOTH_(?:INLINE|MULTIVERSION|LAMBDA)\b|__attribute
 # what is not compiled for a single target
 OTHER_TARGETS = "SPHCLOTH_X86_TARGETS"
 
+FAULT = "fault"  # in the place of an operator: one of the past
 # in a template, the bytes of an operand
 HOLE = re.compile("\0(\\d+):(\\d+)\0")
 
@@ -93,8 +94,13 @@ def drawn(file: str, text: bytes, seed: int) -> list[Mutant]:
     return chosen
 
 
+def hole(start: int, end: int) -> str:
+    """Return what stands in a template for the bytes of an operand."""
+    return f"\0{start}:{end}\0"
+
+
 def _hole(node: Node) -> str:
-    return f"\0{node.start_byte}:{node.end_byte}\0"
+    return hole(node.start_byte, node.end_byte)
 
 
 def _below(file: str, node: Node) -> Iterator[Mutant]:

@@ -1,4 +1,4 @@
-"""Tests against a mutant: those that reach it, cheapest first, until one fails."""
+"""The sources with all mutants in them, built; tests that are recorded, and run with a mutant."""
 
 from __future__ import annotations
 
@@ -8,66 +8,17 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from mutate import CORES, QUICK, ROOT, SOURCE, TEST_FAILURE, Tree
 
-CORE = "core"  # in the place of a file: the cases of Boost.Test
+from .record import CORE, target_of
+
 BYTES = 4096  # MOST in mutant.h
-# s of recorded time of the tests of one call of pytest: early ones are short, so that the first
-# failure is near
-CHUNKS = (4.0, 12.0, 40.0)
 # a test with a mutant may be slower: it does not end if it takes more than so many s and so many
 # times what was recorded
 GRACE, FACTOR = 30.0, 5.0
 CASE = re.compile(r"error: in \"(\S+?)\"")
-
-
-@dataclass
-class Record:
-    """What the tests reach: their names by file, of Boost cases by suite."""
-
-    tests: dict[str, dict] = field(default_factory=dict)
-
-    def reaching(self, number: int, target: str) -> tuple[list[str], list[str]]:
-        """Return a file's tests that reach a mutant, and those that share fixtures with one.
-
-        A fixture may keep runs of LAMMPS for all tests of a file; the first one makes them.
-        """
-        here = {name: test for name, test in self.tests.items() if target_of(name) == target}
-        direct = [
-            name for name, test in here.items() if test["passed"] and number in test["reached"]
-        ]
-        shared = {one for name in direct for one in self.tests[name]["shared"]}
-        others = [
-            name
-            for name, test in here.items()
-            if test["passed"] and shared & set(test["shared"]) and name not in direct
-        ]
-        return self._cheapest(direct), self._cheapest(others)
-
-    def _cheapest(self, names: list[str]) -> list[str]:
-        return sorted(names, key=lambda name: self.tests[name]["seconds"])
-
-    def chunks(self, names: list[str]) -> Iterator[tuple[list[str], float]]:
-        """Yield tests for one call, with their seconds."""
-        limits, chunk, seconds = iter(CHUNKS), [], 0.0
-        limit = next(limits)
-        for name in names:
-            chunk.append(name)
-            seconds += self.tests[name]["seconds"]
-            if seconds >= limit:
-                yield chunk, seconds
-                chunk, seconds, limit = [], 0.0, next(limits, CHUNKS[-1])
-        if chunk:
-            yield chunk, seconds
-
-
-def target_of(name: str) -> str:
-    """Return the file of a test, or that it is a case of C++."""
-    return CORE if name.startswith(CORE + "/") else name.split("::")[0]
 
 
 class MutatedTree(Tree):
@@ -130,14 +81,16 @@ class MutatedTree(Tree):
         seconds = round(time.monotonic() - begin, 2)
         return {"passed": code == 0, "seconds": seconds, "shared": [], "reached": reached}
 
-    def record_file_of(self, target: str) -> dict[str, dict]:
-        """Run a file of tests without a mutant."""
+    def record_file_of(self, target: str, known: dict[str, dict], seconds: float) -> dict:
+        """Run a file's tests without a mutant, less those known; start none after so long."""
         self.reached.write_bytes(bytes(BYTES))
-        self.record_file.unlink(missing_ok=True)
+        self.record_file.write_text(json.dumps({"complete": False, "tests": known}))
+        self.environment["SPHCLOTH_RECORD_SECONDS"] = str(seconds)
         code, out = self._with(None, *self._pytest_words("-p", "mutation.recorder", target))
-        if not self.record_file.is_file():
+        found = json.loads(self.record_file.read_text())
+        if not found["complete"] and len(found["tests"]) == len(known):
             sys.exit(f"{target} could not be run ({code}):\n{out[-4000:]}")
-        return json.loads(self.record_file.read_text())
+        return found
 
     def failing(self, number: int | None, tests: list[str], seconds: float) -> str:
         """Run tests with a mutant; return the one that fails, and how if it does not just fail."""

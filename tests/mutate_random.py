@@ -29,7 +29,6 @@ from rich.table import Table
 STYLES = "tests/styles"
 # draws at random itself
 NOT_REPEATED = {"tests/styles/test_fuzz.py"}
-MORE = ("tests/test_examples.py",)
 # s of recorded time that tests may take with one mutant, before the next mutant has its turn
 BUDGETS = (10.0, 40.0, 120.0)
 UNTRIED = {"caught": "", "new": False, "judged": False, "reached_by": 0, "tried": 0, "left": 0}
@@ -238,11 +237,11 @@ def built(folder: Path, population: Population) -> MutatedTree:
 
 
 def targets(words: list[str]) -> list[str]:
-    """Return the files of tests: those given, or all of core, styles and examples."""
+    """Return the files of tests: those given, or all of core and styles."""
     if words:
         return words
     styles = sorted(str(one.relative_to(ROOT)) for one in (ROOT / STYLES).glob("test_*.py"))
-    return [CORE, *(one for one in styles if one not in NOT_REPEATED), *MORE]
+    return [CORE, *(one for one in styles if one not in NOT_REPEATED)]
 
 
 def told(known: dict[int, dict]) -> Table:

@@ -292,6 +292,61 @@ BOOST_AUTO_TEST_CASE(particles_from_a_block_beside_are_seen)
   }
 }
 
+BOOST_AUTO_TEST_CASE(particles_that_approach_along_one_axis_are_seen)
+{
+  for (int d = 0; d < 3; d++) {
+    Watched w;
+    for (int step = 0; step < 60; step++) {
+      for (int i = 0; i < w.walk.n; i++) w.walk.x[3 * i + d] += i % 4 < 2 ? 4e-4 : -4e-4;
+      w.follow();
+      w.check(1 + step % 3);
+    }
+  }
+}
+
+// A box that is ten million supports wide: single precision counts its lengths in halves of one.
+
+BOOST_AUTO_TEST_CASE(none_is_missing_where_lengths_are_rounded_to_a_part_of_the_support)
+{
+  constexpr double FAR = 1e7 * SUPPORT;
+  Watched w;
+  for (int i = 0; i < w.walk.n; i += 3) w.walk.x[3 * i] += FAR;
+  w.build(0.0, {1.0, 1.0, 1.0});
+  for (int step = 0; step < 40; step++) {
+    w.walk.move(5e-4);
+    w.follow();
+    w.check(1);
+  }
+}
+
+// A length in other units, where the support is 1: the same lists.
+
+BOOST_AUTO_TEST_CASE(lists_do_not_depend_on_the_unit_of_length)
+{
+  constexpr double SMALL = 0.25;    // the support; a power of 2, so that nothing is rounded
+  Walk small(300), large(300);
+  const auto of = [](const Walk &w) -> Points { return {w.x.data(), w.type.data(), 200, 300, 2}; };
+  const auto in_units = [&] {
+    for (std::size_t k = 0; k < small.x.size(); k++) large.x[k] = small.x[k] / SMALL;
+  };
+  const std::vector<double> support(9, SMALL), one(9, 1.0);
+  DualLists lists, others;
+  in_units();
+  lists.build(of(small), support.data(), 0.3 * SMALL, {3, nullptr, 1.0, {1.0, 1.0, 1.0}});
+  others.build(of(large), one.data(), 0.3, {3, nullptr, 1.0, {1.0, 1.0, 1.0}});
+  for (int step = 0; step < 20; step++) {
+    small.move(2e-3);
+    in_units();
+    lists.follow(of(small));
+    others.follow(of(large));
+    for (int slot = 0; slot < 200; slot++) {
+      lists.refresh(slot);
+      others.refresh(slot);
+      for (int t = 1; t <= 2; t++) BOOST_CHECK(lists(slot, t).n == others(slot, t).n);
+    }
+  }
+}
+
 // Type 2 moves on and on, type 1 rests.
 
 BOOST_AUTO_TEST_CASE(inner_lists_of_particles_at_rest_stay_while_others_move)

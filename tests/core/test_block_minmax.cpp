@@ -21,11 +21,12 @@ struct Scattered {
   Blocks blocks;
   int n;
 
-  explicit Scattered(int n_) : n(n_)
+  // in a cube, or one that is stretched along an axis
+  explicit Scattered(int n_, int axis = 0, double stretch = 1.0) : n(n_)
   {
     std::mt19937 generator{5};
     std::uniform_real_distribution<> u(0.0, 1.0);
-    for (int i = 0; i < 3 * n; i++) x.push_back(u(generator));
+    for (int i = 0; i < 3 * n; i++) x.push_back(i % 3 == axis ? stretch * u(generator) : u(generator));
     for (int i = 0; i < n; i++) type.push_back(1 + i % TYPES);
     blocks.divide({x.data(), type.data(), n, n, TYPES}, WIDTH);
   }
@@ -56,6 +57,23 @@ BOOST_AUTO_TEST_CASE(each_particle_is_in_one_block_of_its_type)
         BOOST_CHECK(s.block(i) == b);
       }
   for (const int times : found) BOOST_CHECK(times == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_long_box_has_as_many_blocks_along_each_axis)
+{
+  int count = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    const Scattered s(9000, axis, 8.0);
+    if (axis == 0) count = s.blocks.count();
+    BOOST_CHECK(s.blocks.count() == count);
+    std::vector<int> particles(count);
+    for (int i = 0; i < s.n; i++) {
+      BOOST_REQUIRE(s.block(i) >= 0 && s.block(i) < count);
+      particles[s.block(i)]++;
+    }
+    for (const int found : particles) BOOST_CHECK(found > 0);
+  }
+  BOOST_CHECK(count > 100);
 }
 
 BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)

@@ -84,6 +84,16 @@ BOOST_AUTO_TEST_CASE(lists_of_several_types_each_pair_with_its_reach)
   check_lists(cloud(500, 3, 1, 1, 1, 8), 400, 3, reach);
 }
 
+BOOST_AUTO_TEST_CASE(a_type_without_particles_has_no_neighbors_and_is_none)
+{
+  const std::vector<double> reach(25, 0.2);
+  for (double size : {0.1, 1.0}) {
+    Cloud p = cloud(200, 2, size, size, size, 12);
+    for (int &t : p.type) t *= 2;    // 2 and 4 of 4
+    check_lists(p, 150, 4, reach);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(no_owned_particle_or_none_at_all)
 {
   const std::vector<double> reach{0, 0, 0, 0.21};

@@ -163,12 +163,15 @@ EXAMPLES = {
     "mutate.json": [{"bug": "b", "caught": "styles/test_a.py::test_b", "seconds": 3}],
     "mutants.json": {"places": 70, "mutants": [
         {"file": "core/a.h", "line": 3, "folder": "core", "operator": "logic", "right": "a || b",
-         "wrong": "a && b", "caught": caught, "survived": survived, "equivalent": reason,
-         "tried": {"core": "1"}}
-        for caught, survived, reason in [
-            ("a/b/c", False, ""), ("a/b/c", True, ""), ("", True, "why"), ("", True, ""),
-            ("", False, ""), ("", False, ""),
+         "wrong": "a && b", "caught": caught, "new": new, "judged": judged, "equivalent": reason,
+         "tried": 5, "left": 2}
+        for caught, new, judged, reason in [
+            ("a/b/c", False, True, ""), ("a/b/c", True, True, ""), ("", False, True, "why"),
+            ("", False, True, ""), ("", False, False, ""), ("", False, False, ""),
         ]
+    ], "faults": [
+        {"file": "stepping/b.cpp", "right": "x", "wrong": "y", "what": "all is lost",
+         "caught": "styles/test_a.py::test_b"},
     ]},
     "steps.json": {"found": [
         {"scheme": "block", "steps": 5, "time": 1.0, "mass": 0.0, "momentum": 1e-15,
@@ -193,13 +196,14 @@ ROWS = [
     "| 2 ranks | 1e-14 |",
     "| `block` | 2 | 1 | 1 | 0 | 1 |",
     "| b | `test_a.py`: `test_b` | 3 |",
-    "**6 mutants of 70 places: 2 caught, 1 equivalent, 1 not caught, "
-    "2 not tried with all tests yet.**",
+    "**6 mutants of 70 places: 2 caught, 1 equivalent, 1 not caught, 2 open; "
+    "40.0 % of those that are not equivalent are caught.**",
     "| logic | 6 | 1 | 1 | 1 | 2 | 1 |",
     r"| `a.h:3` | `` a \|\| b `` → `` a && b `` | caught by a/b/c |",
     r"| `a.h:3` | `` a \|\| b `` → `` a && b `` | equivalent: why |",
-    r"| `a.h:3` | `` a \|\| b `` → `` a && b `` | **not caught** |",
-    r"| `a.h:3` | `` a \|\| b `` → `` a && b `` | open: not caught by 1 files of tests |",
+    "| **not caught** by 5 tests, 2 that reach it left out |",
+    "| open: not caught by 5 tests so far |",
+    "| all is lost | `b.cpp` | `` x `` → `` y `` | `test_a.py`: `test_b` |",
     "| bond | 7 | 4 | 0 |",
     "| wheel | 9 | 1.0 | 2 |",
 ]

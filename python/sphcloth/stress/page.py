@@ -112,13 +112,15 @@ def bugs(path: Path) -> str:
 
 
 def mutants(path: Path) -> str:
-    """Mutants by folder and by operator, and a verdict on each that the tests did not see."""
+    """Mutants by folder and by operator, a verdict on each that stood out, and faults put back in."""
     found = json.loads(path.read_text())
     all_of_them = found["mutants"]
-    total, _, _, equivalent, open_, left = _counts(all_of_them)
+    total, *_, equivalent, open_, left = _counts(all_of_them)
+    caught = total - equivalent - open_ - left
     told = (
-        f"{total} mutants of {found['places']} places: {total - equivalent - open_ - left} caught, "
-        f"{equivalent} equivalent, {left} not caught, {open_} not tried with all tests yet."
+        f"{total} mutants of {found['places']} places: {caught} caught, {equivalent} equivalent, "
+        f"{left} not caught, {open_} open; {100.0 * caught / max(1, total - equivalent):.1f} % of "
+        "those that are not equivalent are caught."
     )
     heads = ["mutants", "caught", "by new tests", "equivalent", "open", "not caught"]
     parts = [
@@ -130,9 +132,17 @@ def mutants(path: Path) -> str:
     verdicts = [
         [f"`{Path(one['file']).name}:{one['line']}`", _code(one), _verdict(one)]
         for one in all_of_them
-        if one["survived"] or not one["caught"]
+        if one["new"] or not one["caught"]
     ]
-    return _told(told, "\n\n".join([*parts, table(["place", "mutant", "verdict"], verdicts)]))
+    faults = [
+        [one["what"], f"`{Path(one['file']).name}`", _code(one), _test(one["caught"])]
+        for one in found["faults"]
+    ]
+    parts += [
+        table(["place", "mutant", "verdict"], verdicts),
+        table(["fault of the past", "file", "mutant", "caught by"], faults),
+    ]
+    return _told(told, "\n\n".join(parts))
 
 
 def _counts(some: Sequence[dict]) -> list[int]:
@@ -144,10 +154,10 @@ def _counts(some: Sequence[dict]) -> list[int]:
 
 def _kind(one: dict) -> str:
     if one["caught"]:
-        return "new" if one["survived"] else "caught"
+        return "new" if one["new"] else "caught"
     if one["equivalent"]:
         return "equivalent"
-    return "left" if one["survived"] else "open"
+    return "left" if one["judged"] else "open"
 
 
 def _code(one: dict) -> str:
@@ -162,9 +172,9 @@ def _verdict(one: dict) -> str:
         case "equivalent":
             return f"equivalent: {one['equivalent']}"
         case "left":
-            return "**not caught**"
+            return f"**not caught** by {one['tried']} tests, {one['left']} that reach it left out"
         case "open":
-            return f"open: not caught by {len(one['tried'])} files of tests"
+            return f"open: not caught by {one['tried']} tests so far"
     return f"caught by {_test(one['caught'])}"
 
 

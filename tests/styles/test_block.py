@@ -176,6 +176,41 @@ def test_ranks(folder, scene, ranks, newton):
     assert np.abs(one - many).max() < 1e-9
 
 
+# Two particles that fall: a fast one alone on the right, and a slow one that comes to it.
+ARRIVAL = (
+    header(atoms=FLUID)
+    + "processors * 1 1\n"
+    + box("-2 2 -0.5 0.5 -0.5 0.5")
+    + """mass 1 0.125
+create_atoms 1 single -0.005 0 0
+create_atoms 1 single 1 0 0
+set group all sph/rho 1000
+set atom 1 vx 1.0
+set atom 2 vx 10.0
+"""
+    + sph_tait("1 1 fluid 1000 c0 20")
+    + neighbor(0.03)
+    + """neigh_modify every 1 delay 0 check no
+timestep 0.02
+fix fall all gravity 1 vector 0 0 -1
+fix step all sph/integrate global gain 1
+run_style sph/adaptive block
+variable steps index 30
+"""
+    + END
+)
+
+
+def test_an_inactive_particle_stays_inactive_on_a_rank_where_all_others_are_active(tmp_path):
+    """It gets no impulse in the midst of its step, on whatever rank."""
+    script = write(tmp_path, ARRIVAL)
+    run(script, dump="one.txt")
+    run(script, ranks=2, dump="two.txt")
+    one, two = last_frame(tmp_path / "one.txt"), last_frame(tmp_path / "two.txt")
+    assert one[0][1] > 0  # it came to the other half
+    np.testing.assert_allclose(two, one, rtol=1e-12, atol=1e-12)
+
+
 def test_restart_and_split_runs_in_the_middle_of_a_hierarchy(folder):
     begin = collide()
     write_all = END.replace("run ${steps}", "")

@@ -115,3 +115,49 @@ def test_a_floor_that_begins_to_move_wakes_water_that_sleeps(floor):
         kinetic[scheme] = lmp.extract_compute("kinetic", 0, 0)
     assert kinetic["constant"] > 8
     assert kinetic["block"] == pytest.approx(kinetic["constant"], rel=0.01)
+
+
+# One particle that drifts slowly.
+LONELY = (
+    header("f f f", FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.5")
+    + """mass 1 0.125
+create_atoms 1 single 0 0 0
+set group all sph/rho 1000
+velocity all set 0.003 0.004 -0.005 units box
+"""
+    + sph_tait("1 1 fluid 1000 c0 30")
+    + neighbor(0.03)
+    + """timestep 1e-3
+fix step all sph/integrate global gain 1 velocity 0 sleep 0.01
+run_style sph/adaptive block
+"""
+)
+
+
+def steps_awake(lmp):
+    """Steps until the particle sleeps."""
+    for step in range(300):
+        if sleepers(lmp):
+            return step
+        lmp.command("run 1")
+    return None
+
+
+def test_what_falls_asleep_stops_in_all_directions():
+    with instance() as lmp:
+        lmp.commands_string(LONELY + "run 0")
+        assert (by_id(lmp, "v") != 0).all()
+        assert steps_awake(lmp) > 20
+        assert (by_id(lmp, "v") == 0).all()
+
+
+@pytest.mark.parametrize("reset", ["reset_timestep 0", "reset_timestep 100000"])
+def test_a_reset_of_the_time_neither_hastens_nor_delays_sleep(reset):
+    awake = []
+    for between in ("", reset):
+        with instance() as lmp:
+            lmp.commands_string(f"{LONELY}run 20\n{between}\nrun 0")
+            awake.append(steps_awake(lmp))
+    assert awake[0] > 20
+    assert awake[1] == awake[0]

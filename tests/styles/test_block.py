@@ -107,6 +107,42 @@ def test_unequal_steps_are_taken_where_they_gain_enough(folder, monkeypatch):
     assert updates["block", 1.5] < 0.6 * updates["block", 50]
 
 
+# Ten particles that do not meet, of which four are fast.
+ROWS = (
+    header("p p p", FLUID)
+    + box("0 1 0 2 0 1")
+    + "mass 1 0.125\n"
+    + "".join(f"create_atoms 1 single 0.5 {0.1 + 0.2 * k} 0.5\n" for k in range(10))
+    + """set group all sph/rho 1000
+group fast id 1:4
+group slow id 5:10
+velocity fast set 10 0 0 units box
+velocity slow set 1 0 0 units box
+"""
+    + sph_tait("1 1 fluid 1000 c0 20")
+    + neighbor(0.03)
+    + "timestep 8e-3\nfix step all sph/integrate global gain 1.8\nrun_style sph/adaptive block\n"
+)
+
+
+@pytest.mark.parametrize(("speed", "go_on"), [(5, False), (2.2, True)])
+def test_unequal_steps_go_on_while_they_gain_four_fifths_of_what_is_asked(speed, go_on):
+    """Updates, and a tenth of one per particle in each step: 1.4 times fewer, and 1.7 times."""
+
+    def least_active(lmp):
+        shares = []
+        for _ in range(16):
+            lmp.command("run 1 pre no post no")
+            shares.append(lmp.extract_fix("step", 0, 1, 1))
+        return min(shares)
+
+    with instance() as lmp:
+        lmp.commands_string(ROWS + "run 40")
+        assert least_active(lmp) == 0.4
+        lmp.commands_string(f"velocity slow set {speed} 0 0 units box\nrun 40")
+        assert least_active(lmp) == (0.4 if go_on else 1.0)
+
+
 @pytest.mark.parametrize("limits", ["", "ratio 2", "waking no", "output 2e-3"])
 def test_momentum_stays_to_round_off(folder, monkeypatch, limits):
     lmp = started(folder, collide(limits=limits), monkeypatch)

@@ -16,7 +16,7 @@ from scenes import (
     sheet,
     sph_tait,
 )
-from test_stepping import VISCOUS, WETTED, dt_and_limit
+from test_stepping import VISCOUS, WETTED, dt_and_limit, own_steps
 
 ONLY = "velocity 0 force 0 density 0"
 
@@ -181,3 +181,29 @@ def test_fluid_that_the_fix_does_not_move_limits_no_step(scheme):
             + "run 2"
         )
         assert lmp.get_thermo("dt") == 0.01
+
+
+def test_neighbors_under_pressure_limit_no_free_flight_where_all_take_the_same_step():
+    """Their own limit is short enough for it."""
+    c_free, c_pressed, h_s = 100, 10, 0.05
+    with instance() as lmp:
+        lmp.commands_string(
+            header(atoms=FLUID)
+            + box("-1 1 -1 1 -1 1", 2)
+            + "mass * 0.125\ncreate_atoms 1 single 0 0 0\ncreate_atoms 2 single 0.06 0 0\n"
+            + "set type 1 sph/rho 990\nset type 2 sph/rho 1050\n"
+            + sph_tait(
+                f"1 1 fluid 1000 c0 {c_free}",
+                f"2 2 fluid 1000 c0 {c_pressed}",
+                options="density continuity delta 0",
+            )
+            + neighbor(0.03)
+            + f"timestep 1\nfix step all sph/integrate global {ONLY}\nrun 0"
+        )
+        free, pressed = own_steps(lmp)
+    by_sound = 0.5 * h_s / (c_pressed * 1.05**3)
+    pressure = 1000 * c_pressed**2 / 7 * (1.05**7 - 1)
+    in_flight = 0.5 * np.sqrt(2 * h_s**2 * 10 / pressure)
+    assert 0.5 * h_s / c_free < in_flight < by_sound
+    assert pressed == pytest.approx(by_sound, rel=1e-12)
+    assert free == 1  # the ceiling

@@ -94,6 +94,14 @@ class Run:
             digest.update(path.read_bytes())
         return digest.hexdigest()[:16]
 
+    def forget_gone(self) -> None:
+        """A test that is not there any more catches nothing."""
+        for one in self.known.values():
+            test = one["caught"].split(": ")[0]
+            if "/" in test and test not in self.record.tests:
+                one["caught"] = ""
+                self._describe(one)
+
     def try_all(self, numbers: list[int]) -> bool:
         """Try the mutants in rounds of more and more time; return whether that came to an end."""
         for budget in (*(one for one in BUDGETS if one < self.patience), self.patience):
@@ -282,7 +290,9 @@ def main() -> int:
     argued = [number for number, one in run.known.items() if key(one) in equivalents()]
     numbers = given.numbers or sorted(run.known, key=lambda number: number in argued)
     complete = all(run.recorded(target) for target in targets(given.tests))
-    complete = complete and run.try_all(numbers)
+    if complete:
+        run.forget_gone()
+        complete = run.try_all(numbers)
     run.write()
     Console().print(told(run.known))
     caught = sum(bool(one["caught"]) for one in run.known.values())

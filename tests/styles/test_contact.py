@@ -265,6 +265,37 @@ def test_a_particle_that_starts_too_near_is_named(tmp_path):
     assert "1 particles start nearer to the triangles than the thickness 0.01, atom 962" in out
 
 
+# A sheet rises at 1 m/s, and one of two particles falls on it at 2 m/s; the other one rests beside.
+MEET = (
+    header()
+    + cloth_box("-1 1 -1 1 -1 1")
+    + "mass 1 0.125\ncreate_atoms 1 single 0.8 0.8 {rests} units box\n"
+    + "create_atoms 1 single 0.03 0.04 {falls} units box\n"
+    + "group water type 1\nset atom 2 vz -2\n"
+    + sheet(2, 1.0, "0.5 0.5", 0.1, "center 0 0 0 group cloth")
+    + sph_tait("1 1 fluid 1000 c0 1e-3", "2 2 none")
+    + cloth_styles("1", "0")
+    + "neighbor 0.2 bin\ncomm_modify cutoff 0.5\natom_modify sort 0 0\n"
+    + """timestep 1e-4
+fix step water sph/integrate constant
+fix sheet cloth pbd/cloth pin cloth velocity 0 0 1
+fix contact water cloth/contact 0.01
+"""
+)
+
+
+@pytest.mark.parametrize("rests", [0.0, 0.036])
+def test_a_particle_and_a_sheet_that_approach_each_other_keep_their_gap(rests):
+    """Pairs that may collide are found however both have moved, and wherever others are."""
+    lmp = instance()
+    lmp.commands_string(MEET.format(rests=rests, falls=0.0506) + "run 0 post no")
+    for _ in range(100):
+        lmp.command("run 2 pre no post no")
+        z = by_id(lmp, "x")[:, 2]
+        assert z[1] - z[2:].max() > 0.0099
+    assert lmp.extract_fix("contact", 0, 1, 1) == 1
+
+
 PRESS = (
     header()
     + cloth_box("-1 1 -1 1 -1 1")

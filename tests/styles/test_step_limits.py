@@ -207,3 +207,24 @@ def test_neighbors_under_pressure_limit_no_free_flight_where_all_take_the_same_s
     assert 0.5 * h_s / c_free < in_flight < by_sound
     assert pressed == pytest.approx(by_sound, rel=1e-12)
     assert free == 1  # the ceiling
+
+
+def test_thousands_of_particles_have_the_step_of_the_force_on_each():
+    """As many as one rank usually has; none is near another."""
+    with instance() as lmp:
+        lmp.commands_string(
+            header("p p p", FLUID)
+            + box("0 5 0 5 0 5")
+            + "mass 1 0.125\n"
+            + lattice(0.2)
+            + "create_atoms 1 box\nset group all sph/rho 1000\n"
+            + sph_tait("1 1 fluid 1000 c0 1")
+            + neighbor(0.03)
+            + "variable push atom 0.125*(1+15*z/5)\nfix push all addforce 0 0 v_push\n"
+            + "timestep 0.01\nfix step all sph/integrate global gain 1 velocity 0\n"
+            + "run_style sph/adaptive block\nrun 2"
+        )
+        limit = np.minimum(0.01, 0.05 * np.sqrt(0.1 / (1 + 15 * by_id(lmp, "x")[:, 2] / 5)))
+        assert len(limit) == 25**3
+        own = own_steps(lmp)
+        assert (own <= limit * (1 + 1e-3)).all() and (own > 0.49 * limit).all()

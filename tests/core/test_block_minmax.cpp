@@ -26,7 +26,7 @@ struct Scattered {
   {
     std::mt19937 generator{5};
     std::uniform_real_distribution<> u(0.0, 1.0);
-    for (int i = 0; i < 3 * n; i++) x.push_back(i % 3 == axis ? stretch * u(generator) : u(generator));
+    for (int i = 0; i < 3 * n; i++) x.push_back((i % 3 == axis ? stretch : 1.0) * u(generator));
     for (int i = 0; i < n; i++) type.push_back(1 + i % TYPES);
     blocks.divide({x.data(), type.data(), n, n, TYPES}, WIDTH);
   }

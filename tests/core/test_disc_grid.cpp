@@ -38,7 +38,8 @@ BOOST_AUTO_TEST_CASE(finds_the_triangles_near_a_point_and_the_nearest)
   grid.build(discs, max_distance);
   roomy.build(moving, max_distance);
   BOOST_CHECK(DiscGrid().bytes() == 0.0);
-  BOOST_CHECK(grid.bytes() >= static_cast<double>(discs.size() * sizeof(Disc)));    // a copy of each
+  const double of_discs = static_cast<double>(discs.size() * sizeof(Disc));
+  BOOST_CHECK(grid.bytes() >= of_discs);    // holds a copy of each
   int looked = 0, seen = 0;
   for (int k = 0; k < 500; k++) {
     const Eigen::Vector3d p = 1.3 * vec();

@@ -304,14 +304,15 @@ BOOST_AUTO_TEST_CASE(particles_that_approach_along_one_axis_are_seen)
   }
 }
 
-// In a box that is a million supports wide single precision rounds distances by a part of the support.
+// In a box that is a million supports wide: distances in single precision are rounded by a part
+// of the support.
 
 BOOST_AUTO_TEST_CASE(none_is_missing_where_distances_are_rounded)
 {
-  constexpr double FAR = 1e6 * SUPPORT, WIDE = 1.5 * SUPPORT, BY = 5e-3;
+  constexpr double APART = 1e6 * SUPPORT, WIDE = 1.5 * SUPPORT, BY = 5e-3;
   for (int d = 0; d < 3; d++) {
     Watched w(WIDE);
-    for (int i = 0; i < w.walk.n; i += 3) w.walk.x[3 * i + (d + 1) % 3] += FAR;
+    for (int i = 0; i < w.walk.n; i += 3) w.walk.x[3 * i + (d + 1) % 3] += APART;
     w.build(0.0, {1.0, 1.0, 1.0}, WIDE);
     for (double gone = 0.0; gone + BY < 0.5 * WIDE; gone += BY) {
       for (int i = 0; i < w.walk.n; i++) w.walk.x[3 * i + d] += i % 4 < 2 ? BY : -BY;

@@ -13,7 +13,7 @@ PRIOR = 10
 
 @dataclass
 class Record:
-    """What is known of the tests, by name: seconds, mutants reached, fixtures; passed without one."""
+    """What is known of the tests by name: seconds, mutants reached, fixtures, whether they pass."""
 
     tests: dict[str, dict] = field(default_factory=dict)
 

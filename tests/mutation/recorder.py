@@ -32,7 +32,9 @@ class Recorder:
         self.of_fixture: dict[str, tuple[set[int], float]] = {}
         self.made: set[str] = set()  # in the test that runs
 
-    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
+    def pytest_collection_modifyitems(
+        self, config: pytest.Config, items: list[pytest.Item]
+    ) -> None:
         """Leave out what is recorded."""
         known = [item for item in items if item.nodeid in self.tests]
         items[:] = [item for item in items if item.nodeid not in self.tests]

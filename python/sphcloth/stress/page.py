@@ -112,7 +112,7 @@ def bugs(path: Path) -> str:
 
 
 def mutants(path: Path) -> str:
-    """Mutants by folder and by operator, a verdict on each that stood out, and faults put back in."""
+    """Mutants by folder and operator, verdicts on those not caught at first, faults of the past."""
     found = json.loads(path.read_text())
     all_of_them = found["mutants"]
     total, *_, equivalent, open_, left = _counts(all_of_them)

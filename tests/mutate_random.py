@@ -30,7 +30,7 @@ STYLES = "tests/styles"
 # draws at random itself
 NOT_REPEATED = {"tests/styles/test_fuzz.py"}
 # s of recorded time that tests may take with one mutant, before the next mutant has its turn
-BUDGETS = (10.0, 40.0, 120.0)
+BUDGETS = (10.0, 40.0)
 UNTRIED = {"caught": "", "new": False, "judged": False, "reached_by": 0, "tried": 0, "left": 0}
 EQUIVALENT = ROOT / "tests/mutation/equivalent.toml"
 
@@ -103,9 +103,15 @@ class Run:
                 self._describe(one)
 
     def try_all(self, numbers: list[int]) -> bool:
-        """Try the mutants in rounds of more and more time; return whether that came to an end."""
+        """Try the mutants in rounds of more and more time; return whether that came to an end.
+
+        Those argued to be equivalent take part in the first round, which puts the argument to the
+        test.
+        """
+        argued = [number for number in numbers if key(self.known[number]) in equivalents()]
+        others = [number for number in numbers if number not in argued]
         for budget in (*(one for one in BUDGETS if one < self.patience), self.patience):
-            for number in numbers:
+            for number in [*others, *argued] if budget == BUDGETS[0] else others:
                 if self.left() < 0:
                     return False
                 self._try(number, budget)
@@ -273,7 +279,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--json", type=Path, required=True, help="results")
     parser.add_argument("--tests", nargs="*", default=[], help="files of tests; 'core' is C++")
     parser.add_argument("--minutes", type=float, default=1e9, help="then stop, to go on later")
-    parser.add_argument("--patience", type=float, default=300.0, help="s of tests per mutant")
+    parser.add_argument("--patience", type=float, default=120.0, help="s of tests per mutant")
     return parser.parse_args()
 
 
@@ -286,9 +292,7 @@ def main() -> int:
     tree = built(folder, population)
     run = Run(folder, given.json, population, tree, end, given.patience)
     run.load()
-    # an argued one is tried behind all others, which puts the argument to the test
-    argued = [number for number, one in run.known.items() if key(one) in equivalents()]
-    numbers = given.numbers or sorted(run.known, key=lambda number: number in argued)
+    numbers = given.numbers or list(run.known)
     complete = all(run.recorded(target) for target in targets(given.tests))
     if complete:
         run.forget_gone()

@@ -73,7 +73,7 @@ def test_inactive_particles_go_on_as_at_the_last_update(folder, monkeypatch):
 
     times, frames = [lmp.get_thermo("time")], []
     for _ in range(3):
-        frames.append({name: by_id(lmp, name) for name in ("x", "v", "rho")})
+        frames.append({name: by_id(lmp, name) for name in ("x", "v", "rho", "drho")})
         frames[-1]["rests"] = column(2) == 0
         last = column(1)
         lmp.command("run 1 post no")
@@ -90,6 +90,7 @@ def test_inactive_particles_go_on_as_at_the_last_update(folder, monkeypatch):
     np.testing.assert_allclose(change[1]["v"], dt[1] * accel, atol=1e-12)
     rate = change[0]["rho"] / dt[0]
     assert np.abs(rate).max() > 1
+    np.testing.assert_allclose(rate, frames[0]["drho"][rests], atol=1e-6)
     np.testing.assert_allclose(change[1]["rho"], dt[1] * rate, atol=1e-8)
     elapsed = (times[1] - last[rests])[:, None]
     way = dt[1] * (frames[2]["v"][rests] + elapsed * accel)

@@ -123,6 +123,15 @@ def test_steps_before_an_output_time_are_balanced():
     assert steps_by_limit(lmp) == {CEILING: 3, OUTPUT: 4}
 
 
+def test_the_next_row_is_that_of_an_output_time_or_beyond_the_run():
+    values = "fix values all vector 1 f_step[28] f_step[29]\nrun 10"
+    lmp = free_particles(options="output 0.035", run=values)
+    at_output, row = ([lmp.extract_fix("values", 0, 2, k, n) for k in range(11)] for n in (0, 1))
+    assert sum(at_output[1:]) == 2
+    for step in range(10):
+        assert row[step] == step + 1 if at_output[step + 1] else row[step] > 10
+
+
 def test_a_ceiling_that_divides_the_interval_is_never_cut():
     lmp = free_particles(options="output 0.1", run="run 1000")
     assert steps_by_limit(lmp) == {CEILING: 1000}

@@ -68,8 +68,9 @@ class Run:
             path.write_text(json.dumps(known))
         self.record.tests |= known["tests"]
         self.trials.digests |= {name: digest for name in known["tests"]}
-        if known["complete"]:
-            self.trials.first.setdefault(target, sorted(known["tests"]))
+        if known["complete"] and target not in self.trials.first:
+            self.trials.first[target] = sorted(known["tests"])
+            self._keep()
         return known["complete"]
 
     def _recorded(self, target: str, known: dict[str, dict]) -> dict:

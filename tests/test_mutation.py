@@ -36,6 +36,13 @@ def test_equivalent_mutants_fit_the_sources():
         assert len(entry["reason"]) > 20 and entry["right"] != entry["wrong"]
 
 
+def test_faults_of_the_past_fit_the_sources():
+    """Each is an expression that is there once, with what went wrong."""
+    for entry in tomllib.loads((ROOT / "tests/mutation/faults.toml").read_text())["fault"]:
+        assert (SOURCE / entry["file"]).read_text().count(entry["right"]) == 1, entry
+        assert len(entry["what"]) > 20 and entry["right"] != entry["wrong"]
+
+
 def printed(program: Path, number: int) -> str:
     done = subprocess.run(
         [program], env={"SPHCLOTH_MUTANT": str(number)}, capture_output=True, text=True, timeout=60
@@ -46,11 +53,15 @@ def printed(program: Path, number: int) -> str:
 def test_one_program_holds_all_mutants(tmp_path):
     """Without a mutant it prints what it should, with each of those below something else."""
     pytest.importorskip("tree_sitter_cpp")
+    from mutation.population import put_back
     from mutation.schemata import with_mutants
     from mutation.sites import mutants_of
 
     one_of_each_place = {(m.start, m.end, m.operator): m for m in mutants_of("a.cpp", CODE)}
     mutants = list(one_of_each_place.values())
+    # an expression in which others lie
+    fault = {"file": "a.cpp", "right": "sum > 2.5 && !(a[0] == 0.0)", "wrong": "sum < 2.5"}
+    mutants.append(put_back(CODE, fault))
     found = [(m.line, m.operator, m.readable(m.wrong, CODE)) for m in mutants]
     assert not [one for one in found if one[0] in (3, 4, 11) and one[1] == "comparison"]
     text = with_mutants(CODE, list(enumerate(mutants)))
@@ -74,6 +85,7 @@ def test_one_program_holds_all_mutants(tmp_path):
         (12, "constant", "static_cast<decltype(2.5)>(2 * 2.5)"): "28 -2",
         (14, "removal", ""): "16 -2",
         (15, "assignment", "(sum) /= (twice<2>())"): "1 -2",
+        (12, "fault", "sum < 2.5"): "28 -2",
     }.items():
         assert what in found, f"{what} is not among {found}"
         assert printed(program, found.index(what)) == expected, what

@@ -38,7 +38,7 @@ class Population:
         for file, order in self.orders.items():
             right = [m for m in order if (file, m.start, m.end) not in self.passed_over]
             chosen += right[: self.shares[file]]
-        return chosen + [_put_back(self.sources[one["file"]], one) for one in self.faults]
+        return chosen + [put_back(self.sources[one["file"]], one) for one in self.faults]
 
     def written(self) -> dict[str, bytes]:
         """Return the files that have mutants, with all of them as choices."""
@@ -101,7 +101,7 @@ def faults() -> list[dict]:
     return tomllib.loads(FAULTS.read_text())["fault"]
 
 
-def _put_back(text: bytes, fault: dict) -> Mutant:
+def put_back(text: bytes, fault: dict) -> Mutant:
     """Return a fault as a mutant, in whose right expression others may lie."""
     right = fault["right"].encode()
     if text.count(right) != 1:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Finds the swept boxes of triangles and particles that overlap, with a margin.
+// Finds triangles that are near particles, with a margin.
 
 #include "contact/candidate_pairs.h"
 
@@ -8,24 +8,41 @@
 #include "neighbor.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 // of the thickness
-static constexpr double MAX_MARGIN = 1.5;
+static constexpr double MAX_MARGIN = 1.5, MAX_REACH = 1.5;
 
 void CandidatePairs::clear()
 {
-  positions_then.clear();
-  start_then.clear();
+  candidates.clear();
+  vertices_then.clear();
+  positions_then[0].clear();
 }
 
-void CandidatePairs::update()
+void CandidatePairs::update(double max_stride)
 {
-  has_box.assign(mesh.triangles.size(), false);
-  boxes.resize(mesh.triangles.size());
-  if (!still_holds()) find();
+  measure_vertices(max_stride);
+  if (still_holds()) return;
+  find();
+  path = stride;
+}
+
+double CandidatePairs::max_reach() const { return MAX_REACH * mesh.rules.thickness; }
+
+void CandidatePairs::measure_vertices(double max_stride)
+{
+  const std::size_t n = mesh.start.size();
+  stride.resize(n);
+  path.resize(n);
+  const bool listed = vertices_then.size() == n;
+  for (std::size_t s = 0; s < n; s++) {
+    stride[s] = std::min((mesh.end[s] - mesh.start[s]).norm(), max_stride);
+    if (listed) path[s] = stride[s] + (mesh.start[s] - vertices_then[s]).norm();
+  }
 }
 
 // How far vertices and particles may move before the list is made anew: as far as until the next
@@ -39,21 +56,26 @@ double CandidatePairs::margin() const
 
 void CandidatePairs::find()
 {
-  const double cutoff = 2.0 * (mesh.rules.thickness + margin());
+  const double cutoff = max_reach() + 2.0 * margin();
   candidates.clear();
-  discs.build(mesh, cutoff);
-  start_then = mesh.start;
-  end_then = mesh.end;
-  positions_then.resize(atom->nlocal);
+  discs.build(mesh, cutoff, [this](std::size_t t) {
+    const auto &[a, b, c] = mesh.triangles[t];
+    return std::max({stride[a], stride[b], stride[c]});
+  });
+  vertices_then = mesh.start;
+  for (int d = 0; d < 3; d++) {
+    const double *last = mesh.last_positions[d];
+    positions_then[d].assign(last, last + atom->nlocal);
+  }
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *x = atom->x[i];
-    positions_then[i] = Vec3(x[0], x[1], x[2]);
     if (!mesh.can_move(i)) continue;
     const Sweep particle = mesh.sweep_of(i);
     const std::size_t first = candidates.size();
-    discs.grid.within(particle.end, cutoff + (particle.end - particle.start).norm(),
-                      [&](int t) { candidates.push_back({i, t}); });
-    std::sort(candidates.begin() + first, candidates.end());    // whatever the order of cells
+    discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
+      candidates.push_back({i, t, mesh.contact_start(particle.start, t).distance});
+    });
+    std::sort(candidates.begin() + first, candidates.end(),    // whatever the order of cells
+              [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });
   }
 }
 
@@ -61,55 +83,40 @@ void CandidatePairs::find()
 
 bool CandidatePairs::still_holds() const
 {
-  if (positions_then.size() != static_cast<std::size_t>(atom->nlocal) ||
-      start_then.size() != mesh.start.size())
+  if (positions_then[0].size() != static_cast<std::size_t>(atom->nlocal) ||
+      vertices_then.size() != mesh.start.size())
     return false;
-  const double max = margin();
-  return !(std::max(max_vertex_displacement_sq(), max_displacement_sq()) > max * max);
+  const double of_vertices = path.empty() ? 0.0 : *std::max_element(path.begin(), path.end());
+  return std::max(of_vertices, longest_path()) <= margin();    // false if not a number
 }
 
-// Of vertices since then: from the end of that step or from its start, whichever is nearer, since
-// boxes hold both.
+// Of particles that collide with this mesh, since the list was made, with this step: at most.  All
+// particles, twice in each step: one loop without branches.
 
-double CandidatePairs::max_vertex_displacement_sq() const
-{
-  double max_sq = 0.0;
-  for (const std::vector<Vec3> *positions : {&mesh.start, &mesh.end})
-    for (std::size_t s = 0; s < positions->size(); s++) {
-      const Vec3 from_start = (*positions)[s] - start_then[s],
-                 from_end = (*positions)[s] - end_then[s];
-      max_sq = std::max(max_sq, std::min(from_start.squaredNorm(), from_end.squaredNorm()));
-    }
-  return max_sq;
-}
-
-// Of particles that collide with this mesh.  All particles, twice in each step: one loop without
-// branches.
-
-double CandidatePairs::max_displacement_sq() const
+double CandidatePairs::longest_path() const
 {
   const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
   if (n == 0) return 0.0;
-  const double *const x = atom->x[0], *const then = positions_then[0].data();
-  double max_sq = 0.0;
-#pragma omp simd reduction(max : max_sq)
+  const double *const x = atom->x[0];
+  const double *const x0 = mesh.last_positions[0], *const y0 = mesh.last_positions[1],
+                      *const z0 = mesh.last_positions[2];
+  const double *const x1 = positions_then[0].data(), *const y1 = positions_then[1].data(),
+                      *const z1 = positions_then[2].data();
+  double max_stride_sq = 0.0, max_before_sq = 0.0;
+#pragma omp simd reduction(max : max_stride_sq, max_before_sq)
   for (int i = 0; i < n; i++) {
-    const double dx = x[3 * i] - then[3 * i], dy = x[3 * i + 1] - then[3 * i + 1],
-                 dz = x[3 * i + 2] - then[3 * i + 2];
-    const double displacement_sq = mask[i] & groupbits ? dx * dx + dy * dy + dz * dz : 0.0;
-    max_sq = std::max(max_sq, displacement_sq);
+    const double dx = x[3 * i] - x0[i], dy = x[3 * i + 1] - y0[i], dz = x[3 * i + 2] - z0[i];
+    const double ex = x0[i] - x1[i], ey = y0[i] - y1[i], ez = z0[i] - z1[i];
+    const bool meets = mask[i] & groupbits;
+    max_stride_sq = std::max(max_stride_sq, meets ? dx * dx + dy * dy + dz * dz : 0.0);
+    max_before_sq = std::max(max_before_sq, meets ? ex * ex + ey * ey + ez * ez : 0.0);
   }
-  return max_sq;
-}
-
-const Box &CandidatePairs::swept_box(int t)
-{
-  if (!has_box[t]) boxes[t] = mesh.swept_box(t);
-  has_box[t] = true;
-  return boxes[t];
+  return std::sqrt(max_stride_sq) + std::sqrt(max_before_sq);
 }
 
 double CandidatePairs::memory_usage() const
 {
-  return discs.bytes() + bytes_of(candidates, positions_then, start_then, end_then, boxes, has_box);
+  return discs.bytes() +
+      bytes_of(candidates, positions_then[0], positions_then[1], positions_then[2], vertices_then,
+               stride, path);
 }

@@ -35,6 +35,31 @@ ContactPair &ContactPairs::add(int i, int triangle, const ContactResult &contact
   return pairs.back();
 }
 
+// `share` of each pair and corner of its triangle
+
+template <class Share> void ContactPairs::sum_at_vertices(std::vector<Vec3> &sums, Share share)
+{
+  sums.assign(mesh.halo.n_slots(), Vec3::Zero());
+  for (const ContactPair &pair : pairs)
+    for (int q = 0; q < 3; q++) sums[mesh.triangles[pair.triangle][q]][0] += share(pair, q);
+  mesh.halo.reverse_add(0, sums.data());
+  mesh.halo.forward(0, sums.data());
+}
+
+void ContactPairs::share_evenly()
+{
+  sum_at_vertices(pairs_at, [](const ContactPair &, int) { return 1.0; });
+}
+
+void ContactPairs::share_by_load()
+{
+  for (ContactParticle &p : particles) p.load = 0.0;
+  for (const ContactPair &pair : pairs) particle_of(pair).load += pair.normal_correction;
+  sum_at_vertices(load_at, [](const ContactPair &pair, int q) {
+    return pair.normal_correction * pair.weight[q];
+  });
+}
+
 double ContactPairs::split_mass(const ContactPair &pair,
                                 const std::vector<double> &inverse_mass) const
 {
@@ -42,7 +67,7 @@ double ContactPairs::split_mass(const ContactPair &pair,
   double inverse = p.w * p.contacts;
   for (int q = 0; q < 3; q++) {
     const int s = mesh.triangles[pair.triangle][q];
-    inverse += inverse_mass[s] * shares[s][0] * pair.weight[q] * pair.weight[q];
+    inverse += inverse_mass[s] * pairs_at[s][0] * pair.weight[q] * pair.weight[q];
   }
   return 1.0 / inverse;
 }
@@ -53,7 +78,7 @@ double ContactPairs::loaded_mass(const ContactPair &pair) const
   double inverse = p.w * p.load;
   for (int q = 0; q < 3; q++) {
     const int s = mesh.triangles[pair.triangle][q];
-    inverse += mesh.w_solver[s] * pair.weight[q] * shares[s][0];
+    inverse += mesh.w_solver[s] * pair.weight[q] * load_at[s][0];
   }
   return pair.normal_correction / inverse;
 }
@@ -82,5 +107,5 @@ void ContactPairs::apply_impulse(const ContactPair &pair, const Vec3 &by)
 
 double ContactPairs::memory_usage() const
 {
-  return bytes_of(particles, pairs, impulse, velocity, entry, shares);
+  return bytes_of(particles, pairs, impulse, velocity, entry, pairs_at, load_at);
 }

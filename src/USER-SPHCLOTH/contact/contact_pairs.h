@@ -36,6 +36,7 @@ struct ContactPair {
   using Vec3 = Eigen::Vector3d;
 
   int particle = 0, triangle = 0;
+  sphcloth::ContactStart start;    // of the step
   bool in_contact = false;    // in this substep: the next three are known
   Vec3 weight = Vec3::Zero(), normal = Vec3::Zero();
   double gap = 0.0;    // to be kept
@@ -64,19 +65,9 @@ class ContactPairs : protected Pointers {
     return particles[pair.particle];
   }
 
-  // `share` of each pair and corner of its triangle, summed up at vertices, for the mass splitting
-  template <class Share> void sum_shares(Share share)
-  {
-    shares.assign(mesh.halo.n_slots(), Vec3::Zero());
-    for (const ContactPair &pair : pairs)
-      for (int q = 0; q < 3; q++) shares[mesh.triangles[pair.triangle][q]][0] += share(pair, q);
-    mesh.halo.reverse_add(0, shares.data());
-    mesh.halo.forward(0, shares.data());
-  }
-  void share_evenly()
-  {
-    sum_shares([](const ContactPair &, int) { return 1.0; });
-  }
+  // What the masses are split by, see below: collective.  Evenly: whenever there are other pairs.
+  void share_evenly();
+  void share_by_load();
 
   // effective mass of a pair: masses split evenly over all pairs, or as pairs push, so that one
   // that hardly pushes hardly counts
@@ -95,7 +86,9 @@ class ContactPairs : protected Pointers {
  private:
   MovingTriangles &mesh;
   std::vector<int> entry;    // of an atom among the particles, or -1
-  std::vector<Vec3> shares;
+  std::vector<Vec3> pairs_at, load_at;    // of a vertex: how many; what they push, in [0]
+
+  template <class Share> void sum_at_vertices(std::vector<Vec3> &sums, Share share);
 };
 
 }    // namespace LAMMPS_NS

@@ -78,13 +78,35 @@ std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t, double part) cons
   return sweep;
 }
 
-ContactResult MovingTriangles::contact(const Sweep &p, int t, double slack, double part) const
+ContactResult MovingTriangles::contact(const Sweep &p, int t, double slack) const
 {
-  const std::array<Sweep, 3> sweep = sweep_of_triangle(t, part);
-  const ContactResult found = point_triangle_contact(p, sweep, rules.thickness, slack);
+  return of_nearest(point_triangle_contact(p, sweep_of_triangle(t), rules.thickness, slack), p.end,
+                    t, 1.0);
+}
+
+ContactResult MovingTriangles::contact_since(const ContactStart &begin, const Sweep &p, int t,
+                                             double part) const
+{
+  const auto &[i, j, k] = triangles[t];
+  const Vec3 a = position_at(i, part), b = position_at(j, part), c = position_at(k, part);
+  const PointAndTriangle now{p.end, a, b, c};
+  const Vec3 normal = now.normal();
+  const bool same_side = begin.side * normal.dot(p.end - a) > 0.0;
+  const ContactResult found = same_side
+      ? point_triangle_nearness(now, normal, begin.side, begin.gap(rules.thickness), 0.0)
+      : point_triangle_contact(p, sweep_of_triangle(t, part), rules.thickness, 0.0);
+  return of_nearest(found, p.end, t, part);
+}
+
+// None if the point is nearer to another triangle, unless it passes through
+
+ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3 &p, int t,
+                                          double part) const
+{
   if (!found.hit || found.through) return found;
-  Vec3 from_nearest = p.end;
-  for (int q = 0; q < 3; q++) from_nearest -= found.weight[q] * sweep[q].end;
+  Vec3 from_nearest = p;
+  for (int q = 0; q < 3; q++)
+    from_nearest -= found.weight[q] * position_at(triangles[t][q], part);
   return is_nearer_to_another(t, found.weight, from_nearest, part) ? ContactResult() : found;
 }
 

@@ -44,14 +44,23 @@ class MovingTriangles : public TriangleSet {
   // a mesh whose vertices collide with this one: held vertices do not give way
   void add_vertices_of(const ContactMesh *other) { others.push_back(other); }
 
+  const ParticleColumns &last_positions;    // of owned atoms, at the start of the step
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t, double part = 1.0) const;
   // Contact with a point whose start is that of the step, `part` of which has passed.  One that is
   // nearer to another triangle at the same edge or vertex only counts if it passes through: the
   // normal of a surface is that of the triangle that is nearest.
-  sphcloth::ContactResult contact(const sphcloth::Sweep &, int t, double slack,
-                                  double part = 1.0) const;
-
+  sphcloth::ContactResult contact(const sphcloth::Sweep &, int t, double slack) const;
+  // The same where the start of the step is known, for iterations within it: without slack, a
+  // distance, and the whole step only for a point that ends on the other side of the triangle's
+  // plane.  Passing through twice is not seen.
+  sphcloth::ContactResult contact_since(const sphcloth::ContactStart &, const sphcloth::Sweep &,
+                                        int t, double part = 1.0) const;
+  sphcloth::ContactStart contact_start(const Vec3 &p, int t) const
+  {
+    const auto &[a, b, c] = triangles[t];
+    return sphcloth::contact_start(p, start[a], start[b], start[c]);
+  }
   // Of a point at this vector from its nearest point in a triangle, which has these weights: is it
   // nearer to another triangle at the same edge or vertex?
   bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
@@ -71,7 +80,9 @@ class MovingTriangles : public TriangleSet {
 
  private:
   std::vector<const ContactMesh *> others;
-  const ParticleColumns &last_positions;
+
+  sphcloth::ContactResult of_nearest(const sphcloth::ContactResult &, const Vec3 &p, int t,
+                                     double part) const;
 
   Vec3 position_at(int slot, double part) const
   {

@@ -49,7 +49,7 @@ void ObstacleCoupling::find_candidates(int slot, const Sweep &sweep)
   Box box(sweep.start);
   box.extend(sweep.end);
   grid.query(box, [&](int t) {
-    if (boxes[t].intersects(box)) candidates.push_back(t);
+    if (boxes[t].intersects(box)) candidates.push_back({t, obstacle.contact_start(sweep.start, t)});
   });
   if (static_cast<int>(candidates.size()) == first) return;
   contacts.push_back({});
@@ -100,11 +100,12 @@ int ObstacleCoupling::find_deepest(const VertexContact &c, const Vec3 &position,
 {
   int triangle = -1;
   for (int k = c.first; k < c.last; k++) {
+    const auto &[t, begin] = candidates[k];
     const ContactResult contact =
-        obstacle.contact({c.start, position}, candidates[k], 0.0, elapsed / step_dt);
-    if (!contact.hit || !obstacle.is_deeper(contact, candidates[k], deepest, triangle)) continue;
+        obstacle.contact_since(begin, {c.start, position}, t, elapsed / step_dt);
+    if (!contact.hit || !obstacle.is_deeper(contact, t, deepest, triangle)) continue;
     deepest = contact;
-    triangle = candidates[k];
+    triangle = t;
   }
   return triangle;
 }

@@ -33,9 +33,13 @@ class ObstacleCoupling : public SolverCoupling, protected Pointers {
   double memory_usage() const;
 
  private:
+  struct Candidate {    // that a vertex may meet in this step
+    int triangle;
+    sphcloth::ContactStart start;
+  };
   struct VertexContact {    // of a vertex of the cloth
     int slot;
-    int first, last;    // its triangles: candidates[first] to candidates[last - 1]
+    int first, last;    // of its candidates: candidates[first] to candidates[last - 1]
     Vec3 start = Vec3::Zero();
     // of the substep: the triangle that it was put back from last, where, and how far
     int triangle = -1;
@@ -51,7 +55,7 @@ class ObstacleCoupling : public SolverCoupling, protected Pointers {
   const sphcloth::Vertex *substep_start = nullptr;
   std::vector<sphcloth::Box> boxes;    // of the sweeps of triangles
   sphcloth::BoxGrid grid;
-  std::vector<int> candidates;
+  std::vector<Candidate> candidates;
   std::vector<VertexContact> contacts;
   std::vector<Vec3> received;    // by slot of the cloth
   std::vector<Vec3> impulse;    // on the obstacle, by slot

@@ -65,7 +65,7 @@ bool PostStabilization::resolve_deepest(bool first)
     mesh.counts.stops++;
     contacts.add(particle, triangle, deepest).max_approach = max_approach;
   };
-  candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
+  for_near([&](int i, int t, const Sweep &sweep) {
     if (i != particle) {
       put_back();
       particle = i;
@@ -116,7 +116,7 @@ void PostStabilization::warn_of_too_near()
   bigint mine = 0, all;
   tagint example = 0, one;
   int last = -1;
-  candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
+  for_near([&](int i, int t, const Sweep &sweep) {
     ContactResult contact;
     if (i == last || !recover_gap(contact, sweep.end, t)) return;
     last = i;
@@ -198,7 +198,7 @@ void PostStabilization::freeze_zones()
   ImpactZones zones;
   for (;;) {
     std::vector<tagint> caught;
-    candidates.for_overlapping([&](int i, int t, const Sweep &sweep) {
+    for_near([&](int i, int t, const Sweep &sweep) {
       if (!point_triangle_contact(sweep, mesh.sweep_of_triangle(t), mesh.rules.thickness).through)
         return;
       mesh.counts.frozen++;

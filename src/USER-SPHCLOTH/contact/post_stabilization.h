@@ -39,6 +39,12 @@ class PostStabilization : protected Pointers {
   ContactPairs contacts;
   KnownRegion region;
 
+  template <class Visit> void for_near(Visit visit) const
+  {
+    candidates.for_near(mesh.rules.thickness,
+                        [&visit](int i, int t, const sphcloth::Sweep &sweep,
+                                 const sphcloth::ContactStart &) { visit(i, t, sweep); });
+  }
   bool resolve_deepest(bool first);
   bool recover_gap(sphcloth::ContactResult &, const Vec3 &p, int t) const;
   void solve_velocities();

@@ -16,7 +16,7 @@ void SheetSides::find(double cutoff, int sheet, std::vector<Sides> &sides)
 {
   const WallTimer clock(mesh.counts.seconds);
   mesh.load_positions();
-  discs.build(mesh, cutoff);
+  discs.build(mesh, cutoff, [](std::size_t) { return 0.0; });
   for (int i = 0; i < atom->nlocal; i++) {
     if (!mesh.can_move(i)) continue;
     const double *x = atom->x[i];

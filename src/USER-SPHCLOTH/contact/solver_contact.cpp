@@ -16,6 +16,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
+// of the thickness: by which vertices are expected to move in a step.  Without their constraints
+// they may go anywhere.
+static constexpr double MAX_STRIDE = 0.25;
+
 void SolverContact::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
 bool SolverContact::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
@@ -28,11 +32,12 @@ bool SolverContact::begin_step(const Vertex *step_start, const Vertex *step_end,
   remaining = dt;
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
   mesh.halo.forward_positions(0, mesh.end.data());
-  candidates.update();
+  candidates.update(MAX_STRIDE * mesh.rules.thickness);
   find_pairs();
   int mine = !contacts.pairs.empty(), any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) return false;
+  contacts.share_evenly();
 
   for (ContactParticle &p : contacts.particles)
     p.velocity = p.velocity_before = (p.end - p.start) / dt;
@@ -41,15 +46,19 @@ bool SolverContact::begin_step(const Vertex *step_start, const Vertex *step_end,
   return true;
 }
 
+// with room for what the constraints of the cloth add to the motion
+
 void SolverContact::find_pairs()
 {
   contacts.clear();
-  candidates.for_overlapping([this](int i, int t, const Sweep &sweep) {
-    if (!may_contact(sweep, mesh.sweep_of_triangle(t), 2.0 * mesh.rules.thickness)) return;
-    ContactParticle &p = contacts.particle_of(contacts.add(i, t, ContactResult()));
-    p.start = sweep.start;
-    p.end = sweep.end;
-  });
+  candidates.for_near(candidates.max_reach(),
+                      [this](int i, int t, const Sweep &sweep, const ContactStart &start) {
+                        ContactPair &pair = contacts.add(i, t, ContactResult());
+                        pair.start = start;
+                        ContactParticle &p = contacts.particle_of(pair);
+                        p.start = sweep.start;
+                        p.end = sweep.end;
+                      });
 }
 
 void SolverContact::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
@@ -64,15 +73,12 @@ void SolverContact::begin_substep(const Vertex *vertices, const Vertex *v, doubl
     p.displacement = dt * p.velocity;
     p.end = p.from + p.displacement;
     p.touched = false;
-    p.contacts = 0;
   }
   for (ContactPair &pair : contacts.pairs) {
-    contacts.particle_of(pair).contacts++;
     pair.in_contact = false;
     pair.normal_correction = 0.0;
     pair.friction_correction.setZero();
   }
-  contacts.share_evenly();
   if (mesh.rules.restitution > 0.0) load_velocities(v);
   if (mesh.rules.friction == 0.0) return;
   from.resize(mesh.halo.n_slots());
@@ -120,7 +126,8 @@ void SolverContact::project_normal(ContactPair &pair)
 {
   const ContactParticle &p = contacts.particle_of(pair);
   const std::array<int, 3> &slots = mesh.triangles[pair.triangle];
-  const ContactResult contact = mesh.contact({p.start, p.end}, pair.triangle, 0.0);
+  const ContactResult contact =
+      mesh.contact_since(pair.start, {p.start, p.end}, pair.triangle);
   double missing = contact.depth;
   if (contact.hit) {
     pair.weight = contact.weight;
@@ -132,16 +139,14 @@ void SolverContact::project_normal(ContactPair &pair)
     mesh.counts.contacts++;
     mesh.counts.deepest = std::max(mesh.counts.deepest, contact.depth);
   } else if (pair.normal_correction > 0.0) {
-    Vec3 weight;
-    const Vec3 vector = distance_vector(p.end, mesh.end[slots[0]], mesh.end[slots[1]],
-                                        mesh.end[slots[2]], weight);
-    const double distance = vector.norm();
-    missing = pair.gap - distance;
-    if (mesh.is_nearer_to_another(pair.triangle, weight, vector))
+    const PointAndTriangle now{p.end, mesh.end[slots[0]], mesh.end[slots[1]], mesh.end[slots[2]]};
+    const Nearness near = nearness(now, now.normal(), pair.start.side);
+    missing = pair.gap - near.distance;
+    if (mesh.is_nearer_to_another(pair.triangle, near.weight, near.distance * near.direction))
       missing = -std::numeric_limits<double>::max();
     else {
-      pair.weight = weight;
-      if (distance > 0.0) pair.normal = vector / distance;
+      pair.weight = near.weight;
+      if (near.distance > 0.0) pair.normal = near.direction;
     }
   } else
     return;
@@ -172,14 +177,9 @@ void SolverContact::project_friction(ContactPair &pair)
 void SolverContact::end_substep(Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
-  for (ContactParticle &p : contacts.particles) {
+  for (ContactParticle &p : contacts.particles)
     if (p.touched) p.velocity = p.displacement / dt;
-    p.load = 0.0;
-  }
-  for (const ContactPair &pair : contacts.pairs)
-    contacts.particle_of(pair).load += pair.normal_correction;
-  contacts.sum_shares(
-      [](const ContactPair &pair, int q) { return pair.normal_correction * pair.weight[q]; });
+  contacts.share_by_load();
   load_velocities(v);
   contacts.clear_impulses();
   for (const ContactPair &pair : contacts.pairs)

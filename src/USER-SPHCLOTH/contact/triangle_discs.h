@@ -8,25 +8,20 @@
 #include "core/geometry/disc_grid.h"
 #include "core/util/bytes.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 class TriangleDiscs {
  public:
-  // at the end of the step, with room for the way back to its start
-  void build(const MovingTriangles &mesh, double distance)
+  // at the start of the step; room(t): how far a triangle may be from there
+  template <class Room> void build(const MovingTriangles &mesh, double distance, Room room)
   {
     discs.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < discs.size(); t++) {
       const auto &[a, b, c] = mesh.triangles[t];
-      discs[t] = sphcloth::disc_around(mesh.end[a], mesh.end[b], mesh.end[c]);
-      double displacement_sq = 0.0;
-      for (int s : mesh.triangles[t])
-        displacement_sq = std::max(displacement_sq, (mesh.end[s] - mesh.start[s]).squaredNorm());
-      discs[t].room = std::sqrt(displacement_sq);
+      discs[t] = sphcloth::disc_around(mesh.start[a], mesh.start[b], mesh.start[c]);
+      discs[t].room = room(t);
     }
     grid.build(discs, distance);
   }

@@ -149,24 +149,89 @@ inline SignedVolume signed_volume(const Sweep &p, const std::array<Sweep, 3> &tr
   return {n0.dot(q), n0.dot(dq) + n1.dot(q), n1.dot(dq) + n2.dot(q), n2.dot(dq)};
 }
 
-// Does point p pass through the triangle within the step, or end nearer to its inside, edges or
-// vertices than `thickness`?  A point that starts nearer than that keeps the gap it has: contact
-// removes approaching motion and never pushes, so it cannot add energy.  `slack` is the share of
-// the gap that may be missing; passing through always counts.
+// What contact at any later moment of the step needs to know of its start
+
+struct ContactStart {
+  double side = 1.0;    // of the triangle's plane: 1 where its normal points, or -1
+  double distance = 0.0;
+
+  // to be kept: the thickness, or the distance if that is smaller
+  double gap(double thickness) const { return std::min(thickness, distance); }
+};
+
+inline ContactStart contact_start(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec3 &c)
+{
+  Vec3 weight;
+  const double distance = distance_vector(p, a, b, c, weight).norm();
+  return {(b - a).cross(c - a).dot(p - a) >= 0.0 ? 1.0 : -1.0, distance};
+}
+
+// Where point and triangle are
+
+struct PointAndTriangle {
+  const Vec3 &p, &a, &b, &c;
+  // of the triangle, twice its area long
+  Vec3 normal() const { return (b - a).cross(c - a); }
+};
+
+// From the nearest point of the triangle to the point.  Above its inside the direction is that of
+// the triangle, whatever the distance.
+
+struct Nearness {
+  Vec3 weight, direction;
+  double distance;
+};
+
+inline Nearness nearness(const PointAndTriangle &at, const Vec3 &normal, double side)
+{
+  Nearness near;
+  const Vec3 vector = distance_vector(at.p, at.a, at.b, at.c, near.weight);
+  near.distance = vector.norm();
+  const bool above = near.weight.minCoeff() > 0.0 || near.distance == 0.0;
+  const double height = normal.dot(at.p - at.a);
+  if (above)
+    near.direction = (height != 0.0 ? std::copysign(1.0, height) : side) / normal.norm() * normal;
+  else
+    near.direction = vector / near.distance;
+  return near;
+}
+
+// Is a point nearer to the inside, the edges or the vertices of the triangle than the gap, by more
+// than a share `slack` of it?
+
+inline ContactResult point_triangle_nearness(const PointAndTriangle &at, const Vec3 &normal,
+                                             double side, double gap, double slack)
+{
+  ContactResult result;
+  const double height = normal.dot(at.p - at.a);
+  result.gap = gap;
+  if (height * height >= gap * gap * normal.squaredNorm()) return result;
+  const Nearness near = nearness(at, normal, side);
+  if (near.distance >= gap * (1.0 - slack)) return result;
+  result.hit = true;
+  result.weight = near.weight;
+  result.normal = near.direction;
+  result.depth = gap - near.distance;
+  return result;
+}
+
+// Does point p pass through the triangle within the step, or end too near?  A point that starts
+// nearer than the thickness keeps the gap it has: contact removes approaching motion and never
+// pushes, so it cannot add energy.  Passing through always counts.
 
 inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Sweep, 3> &tri,
                                             double thickness, double slack = SEAM)
 {
   ContactResult result;
-  const Vec3 e1 = tri[1].start - tri[0].start, e2 = tri[2].start - tri[0].start;
-  const Vec3 q = p.start - tri[0].start;
-  const Vec3 normal_start = e1.cross(e2);
-  const Vec3 normal_end = (tri[1].end - tri[0].end).cross(tri[2].end - tri[0].end);
+  const Vec3 normal_start =
+      (tri[1].start - tri[0].start).cross(tri[2].start - tri[0].start);
+  const PointAndTriangle end{p.end, tri[0].end, tri[1].end, tri[2].end};
+  const Vec3 normal_end = end.normal();
   const double double_area = normal_start.norm();
   const double double_area_end = normal_end.norm();
   if (double_area == 0.0 || double_area_end == 0.0) return result;
 
-  const double gap_start = normal_start.dot(q) / double_area;
+  const double gap_start = normal_start.dot(p.start - tri[0].start) / double_area;
   const double side = gap_start >= 0.0 ? 1.0 : -1.0;
 
   // passes through: put back to the side where it was, along the normal
@@ -186,31 +251,11 @@ inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Swe
     result.depth = std::max(0.0, result.gap - result.normal.dot(p.end - tri[0].end));
     return result;
   }
-
-  // ends too near
   if (std::fabs(normal_end.dot(p.end - tri[0].end)) >= thickness * double_area_end) return result;
   Vec3 weight;
-  const Vec3 before = distance_vector(p.start, tri[0].start, tri[1].start, tri[2].start, weight);
-  const Vec3 vector = distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight);
-  const double distance = vector.norm();
-  result.gap = std::min(thickness, before.norm());
-  if (distance >= result.gap * (1.0 - slack)) return result;
-  result.hit = true;
-  result.weight = weight;
-  result.normal = distance > 0.0 ? Vec3(vector / distance)
-                                 : Vec3(side / double_area_end * normal_end);
-  result.depth = result.gap - distance;
-  return result;
-}
-
-// May point and triangle collide, if neither moves exactly as expected?
-
-inline bool may_contact(const Sweep &p, const std::array<Sweep, 3> &tri, double reach)
-{
-  if (!signed_volume(p, tri).never_zero()) return true;
-  Vec3 weight;
-  return distance_vector(p.end, tri[0].end, tri[1].end, tri[2].end, weight).squaredNorm() <
-      reach * reach;
+  const double before =
+      distance_vector(p.start, tri[0].start, tri[1].start, tri[2].start, weight).norm();
+  return point_triangle_nearness(end, normal_end, side, std::min(thickness, before), slack);
 }
 
 }    // namespace sphcloth

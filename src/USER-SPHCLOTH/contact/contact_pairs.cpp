@@ -15,6 +15,7 @@ void ContactPairs::clear()
   for (const ContactParticle &p : particles) entry[p.atom] = -1;
   particles.clear();
   pairs.clear();
+  active.clear();
   entry.resize(atom->nlocal, -1);
 }
 
@@ -35,29 +36,31 @@ ContactPair &ContactPairs::add(int i, int triangle, const ContactResult &contact
   return pairs.back();
 }
 
-// `share` of each pair and corner of its triangle
-
-template <class Share> void ContactPairs::sum_at_vertices(std::vector<Vec3> &sums, Share share)
-{
-  sums.assign(mesh.halo.n_slots(), Vec3::Zero());
-  for (const ContactPair &pair : pairs)
-    for (int q = 0; q < 3; q++) sums[mesh.triangles[pair.triangle][q]][0] += share(pair, q);
-  mesh.halo.reverse_add(0, sums.data());
-  mesh.halo.forward(0, sums.data());
-}
-
 void ContactPairs::share_evenly()
 {
-  sum_at_vertices(pairs_at, [](const ContactPair &, int) { return 1.0; });
+  pairs_at.assign(mesh.halo.n_slots(), Vec3::Zero());
+  for (const ContactPair &pair : pairs)
+    for (int s : mesh.triangles[pair.triangle]) pairs_at[s][0] += 1.0;
+  sum_of_images(pairs_at);
 }
 
 void ContactPairs::share_by_load()
 {
   for (ContactParticle &p : particles) p.load = 0.0;
-  for (const ContactPair &pair : pairs) particle_of(pair).load += pair.normal_correction;
-  sum_at_vertices(load_at, [](const ContactPair &pair, int q) {
-    return pair.normal_correction * pair.weight[q];
-  });
+  load_at.assign(mesh.halo.n_slots(), Vec3::Zero());
+  for (int k : active) {
+    const ContactPair &pair = pairs[k];
+    particle_of(pair).load += pair.normal_correction;
+    for (int q = 0; q < 3; q++)
+      load_at[mesh.triangles[pair.triangle][q]][0] += pair.normal_correction * pair.weight[q];
+  }
+  sum_of_images(load_at);
+}
+
+void ContactPairs::sum_of_images(std::vector<Vec3> &sums)
+{
+  mesh.halo.reverse_add(0, sums.data());
+  mesh.halo.forward(0, sums.data());
 }
 
 double ContactPairs::split_mass(const ContactPair &pair,
@@ -107,5 +110,5 @@ void ContactPairs::apply_impulse(const ContactPair &pair, const Vec3 &by)
 
 double ContactPairs::memory_usage() const
 {
-  return bytes_of(particles, pairs, impulse, velocity, entry, pairs_at, load_at);
+  return bytes_of(particles, pairs, impulse, velocity, active, entry, pairs_at, load_at);
 }

@@ -22,6 +22,7 @@ struct ContactParticle {
   double w = 0.0;
   int contacts = 0;
   bool touched = false;    // in this substep
+  double path = 0.0;    // how far it went in this step, from sweep to sweep
   double load = 0.0;    // sum of the normal corrections of its pairs
   Vec3 start = Vec3::Zero(), end = Vec3::Zero();    // of the step so far
   Vec3 from = Vec3::Zero(),
@@ -37,6 +38,7 @@ struct ContactPair {
 
   int particle = 0, triangle = 0;
   sphcloth::ContactStart start;    // of the step
+  double awake_from = 0.0;    // path of particle and vertices before which there is no contact
   bool in_contact = false;    // in this substep: the next three are known
   Vec3 weight = Vec3::Zero(), normal = Vec3::Zero();
   double gap = 0.0;    // to be kept
@@ -65,7 +67,8 @@ class ContactPairs : protected Pointers {
     return particles[pair.particle];
   }
 
-  // What the masses are split by, see below: collective.  Evenly: whenever there are other pairs.
+  // What the masses are split by, see below: collective.  Evenly: over all pairs, as long as these
+  // are the same.  By load: over active ones.
   void share_evenly();
   void share_by_load();
 
@@ -76,6 +79,9 @@ class ContactPairs : protected Pointers {
 
   // of the particle relative to the triangle
   Vec3 relative_velocity(const ContactPair &) const;
+
+  // the pairs that are in contact in this substep
+  std::vector<int> active;
 
   // on the particle, and the opposite on the triangle; clear before each pass
   void clear_impulses();
@@ -88,7 +94,7 @@ class ContactPairs : protected Pointers {
   std::vector<int> entry;    // of an atom among the particles, or -1
   std::vector<Vec3> pairs_at, load_at;    // of a vertex: how many; what they push, in [0]
 
-  template <class Share> void sum_at_vertices(std::vector<Vec3> &sums, Share share);
+  void sum_of_images(std::vector<Vec3> &sums);
 };
 
 }    // namespace LAMMPS_NS

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -42,6 +43,8 @@ bool SolverContact::begin_step(const Vertex *step_start, const Vertex *step_end,
   for (ContactParticle &p : contacts.particles)
     p.velocity = p.velocity_before = (p.end - p.start) / dt;
   for (ContactParticle &p : contacts.particles) p.end = p.start;
+  mesh.end = mesh.start;
+  vertex_path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
 }
@@ -55,6 +58,7 @@ void SolverContact::find_pairs()
                       [this](int i, int t, const Sweep &sweep, const ContactStart &start) {
                         ContactPair &pair = contacts.add(i, t, ContactResult());
                         pair.start = start;
+                        pair.awake_from = start.distance - start.gap(mesh.rules.thickness);
                         ContactParticle &p = contacts.particle_of(pair);
                         p.start = sweep.start;
                         p.end = sweep.end;
@@ -72,13 +76,16 @@ void SolverContact::begin_substep(const Vertex *vertices, const Vertex *v, doubl
     p.from = p.end;
     p.displacement = dt * p.velocity;
     p.end = p.from + p.displacement;
+    p.path += p.displacement.norm();
     p.touched = false;
   }
-  for (ContactPair &pair : contacts.pairs) {
+  for (int k : contacts.active) {
+    ContactPair &pair = contacts.pairs[k];
     pair.in_contact = false;
     pair.normal_correction = 0.0;
     pair.friction_correction.setZero();
   }
+  contacts.active.clear();
   if (mesh.rules.restitution > 0.0) load_velocities(v);
   if (mesh.rules.friction == 0.0) return;
   from.resize(mesh.halo.n_slots());
@@ -90,23 +97,15 @@ void SolverContact::begin_substep(const Vertex *vertices, const Vertex *v, doubl
 void SolverContact::project(Vertex *displacement)
 {
   const WallTimer clock(mesh.counts.seconds);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const Vertex &start = substep_start[s];
-    mesh.end[s] =
-        Vec3(start.x + displacement[s].x, start.y + displacement[s].y, start.z + displacement[s].z);
-  }
-  mesh.halo.forward_positions(0, mesh.end.data(), remaining);
+  move_vertices(displacement);
   contacts.clear_impulses();
-
-  for (ContactPair &pair : contacts.pairs) {
-    project_normal(pair);
+  for (int k = 0; k < static_cast<int>(contacts.pairs.size()); k++) {
+    ContactPair &pair = contacts.pairs[k];
+    if (sleeps(pair)) continue;
+    project_normal(k);
     if (mesh.rules.friction > 0.0 && pair.in_contact) project_friction(pair);
   }
-
-  for (ContactParticle &p : contacts.particles) {
-    p.displacement += p.w * p.impulse;
-    p.end = p.from + p.displacement;
-  }
+  move_particles();
   mesh.halo.reverse_add(0, contacts.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vec3 &impulse = contacts.impulse[s];
@@ -117,23 +116,57 @@ void SolverContact::project(Vertex *displacement)
   }
 }
 
+void SolverContact::move_vertices(const Vertex *displacement)
+{
+  end_before = mesh.end;
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const Vertex &start = substep_start[s];
+    mesh.end[s] =
+        Vec3(start.x + displacement[s].x, start.y + displacement[s].y, start.z + displacement[s].z);
+  }
+  mesh.halo.forward_positions(0, mesh.end.data(), remaining);
+  double max_sq = 0.0;
+  for (std::size_t s = 0; s < end_before.size(); s++)
+    max_sq = std::max(max_sq, (mesh.end[s] - end_before[s]).squaredNorm());
+  vertex_path += std::sqrt(max_sq);
+}
+
+void SolverContact::move_particles()
+{
+  for (ContactParticle &p : contacts.particles) {
+    if (!p.touched) continue;
+    const Vec3 by = p.w * p.impulse;
+    p.displacement += by;
+    p.end = p.from + p.displacement;
+    p.path += by.norm();
+  }
+}
+
+// Distances change by no more than what both sides move.
+
+bool SolverContact::sleeps(const ContactPair &pair) const
+{
+  return pair.awake_from > vertex_path + contacts.particle_of(pair).path;
+}
+
 // Closes what is missing of the gap.  What was corrected too far before is taken back, but a pair
 // never pulls, and what was corrected where another triangle has become the nearest is taken back
 // whole.  All of this is continuous in the positions: whether a gap that is just closed
 // counts as a hit is round-off, and makes no difference.
 
-void SolverContact::project_normal(ContactPair &pair)
+void SolverContact::project_normal(int k)
 {
+  ContactPair &pair = contacts.pairs[k];
   const ContactParticle &p = contacts.particle_of(pair);
   const std::array<int, 3> &slots = mesh.triangles[pair.triangle];
-  const ContactResult contact =
-      mesh.contact_since(pair.start, {p.start, p.end}, pair.triangle);
+  const ContactResult contact = mesh.contact_since(pair.start, {p.start, p.end}, pair.triangle);
   double missing = contact.depth;
   if (contact.hit) {
     pair.weight = contact.weight;
     pair.normal = contact.normal;
     if (!pair.in_contact && mesh.rules.restitution > 0.0)
       pair.speed_before = contacts.relative_velocity(pair).dot(pair.normal);
+    if (!pair.in_contact) contacts.active.push_back(k);
     pair.in_contact = true;
     pair.gap = contact.gap;
     mesh.counts.contacts++;
@@ -148,8 +181,10 @@ void SolverContact::project_normal(ContactPair &pair)
       pair.weight = near.weight;
       if (near.distance > 0.0) pair.normal = near.direction;
     }
-  } else
+  } else {
+    pair.awake_from = vertex_path + p.path + contact.clearance;
     return;
+  }
   const double step =
       std::max(missing * contacts.split_mass(pair, mesh.w_solver), -pair.normal_correction);
   pair.normal_correction += step;
@@ -182,8 +217,8 @@ void SolverContact::end_substep(Vertex *v, double dt)
   contacts.share_by_load();
   load_velocities(v);
   contacts.clear_impulses();
-  for (const ContactPair &pair : contacts.pairs)
-    if (pair.normal_correction > 0.0) solve_velocity(pair, dt);
+  for (int k : contacts.active)
+    if (contacts.pairs[k].normal_correction > 0.0) solve_velocity(contacts.pairs[k], dt);
   for (ContactParticle &p : contacts.particles) p.velocity += p.w * p.impulse;
   mesh.halo.reverse_add(0, contacts.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
@@ -228,5 +263,5 @@ void SolverContact::end_step()
 
 double SolverContact::memory_usage() const
 {
-  return contacts.memory_usage() + bytes_of(from, received);
+  return contacts.memory_usage() + bytes_of(from, end_before, received);
 }

@@ -42,11 +42,16 @@ class SolverContact : public SolverCoupling, protected Pointers {
   double substep_dt = 0.0, remaining = 0.0;    // of the step, behind this substep
   const sphcloth::Vertex *substep_start = nullptr;    // by owned slot
   std::vector<Vec3> from;    // the same by slot, with friction
+  std::vector<Vec3> end_before;    // by slot, in the last sweep
+  double vertex_path = 0.0;    // how far the fastest went from sweep to sweep, in this step
   std::vector<Vec3> received;    // by owned slot, mass times velocity
 
   void find_pairs();
   void load_velocities(const sphcloth::Vertex *v);
-  void project_normal(ContactPair &);
+  void move_vertices(const sphcloth::Vertex *displacement);
+  void move_particles();
+  bool sleeps(const ContactPair &) const;
+  void project_normal(int pair);
   void project_friction(ContactPair &);
   void solve_velocity(const ContactPair &, double dt);
 };

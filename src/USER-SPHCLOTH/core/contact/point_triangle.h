@@ -32,6 +32,7 @@ struct ContactResult {
   Vec3 normal = Vec3::Zero();    // at the end, from the triangle towards the point's own side
   double depth = 0.0;            // what the end position lacks of the gap to be kept, >= 0
   double gap = 0.0;              // that gap: the thickness, or the gap at the start if smaller
+  double clearance = 0.0;        // without a hit: at least so much farther away than that
 };
 
 // The tolerance that closes the seams between neighboring triangles in round-off.
@@ -203,11 +204,17 @@ inline ContactResult point_triangle_nearness(const PointAndTriangle &at, const V
                                              double side, double gap, double slack)
 {
   ContactResult result;
-  const double height = normal.dot(at.p - at.a);
+  const double height = normal.dot(at.p - at.a), area_sq = normal.squaredNorm();
   result.gap = gap;
-  if (height * height >= gap * gap * normal.squaredNorm()) return result;
+  if (height * height >= gap * gap * area_sq) {
+    result.clearance = std::fabs(height) / std::sqrt(area_sq) - gap;
+    return result;
+  }
   const Nearness near = nearness(at, normal, side);
-  if (near.distance >= gap * (1.0 - slack)) return result;
+  if (near.distance >= gap * (1.0 - slack)) {
+    result.clearance = near.distance - gap;
+    return result;
+  }
   result.hit = true;
   result.weight = near.weight;
   result.normal = near.direction;

@@ -152,4 +152,49 @@ BOOST_AUTO_TEST_CASE(volume_that_is_never_zero_has_no_root)
   BOOST_CHECK(never > 2000);
 }
 
+BOOST_AUTO_TEST_CASE(what_is_known_of_the_start_finds_the_same_contact)
+{
+  std::mt19937 dice(11);
+  std::uniform_real_distribution<double> any(-0.3, 0.3);
+  const auto point = [&] { return Vec3(any(dice), any(dice), any(dice)); };
+  const double thickness = 0.1;
+  int hits = 0, clear = 0;
+  for (int n = 0; n < 20000; n++) {
+    const Sweep p{point(), point()};
+    const std::array<Sweep, 3> t{Sweep{point(), point()}, {point(), point()}, {point(), point()}};
+    const ContactResult whole = point_triangle_contact(p, t, thickness, 0.0);
+    const ContactStart start = contact_start(p.start, t[0].start, t[1].start, t[2].start);
+    const PointAndTriangle end{p.end, t[0].end, t[1].end, t[2].end};
+    const Vec3 normal = end.normal();
+    if (whole.through || start.side * normal.dot(p.end - t[0].end) < 0.0) continue;
+    const ContactResult known =
+        point_triangle_nearness(end, normal, start.side, start.gap(thickness), 0.0);
+    BOOST_REQUIRE(known.hit == whole.hit);
+    Vec3 weight;
+    const double distance = distance_vector(end.p, end.a, end.b, end.c, weight).norm();
+    if (known.hit) {
+      hits++;
+      BOOST_CHECK(known.depth == whole.depth && known.normal == whole.normal);
+      BOOST_CHECK_SMALL(known.depth - (start.gap(thickness) - distance), 1e-15);
+    } else {
+      clear += known.clearance > 0.0;
+      BOOST_CHECK(known.clearance >= 0.0);
+      BOOST_CHECK(known.clearance <= distance - start.gap(thickness) + 1e-15);
+    }
+  }
+  BOOST_CHECK(hits > 500);
+  BOOST_CHECK(clear > 5000);
+}
+
+BOOST_AUTO_TEST_CASE(above_a_flat_triangle_nothing_points_along_it_however_near)
+{
+  for (double height : {1e-3, 1e-9, 1e-14, -1e-14, 0.0}) {
+    const Vec3 p(0.3, 0.2, 0.7 + height), a(0, 0, 0.7), b(1, 0, 0.7), c(0, 1, 0.7);
+    const PointAndTriangle at{p, a, b, c};
+    const Nearness near = nearness(at, at.normal(), -1.0);
+    BOOST_CHECK(near.direction == Vec3(0.0, 0.0, height > 0.0 ? 1.0 : -1.0));
+    BOOST_CHECK_SMALL(near.distance - std::fabs(height), 1e-15);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -25,24 +25,27 @@ void CandidatePairs::clear()
 
 void CandidatePairs::update(double max_stride)
 {
-  measure_vertices(max_stride);
-  if (still_holds()) return;
-  find();
-  path = stride;
+  const bool holds = still_holds(max_stride);
+  if (holds && candidates.empty()) return;
+  measure_strides(max_stride);
+  if (!holds) find();
+  measure_paths();
 }
 
 double CandidatePairs::max_reach() const { return MAX_REACH * mesh.rules.thickness; }
 
-void CandidatePairs::measure_vertices(double max_stride)
+void CandidatePairs::measure_strides(double max_stride)
 {
-  const std::size_t n = mesh.start.size();
-  stride.resize(n);
-  path.resize(n);
-  const bool listed = vertices_then.size() == n;
-  for (std::size_t s = 0; s < n; s++) {
+  stride.resize(mesh.start.size());
+  for (std::size_t s = 0; s < stride.size(); s++)
     stride[s] = std::min((mesh.end[s] - mesh.start[s]).norm(), max_stride);
-    if (listed) path[s] = stride[s] + (mesh.start[s] - vertices_then[s]).norm();
-  }
+}
+
+void CandidatePairs::measure_paths()
+{
+  path.resize(stride.size());
+  for (std::size_t s = 0; s < path.size(); s++)
+    path[s] = stride[s] + (mesh.start[s] - vertices_then[s]).norm();
 }
 
 // How far vertices and particles may move before the list is made anew: as far as until the next
@@ -81,37 +84,49 @@ void CandidatePairs::find()
 
 // Does the list hold all pairs that may collide in this step?
 
-bool CandidatePairs::still_holds() const
+bool CandidatePairs::still_holds(double max_stride) const
 {
   if (positions_then[0].size() != static_cast<std::size_t>(atom->nlocal) ||
       vertices_then.size() != mesh.start.size())
     return false;
-  const double of_vertices = path.empty() ? 0.0 : *std::max_element(path.begin(), path.end());
-  return std::max(of_vertices, longest_path()) <= margin();    // false if not a number
+  return longest_path_of_vertices(max_stride) <= margin() &&
+      longest_path() <= margin();    // false if not a number
 }
 
-// Of particles that collide with this mesh, since the list was made, with this step: at most.  All
-// particles, twice in each step: one loop without branches.
+// Of a vertex, since the list was made, with this step: at most
+
+double CandidatePairs::longest_path_of_vertices(double max_stride) const
+{
+  double max_stride_sq = 0.0, max_before_sq = 0.0;
+  for (std::size_t s = 0; s < vertices_then.size(); s++) {
+    max_stride_sq = std::max(max_stride_sq, (mesh.end[s] - mesh.start[s]).squaredNorm());
+    max_before_sq = std::max(max_before_sq, (mesh.start[s] - vertices_then[s]).squaredNorm());
+  }
+  return std::min(std::sqrt(max_stride_sq), max_stride) + std::sqrt(max_before_sq);
+}
+
+// The same of a particle that collides with this mesh.  All particles, twice in each step: one loop
+// without branches.
 
 double CandidatePairs::longest_path() const
 {
   const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
   if (n == 0) return 0.0;
+  const ParticleColumns &last = mesh.last_positions;
   const double *const x = atom->x[0];
-  const double *const x0 = mesh.last_positions[0], *const y0 = mesh.last_positions[1],
-                      *const z0 = mesh.last_positions[2];
+  const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
   const double *const x1 = positions_then[0].data(), *const y1 = positions_then[1].data(),
                       *const z1 = positions_then[2].data();
-  double max_stride_sq = 0.0, max_before_sq = 0.0;
-#pragma omp simd reduction(max : max_stride_sq, max_before_sq)
+  double step_sq = 0.0, before_sq = 0.0;
+#pragma omp simd reduction(max : step_sq, before_sq)
   for (int i = 0; i < n; i++) {
     const double dx = x[3 * i] - x0[i], dy = x[3 * i + 1] - y0[i], dz = x[3 * i + 2] - z0[i];
     const double ex = x0[i] - x1[i], ey = y0[i] - y1[i], ez = z0[i] - z1[i];
-    const bool meets = mask[i] & groupbits;
-    max_stride_sq = std::max(max_stride_sq, meets ? dx * dx + dy * dy + dz * dz : 0.0);
-    max_before_sq = std::max(max_before_sq, meets ? ex * ex + ey * ey + ez * ez : 0.0);
+    const bool meets = (mask[i] & groupbits) != 0;
+    step_sq = std::max(step_sq, meets ? dx * dx + dy * dy + dz * dz : 0.0);
+    before_sq = std::max(before_sq, meets ? ex * ex + ey * ey + ez * ez : 0.0);
   }
-  return std::sqrt(max_stride_sq) + std::sqrt(max_before_sq);
+  return std::sqrt(step_sq) + std::sqrt(before_sq);
 }
 
 double CandidatePairs::memory_usage() const

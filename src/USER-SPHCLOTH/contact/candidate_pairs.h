@@ -71,9 +71,11 @@ class CandidatePairs : protected Pointers {
   TriangleDiscs discs;
 
   void find();
-  void measure_vertices(double max_stride);
-  bool still_holds() const;
+  void measure_strides(double max_stride);
+  void measure_paths();
+  bool still_holds(double max_stride) const;
   double margin() const;
+  double longest_path_of_vertices(double max_stride) const;
   double longest_path() const;
   Vec3 position_then(int i) const
   {

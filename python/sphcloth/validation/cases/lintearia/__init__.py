@@ -162,7 +162,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
 
 
 def resolutions(values: Mapping[str, Value]) -> dict[str, int]:
-    """Return particles over L of the two runs."""
+    """Return particles over L of the three runs."""
     return three(values["across"], COARSE, COARSEST)
 
 

@@ -109,7 +109,8 @@ class Run:
         Those argued to be equivalent take part in the first round, which puts the argument to the
         test.
         """
-        argued = [number for number in numbers if key(self.known[number]) in equivalents()]
+        reasons = equivalents()
+        argued = [number for number in numbers if key(self.known[number]) in reasons]
         others = [number for number in numbers if number not in argued]
         for budget in (*(one for one in BUDGETS if one < self.patience), self.patience):
             for number in [*others, *argued] if budget == BUDGETS[0] else others:

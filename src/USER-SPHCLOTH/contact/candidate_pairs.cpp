@@ -89,8 +89,7 @@ bool CandidatePairs::still_holds(double max_stride) const
   if (positions_then[0].size() != static_cast<std::size_t>(atom->nlocal) ||
       vertices_then.size() != mesh.start.size())
     return false;
-  return longest_path_of_vertices(max_stride) <= margin() &&
-      longest_path() <= margin();    // false if not a number
+  return std::max(longest_path_of_vertices(max_stride), longest_path()) <= margin();
 }
 
 // Of a vertex, since the list was made, with this step: at most

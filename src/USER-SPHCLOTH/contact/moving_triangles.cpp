@@ -90,10 +90,8 @@ ContactResult MovingTriangles::contact_since(const ContactStart &begin, const Sw
   const auto &[i, j, k] = triangles[t];
   const Vec3 a = position_at(i, part), b = position_at(j, part), c = position_at(k, part);
   const PointAndTriangle now{p.end, a, b, c};
-  const Vec3 normal = now.normal();
-  const bool same_side = begin.side * normal.dot(p.end - a) > 0.0;
-  const ContactResult found = same_side
-      ? point_triangle_nearness(now, normal, begin.side, begin.gap(rules.thickness), 0.0)
+  const ContactResult found = begin.side * now.height > 0.0
+      ? point_triangle_nearness(now, begin.side, begin.gap(rules.thickness), 0.0)
       : point_triangle_contact(p, sweep_of_triangle(t, part), rules.thickness, 0.0);
   return of_nearest(found, p.end, t, part);
 }

@@ -59,7 +59,7 @@ class MovingTriangles : public TriangleSet {
   sphcloth::ContactStart contact_start(const Vec3 &p, int t) const
   {
     const auto &[a, b, c] = triangles[t];
-    return sphcloth::contact_start(p, start[a], start[b], start[c]);
+    return sphcloth::contact_start({p, start[a], start[b], start[c]});
   }
   // Of a point at this vector from its nearest point in a triangle, which has these weights: is it
   // nearer to another triangle at the same edge or vertex?

@@ -173,7 +173,7 @@ void SolverContact::project_normal(int k)
     mesh.counts.deepest = std::max(mesh.counts.deepest, contact.depth);
   } else if (pair.normal_correction > 0.0) {
     const PointAndTriangle now{p.end, mesh.end[slots[0]], mesh.end[slots[1]], mesh.end[slots[2]]};
-    const Nearness near = nearness(now, now.normal(), pair.start.side);
+    const Nearness near = nearness(now, pair.start.side);
     missing = pair.gap - near.distance;
     if (mesh.is_nearer_to_another(pair.triangle, near.weight, near.distance * near.direction))
       missing = -std::numeric_limits<double>::max();

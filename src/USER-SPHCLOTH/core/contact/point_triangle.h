@@ -150,6 +150,19 @@ inline SignedVolume signed_volume(const Sweep &p, const std::array<Sweep, 3> &tr
   return {n0.dot(q), n0.dot(dq) + n1.dot(q), n1.dot(dq) + n2.dot(q), n2.dot(dq)};
 }
 
+// Where point and triangle are
+
+struct PointAndTriangle {
+  const Vec3 &p, &a, &b, &c;
+  Vec3 normal;      // twice the area long
+  double height;    // of the point above the plane, times twice the area
+
+  PointAndTriangle(const Vec3 &p_, const Vec3 &a_, const Vec3 &b_, const Vec3 &c_) :
+      p(p_), a(a_), b(b_), c(c_), normal((b - a).cross(c - a)), height(normal.dot(p - a))
+  {
+  }
+};
+
 // What contact at any later moment of the step needs to know of its start
 
 struct ContactStart {
@@ -160,20 +173,11 @@ struct ContactStart {
   double gap(double thickness) const { return std::min(thickness, distance); }
 };
 
-inline ContactStart contact_start(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec3 &c)
+inline ContactStart contact_start(const PointAndTriangle &at)
 {
   Vec3 weight;
-  const double distance = distance_vector(p, a, b, c, weight).norm();
-  return {(b - a).cross(c - a).dot(p - a) >= 0.0 ? 1.0 : -1.0, distance};
+  return {at.height >= 0.0 ? 1.0 : -1.0, distance_vector(at.p, at.a, at.b, at.c, weight).norm()};
 }
-
-// Where point and triangle are
-
-struct PointAndTriangle {
-  const Vec3 &p, &a, &b, &c;
-  // of the triangle, twice its area long
-  Vec3 normal() const { return (b - a).cross(c - a); }
-};
 
 // From the nearest point of the triangle to the point.  Above its inside the direction is that of
 // the triangle, whatever the distance.
@@ -183,15 +187,14 @@ struct Nearness {
   double distance;
 };
 
-inline Nearness nearness(const PointAndTriangle &at, const Vec3 &normal, double side)
+inline Nearness nearness(const PointAndTriangle &at, double side)
 {
   Nearness near;
   const Vec3 vector = distance_vector(at.p, at.a, at.b, at.c, near.weight);
   near.distance = vector.norm();
-  const bool above = near.weight.minCoeff() > 0.0 || near.distance == 0.0;
-  const double height = normal.dot(at.p - at.a);
-  if (above)
-    near.direction = (height != 0.0 ? std::copysign(1.0, height) : side) / normal.norm() * normal;
+  if (near.weight.minCoeff() > 0.0 || near.distance == 0.0)
+    near.direction =
+        (at.height != 0.0 ? std::copysign(1.0, at.height) : side) / at.normal.norm() * at.normal;
   else
     near.direction = vector / near.distance;
   return near;
@@ -200,17 +203,17 @@ inline Nearness nearness(const PointAndTriangle &at, const Vec3 &normal, double 
 // Is a point nearer to the inside, the edges or the vertices of the triangle than the gap, by more
 // than a share `slack` of it?
 
-inline ContactResult point_triangle_nearness(const PointAndTriangle &at, const Vec3 &normal,
-                                             double side, double gap, double slack)
+inline ContactResult point_triangle_nearness(const PointAndTriangle &at, double side, double gap,
+                                             double slack)
 {
   ContactResult result;
-  const double height = normal.dot(at.p - at.a), area_sq = normal.squaredNorm();
+  const double area_sq = at.normal.squaredNorm();
   result.gap = gap;
-  if (height * height >= gap * gap * area_sq) {
-    result.clearance = std::fabs(height) / std::sqrt(area_sq) - gap;
+  if (at.height * at.height >= gap * gap * area_sq) {
+    result.clearance = std::fabs(at.height) / std::sqrt(area_sq) - gap;
     return result;
   }
-  const Nearness near = nearness(at, normal, side);
+  const Nearness near = nearness(at, side);
   if (near.distance >= gap * (1.0 - slack)) {
     result.clearance = near.distance - gap;
     return result;
@@ -230,15 +233,13 @@ inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Swe
                                             double thickness, double slack = SEAM)
 {
   ContactResult result;
-  const Vec3 normal_start =
-      (tri[1].start - tri[0].start).cross(tri[2].start - tri[0].start);
-  const PointAndTriangle end{p.end, tri[0].end, tri[1].end, tri[2].end};
-  const Vec3 normal_end = end.normal();
-  const double double_area = normal_start.norm();
-  const double double_area_end = normal_end.norm();
+  const PointAndTriangle start{p.start, tri[0].start, tri[1].start, tri[2].start},
+      end{p.end, tri[0].end, tri[1].end, tri[2].end};
+  const double double_area = start.normal.norm();
+  const double double_area_end = end.normal.norm();
   if (double_area == 0.0 || double_area_end == 0.0) return result;
 
-  const double gap_start = normal_start.dot(p.start - tri[0].start) / double_area;
+  const double gap_start = start.height / double_area;
   const double side = gap_start >= 0.0 ? 1.0 : -1.0;
 
   // passes through: put back to the side where it was, along the normal
@@ -253,16 +254,13 @@ inline ContactResult point_triangle_contact(const Sweep &p, const std::array<Swe
     result.hit = result.through = true;
     result.weight = weight.cwiseMax(0.0);
     result.weight /= result.weight.sum();
-    result.normal = side / double_area_end * normal_end;
+    result.normal = side / double_area_end * end.normal;
     result.gap = std::min(thickness, std::fabs(gap_start));
     result.depth = std::max(0.0, result.gap - result.normal.dot(p.end - tri[0].end));
     return result;
   }
-  if (std::fabs(normal_end.dot(p.end - tri[0].end)) >= thickness * double_area_end) return result;
-  Vec3 weight;
-  const double before =
-      distance_vector(p.start, tri[0].start, tri[1].start, tri[2].start, weight).norm();
-  return point_triangle_nearness(end, normal_end, side, std::min(thickness, before), slack);
+  if (std::fabs(end.height) >= thickness * double_area_end) return result;
+  return point_triangle_nearness(end, side, contact_start(start).gap(thickness), slack);
 }
 
 }    // namespace sphcloth

@@ -16,6 +16,10 @@ static const std::vector<NamedValue> &values_of_contact()
       {"impulse/z", 7, NamedValue::EXTENSIVE}, {"force/x", 8, NamedValue::EXTENSIVE},
       {"force/y", 9, NamedValue::EXTENSIVE},   {"force/z", 10, NamedValue::EXTENSIVE},
       {"cpu", 11, NamedValue::INTENSIVE},
+      {"cloth/contacts", 12, NamedValue::EXTENSIVE},
+      {"cloth/stops", 13, NamedValue::EXTENSIVE},
+      {"cloth/caught", 14, NamedValue::EXTENSIVE},
+      {"cloth/gap", 15, NamedValue::INTENSIVE},
   };
   return VALUES;
 }

@@ -33,10 +33,10 @@ static constexpr int MAX_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), ghosts(lmp, label),
-    view_distance(0.0), vertex_bits(0)
+    cloth_meets_cloth(false), view_distance(0.0), vertex_bits(0)
 {
   vector_flag = 1;
-  size_vector = 11;
+  size_vector = 15;
   global_freq = 1;
   extvector = 0;
   comm_forward = 1;
@@ -44,7 +44,19 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
   create_attribute = 1;
 
   ArgReader args(lmp, label, narg, arg, 3);
+  read_arguments(args);
+  restart_peratom = !obstacle_groups.empty();
+  last_positions.create(3, atom->nmax);
+  if (!obstacle_groups.empty()) impulses.create(3, atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
+  atom->add_callback(Atom::GROW);
+  if (restart_peratom) atom->add_callback(Atom::RESTART);
+}
+
+void FixClothContact::read_arguments(ArgReader &args)
+{
   rules.thickness = args.positive("thickness");
+  cloth_rules.friction = -1.0;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "friction")
@@ -53,20 +65,29 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
       rules.restitution = args.fraction("restitution");
     else if (keyword == "obstacle")
       read_obstacle(args);
+    else if (keyword == "cloth")
+      cloth_meets_cloth = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "cloth/thickness")
+      cloth_rules.thickness = args.positive("thickness of cloth on cloth");
+    else if (keyword == "cloth/friction")
+      cloth_rules.friction = args.at_least("friction coefficient of cloth on cloth", 0.0);
     else if (keyword == "sides")
       rules.sides = args.choice(keyword, {"no", "yes"});
     else if (keyword == "wall") {
       const bool yes = args.choice(keyword, {"no", "yes"});
       walls.reset(yes ? new MeshBoundary(lmp, label, groupbit) : nullptr);
     } else
-      args.unknown(keyword, "friction, restitution, sides, wall, obstacle");
+      args.unknown(keyword,
+                   "friction, restitution, sides, wall, obstacle, cloth, cloth/thickness, "
+                   "cloth/friction");
   }
-  restart_peratom = !obstacle_groups.empty();
-  last_positions.create(3, atom->nmax);
-  if (!obstacle_groups.empty()) impulses.create(3, atom->nmax);
-  for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
-  atom->add_callback(Atom::GROW);
-  if (restart_peratom) atom->add_callback(Atom::RESTART);
+  if (!cloth_meets_cloth && (cloth_rules.thickness > 0.0 || cloth_rules.friction >= 0.0))
+    error->all(FLERR,
+               "{}: cloth/thickness and cloth/friction have no effect without 'cloth yes': add it",
+               label);
+  if (cloth_rules.thickness == 0.0) cloth_rules.thickness = rules.thickness;
+  if (cloth_rules.friction < 0.0) cloth_rules.friction = rules.friction;
+  cloth_rules.restitution = rules.restitution;
 }
 
 void FixClothContact::read_obstacle(ArgReader &args)
@@ -94,6 +115,7 @@ int FixClothContact::setmask()
 void FixClothContact::init()
 {
   surfaces.clear();
+  cloth_surfaces.clear();
   obstacles.clear();
   obstacle_surfaces.clear();
   sheets.clear();
@@ -107,16 +129,11 @@ void FixClothContact::init()
     if (!cloth) continue;
     if (behind)
       error->all(FLERR, "{}: fix {} pbd/cloth is defined behind: define it before", label, fix->id);
-    if (share_atoms(atom, groupbit, fix->groupbit, world))
-      error->all(FLERR,
-                 "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
-                 "the cloth",
-                 label, group->names[igroup], fix->id);
-    surfaces.push_back(make_surface(cloth, groupbit));
-    cloth->register_coupling(&surfaces.back()->solver);
     cloths.push_back(cloth);
     vertex_bits |= cloth->groupbit;
   }
+  const int particle_bits = bits_of_particles(cloths);
+  for (FixPBDCloth *cloth : cloths) add_cloth(cloth, particle_bits);
   if (surfaces.empty() && obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
@@ -135,6 +152,35 @@ void FixClothContact::init()
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require(needed, wanted);
+}
+
+// Without water the group is that of the cloth.
+
+int FixClothContact::bits_of_particles(const std::vector<FixPBDCloth *> &cloths)
+{
+  int mine = 0, any = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && !(atom->mask[i] & vertex_bits)) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (cloth_meets_cloth && !any) return 0;
+  for (FixPBDCloth *cloth : cloths)
+    if (share_atoms(atom, groupbit, cloth->groupbit, world))
+      error->all(FLERR,
+                 "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
+                 "the cloth",
+                 label, group->names[igroup], cloth->id);
+  return groupbit;
+}
+
+void FixClothContact::add_cloth(FixPBDCloth *cloth, int groupbits)
+{
+  surfaces.push_back(make_surface(cloth, groupbits));
+  if (cloth_meets_cloth) {
+    cloth_surfaces.push_back(std::make_unique<ClothSurface>(lmp, cloth, label, cloth_rules, counts,
+                                                            last_positions));
+    cloth->register_coupling(&cloth_surfaces.back()->rows);
+  }
+  cloth->register_coupling(&surfaces.back()->solver);
 }
 
 void FixClothContact::pre_exchange()
@@ -165,8 +211,14 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
   const double displacement =
       std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
                std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
-  return {longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
-          longest + rules.thickness + neighbor->skin + displacement};
+  double needed = longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
+         wanted = longest + rules.thickness + neighbor->skin + displacement;
+  if (cloth_meets_cloth) {
+    const double reach = ClothGuarantee::reach(longest, cloth_rules.thickness);
+    needed = std::max(needed, reach);
+    wanted = std::max(wanted, reach + neighbor->skin + displacement);
+  }
+  return {needed, wanted};
 }
 
 std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
@@ -246,6 +298,7 @@ void FixClothContact::post_neighbor()
   wrap_last_positions();
   const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
   for_all_surfaces([distance](ContactSurface &surface) { surface.rebuild(distance); });
+  for (auto &surface : cloth_surfaces) surface->rebuild();
   if (walls) walls->update_candidates();
   if (rules.sides) find_sides();
 }
@@ -265,21 +318,28 @@ void FixClothContact::initial_integrate(int)
 {
   for_all_surfaces([](ContactSurface &surface) { surface.triangles.moved.clear(); });
   impulses.clear();
+  counts.cloth_gap = ClothCandidates::max_reach(cloth_rules);
 }
 
 // The cloths have been solved, with their contacts: see SolverContact and ObstacleCoupling.
 
 void FixClothContact::post_integrate()
 {
-  for (int round = 0; round < MAX_ROUNDS; round++) {
-    bool any = false;
-    for_all_surfaces([&any](ContactSurface &surface) {
-      any = surface.stabilization.resolve_penetrations() || any;
-    });
-    if (!any || surfaces.size() + obstacle_surfaces.size() == 1) break;
-  }
+  const std::size_t n = surfaces.size() + cloth_surfaces.size() + obstacle_surfaces.size();
+  for (int round = 0; round < MAX_ROUNDS; round++)
+    if (!resolve_penetrations() || n == 1) break;
   if (!excess_velocities.empty()) subtract_excess_velocities();
   store_positions();
+}
+
+bool FixClothContact::resolve_penetrations()
+{
+  bool any = false;
+  for (auto &surface : cloth_surfaces) any = surface->guarantee.resolve_collisions() || any;
+  for_all_surfaces([&any](ContactSurface &surface) {
+    any = surface.stabilization.resolve_penetrations() || any;
+  });
+  return any;
 }
 
 // Vertices, and particles in contact, end a step with the velocity of its last substep, which is
@@ -351,19 +411,26 @@ void FixClothContact::store_positions()
 
 /* ----------------------------------------------------------------------
    output: contacts, stops, frozen, deepest, impulse on held vertices (x, y, z), force on obstacles
-   (x, y, z), wall time
+   (x, y, z), wall time; of cloth on cloth: contacts, stops, frozen, smallest distance
 ------------------------------------------------------------------------- */
 
 double FixClothContact::compute_vector(int n)
 {
-  double mine[11] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
+  double mine[15] = {counts.contacts,   counts.stops,      counts.frozen,    counts.deepest,
                      counts.impulse[0], counts.impulse[1], counts.impulse[2]};
   double all;
   mine[10] = counts.seconds;
+  mine[11] = counts.cloth_contacts;
+  mine[12] = counts.cloth_stops;
+  mine[13] = counts.cloth_frozen;
+  mine[14] = counts.cloth_gap;
   if (n >= 7 && n < 10 && !impulses.empty())
     for (int i = 0; i < atom->nlocal; i++)
       mine[n] += impulses[n - 7][i] / (update->dt * force->ftm2v);
-  MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, n == 3 || n == 10 ? MPI_MAX : MPI_SUM, world);
+  MPI_Op op = MPI_SUM;
+  if (n == 3 || n == 10) op = MPI_MAX;
+  if (n == 14) op = MPI_MIN;
+  MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, op, world);
   return all;
 }
 
@@ -426,6 +493,7 @@ double FixClothContact::memory_usage()
   double bytes = 0.0;
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
+  for (const auto &surface : cloth_surfaces) bytes += surface->memory_usage();
   for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
 }

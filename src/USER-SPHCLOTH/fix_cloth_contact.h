@@ -12,6 +12,7 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "fix.h"
 
+#include "contact/cloth_surface.h"
 #include "contact/contact_surface.h"
 #include "contact/obstacle.h"
 #include "contact/obstacle_coupling.h"
@@ -81,7 +82,8 @@ class FixClothContact : public Fix, public SideSource {
  private:
   std::string label;
   GhostReach ghosts;
-  ContactRules rules;
+  ContactRules rules, cloth_rules;    // of particles with meshes, and of cloth with itself
+  bool cloth_meets_cloth;
   ContactCounts counts;    // of this rank, since the fix was made
   // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
   // step, mass times velocity, if there are any; and velocity minus displacement over the step, if
@@ -89,6 +91,7 @@ class FixClothContact : public Fix, public SideSource {
   ParticleColumns last_positions, impulses, excess_velocities;
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
+  std::vector<std::unique_ptr<ClothSurface>> cloth_surfaces;    // the same, if cloth meets cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
   std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
@@ -108,7 +111,11 @@ class FixClothContact : public Fix, public SideSource {
   void subtract_excess_velocities();
   void find_sheets();
   void find_sides();
+  void read_arguments(ArgReader &);
   void read_obstacle(ArgReader &);
+  int bits_of_particles(const std::vector<FixPBDCloth *> &cloths);
+  void add_cloth(FixPBDCloth *, int groupbits);
+  bool resolve_penetrations();
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
   template <class Do> void for_all_surfaces(Do something)

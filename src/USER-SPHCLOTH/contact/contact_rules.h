@@ -22,6 +22,9 @@ struct ContactCounts {
   double deepest = 0.0;     // largest missing gap before it was closed
   double seconds = 0.0;     // of wall time
   double impulse[3] = {0.0, 0.0, 0.0};    // on held vertices
+  // the first three of cloth on cloth, and the smallest distance at the start of the last step
+  double cloth_contacts = 0.0, cloth_stops = 0.0, cloth_frozen = 0.0;
+  double cloth_gap = 0.0;
 };
 
 // wall time, added up at the end of a block

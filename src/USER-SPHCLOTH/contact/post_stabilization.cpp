@@ -5,15 +5,14 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "contact/rigid_zones.h"
 #include "core/contact/contact_impulse.h"
 #include "error.h"
 #include "lammps_util/atom_tools.h"
-#include "lammps_util/rank_error.h"
 #include "update.h"
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -34,6 +33,7 @@ static constexpr int MAX_PASSES = 200;
 
 bool PostStabilization::resolve_penetrations()
 {
+  if (!mesh.groupbits) return false;
   const WallTimer clock(mesh.counts.seconds);
   mesh.load_step();
   candidates.update();
@@ -189,9 +189,7 @@ void PostStabilization::apply_velocity_changes()
 ------------------------------------------------------------------------- */
 
 // A particle that passes through a triangle, the triangle, and all that shares a vertex or
-// a particle with them, form a zone.  It keeps the shape of the start of the step, where no
-// particle was on a wrong side, and moves with its mean velocity: momentum is kept, energy lost.
-// Zones grow until no particle passes.
+// a particle with them, form a zone.  Zones grow until no particle passes.
 
 void PostStabilization::freeze_zones()
 {
@@ -213,63 +211,8 @@ void PostStabilization::freeze_zones()
                  "{}: held vertex {} or its neighbors move apart from others and crush what is "
                  "between them, particle {}: move pins slower or lower the time step",
                  mesh.label, groups[1], groups[0]);
-    move_zones(zones);
+    move_rigid_zones(lmp, mesh, zones);
     mesh.load_step();
     candidates.update();
-  }
-}
-
-void PostStabilization::move_zones(const ImpactZones &zones)
-{
-  struct Sum {
-    double mass, displacement[3], momentum[3];    // of the free members
-    double held, held_displacement[3], held_velocity[3];    // number of held members, and sums
-  };
-  constexpr int SIZE = sizeof(Sum) / sizeof(double);
-  std::vector<Sum> mine(zones.size(), Sum{}), all(zones.size());
-  std::vector<std::pair<int, int>> members;    // atom and zone
-  for (int i = 0; i < atom->nlocal; i++)
-    if (const int z = zones.zone_of(atom->tag[i]); z >= 0) members.emplace_back(i, z);
-  const auto is_held = [&](int i) {
-    return mesh.mesh->has_vertex(i) && mesh.mesh->inverse_mass(i) == 0.0;
-  };
-
-  for (const auto &[i, z] : members) {
-    const Vec3 displacement = mesh.sweep_of(i).end - mesh.sweep_of(i).start;
-    const double m = atom_mass(atom, i);
-    (is_held(i) ? mine[z].held : mine[z].mass) += is_held(i) ? 1.0 : m;
-    for (int d = 0; d < 3; d++) {
-      (is_held(i) ? mine[z].held_displacement : mine[z].displacement)[d] +=
-          is_held(i) ? displacement[d] : m * displacement[d];
-      (is_held(i) ? mine[z].held_velocity : mine[z].momentum)[d] += is_held(i) ? atom->v[i][d]
-                                                                               : m * atom->v[i][d];
-    }
-  }
-  MPI_Allreduce(mine.data(), all.data(), SIZE * zones.size(), MPI_DOUBLE, MPI_SUM, world);
-
-  for (const auto &[i, z] : members) {
-    const Sum &sum = all[z];
-    const Sweep sweep = mesh.sweep_of(i);
-    Vec3 displacement, velocity, lost;
-    for (int d = 0; d < 3; d++) {
-      displacement[d] = sum.held > 0.0 ? sum.held_displacement[d] / sum.held
-                                       : sum.displacement[d] / sum.mass;
-      velocity[d] = sum.held > 0.0 ? sum.held_velocity[d] / sum.held : sum.momentum[d] / sum.mass;
-      lost[d] = sum.momentum[d] - sum.mass * velocity[d];
-    }
-    if (!is_held(i)) {
-      for (int d = 0; d < 3; d++) {
-        atom->x[i][d] = sweep.start[d] + displacement[d];
-        atom->v[i][d] = velocity[d];
-      }
-      continue;
-    }
-    const double apart = (sweep.end - sweep.start - displacement).norm();
-    if (apart > mesh.rules.thickness)
-      rank_error(lmp, FLERR,
-                 "{}: held vertex {} moves {} away from others in one step and crushes what is "
-                 "between them: move pins slower or lower the time step",
-                 mesh.label, atom->tag[i], apart);
-    mesh.push_held(i, lost / sum.held);
   }
 }

@@ -8,7 +8,6 @@
 
 #include "contact/candidate_pairs.h"
 #include "contact/contact_pairs.h"
-#include "contact/impact_zones.h"
 #include "contact/known_region.h"
 
 namespace LAMMPS_NS {
@@ -51,7 +50,6 @@ class PostStabilization : protected Pointers {
   void load_velocities();
   void apply_velocity_changes();
   void freeze_zones();
-  void move_zones(const ImpactZones &);
 };
 
 }    // namespace LAMMPS_NS

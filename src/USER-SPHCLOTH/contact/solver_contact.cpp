@@ -25,6 +25,7 @@ void SolverContact::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero(
 
 bool SolverContact::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
+  if (!mesh.groupbits) return false;
   const WallTimer clock(mesh.counts.seconds);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     mesh.start[s] = Vec3(step_start[s].x, step_start[s].y, step_start[s].z);

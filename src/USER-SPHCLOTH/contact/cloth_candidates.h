@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Broad phase of cloth with itself: the vertices and triangles, and the edges, of a mesh that may
+// meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex of both edges that
+// has the lowest ID.
+// The list is made with a margin, and holds while vertices stay within it, but for what they move
+// all together, and until the next list build of LAMMPS.  Which pairs are visited does not depend on
+// when that was.
+
+#ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
+#define SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
+
+#include "contact/mesh_edges.h"
+#include "contact/moving_triangles.h"
+#include "contact/triangle_discs.h"
+#include "core/contact/closest_points.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct ClothPair {
+  sphcloth::PairKind kind;
+  std::array<int, 4> slots;    // vertex and triangle, or two edges
+  std::array<int, 2> members;    // triangle: the second; edges: both
+  bool joined;    // by a bond between the two sides: near as the cloth is made
+  double distance;    // when the list was made
+};
+
+class ClothCandidates : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  ClothCandidates(LAMMPS *lmp_, const MovingTriangles &mesh_, const MeshEdges &edges_) :
+      Pointers(lmp_), mesh(mesh_), edges(edges_)
+  {
+  }
+
+  // after each list build: there is no list
+  void clear();
+
+  // After each change of the sweeps of vertices, which are taken to move by at most `max_stride` in
+  // this step, beside what they move together.
+  void update(double max_stride = std::numeric_limits<double>::infinity());
+
+  // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest
+  // points at the start of the step).
+  template <class Visit> void for_near(double reach, Visit visit) const
+  {
+    for (const ClothPair &pair : pairs) {
+      const std::array<int, 4> &s = pair.slots;
+      const int n = sphcloth::first_side(pair.kind);
+      if (pair.distance > reach + longest_of_sides(path, s, n)) continue;
+      const sphcloth::ClosestPoints at =
+          closest_points(pair.kind, {mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]],
+                                     mesh.start[s[3]]});
+      if (at.vector.norm() <= reach + longest_of_sides(stride, s, n)) visit(pair, at);
+    }
+  }
+  static double max_reach(const ContactRules &);
+
+  double memory_usage() const;
+
+ private:
+  const MovingTriangles &mesh;
+  const MeshEdges &edges;
+  std::vector<ClothPair> pairs;
+  bool known = false;
+  std::vector<Vec3> vertices_then;    // by slot, at the start of the step when the list was made
+  // of vertices, beside what they move together: in this step; and since then, with this step
+  std::vector<double> stride, path;
+  double longest_stride = 0.0, longest_path = 0.0;
+  TriangleDiscs discs;
+  std::vector<sphcloth::Box> boxes;
+  sphcloth::BoxGrid grid;
+
+  static double longest_of_sides(const std::vector<double> &of, const std::array<int, 4> &s, int n)
+  {
+    return n == 1 ? of[s[0]] + std::max({of[s[1]], of[s[2]], of[s[3]]})
+                  : std::max(of[s[0]], of[s[1]]) + std::max(of[s[2]], of[s[3]]);
+  }
+  double margin() const;
+  void measure_strides(double max_stride);
+  void measure_paths();
+  void find();
+  void find_triangles(double cutoff);
+  void find_edges(double cutoff);
+  void add(sphcloth::PairKind, const std::array<int, 4> &slots, const std::array<int, 2> &members,
+           double cutoff);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

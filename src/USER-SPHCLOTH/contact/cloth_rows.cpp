@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Projects the contacts of a cloth with itself.
+//
+// Which of many near pairs push: only the nearest of a place, whose direction does not lean into
+// what borders on it, as in Chen, Diaz & Yuksel, Offset geometric contact, ACM Trans. Graph. 44(4)
+// (2025): flat layers push each other along their normals.
+
+#include "contact/cloth_rows.h"
+
+#include "atom.h"
+#include "core/contact/contact_impulse.h"
+#include "core/util/bytes.h"
+#include "force.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// of the thickness: by which vertices are expected to move in a step, beside what they move
+// together; and what a pair that is too near gets back in one
+static constexpr double MAX_STRIDE = 0.5, RECOVERY = 0.1;
+
+void ClothRows::rebuild()
+{
+  received.assign(mesh.halo.n_owned(), Vec3::Zero());
+}
+
+bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
+{
+  const WallTimer clock(mesh.counts.seconds);
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    mesh.start[s] = Vec3(step_start[s].x, step_start[s].y, step_start[s].z);
+    mesh.end[s] = Vec3(step_end[s].x, step_end[s].y, step_end[s].z);
+  }
+  remaining = dt;
+  mesh.halo.forward_positions(0, mesh.start.data(), remaining);
+  mesh.halo.forward_positions(0, mesh.end.data());
+  candidates.update(MAX_STRIDE * mesh.rules.thickness);
+  mesh.end = mesh.start;
+  find_rows();
+  int mine = !rows.empty(), any = 0;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return false;
+  masses.share(mesh.halo);
+  path = 0.0;
+  std::fill(received.begin(), received.end(), Vec3::Zero());
+  return true;
+}
+
+// with room for what the constraints of the cloth add to the motion
+
+void ClothRows::find_rows()
+{
+  const double thickness = mesh.rules.thickness;
+  rows.clear();
+  active.clear();
+  masses.begin(mesh.halo.n_slots());
+  candidates.for_near(ClothCandidates::max_reach(mesh.rules), [&](const ClothPair &pair, const ClosestPoints &at) {
+    const double distance = at.vector.norm();
+    if (distance == 0.0) return;
+    ContactRow row{};
+    row.kind = pair.kind;
+    row.slots = pair.slots;
+    row.members = pair.members;
+    row.weight = at.weight;
+    row.normal = at.vector / distance;
+    row.gap = std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness);
+    row.awake_from = distance - row.gap;
+    mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, pair.joined ? thickness : distance);
+    rows.push_back(row);
+    if (is_nearest(row, at)) masses.count(row);
+  });
+}
+
+void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
+{
+  const WallTimer clock(mesh.counts.seconds);
+  substep_dt = dt;
+  substep_start = vertices;
+  const double before = remaining;
+  remaining -= dt;
+  for (const int k : active) {
+    rows[k].active = false;
+    rows[k].normal_correction = 0.0;
+    rows[k].friction_correction.setZero();
+  }
+  active.clear();
+  if (mesh.rules.restitution > 0.0) load_velocities(v);
+  if (mesh.rules.friction == 0.0) return;
+  from.resize(mesh.halo.n_slots());
+  for (int s = 0; s < mesh.halo.n_owned(); s++)
+    from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
+  mesh.halo.forward_positions(0, from.data(), before);
+}
+
+void ClothRows::project(Vertex *displacement)
+{
+  const WallTimer clock(mesh.counts.seconds);
+  load_positions(displacement);
+  masses.clear_impulses();
+  for (int k = 0; k < static_cast<int>(rows.size()); k++) {
+    if (rows[k].awake_from > 2.0 * path) continue;
+    project_normal(k);
+    if (mesh.rules.friction > 0.0 && rows[k].active) project_friction(rows[k]);
+  }
+  mesh.halo.reverse_add(0, masses.impulse.data());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const Vec3 &impulse = masses.impulse[s];
+    displacement[s].x += mesh.w_solver[s] * impulse[0];
+    displacement[s].y += mesh.w_solver[s] * impulse[1];
+    displacement[s].z += mesh.w_solver[s] * impulse[2];
+    received[s] += impulse / substep_dt;
+  }
+}
+
+void ClothRows::load_positions(const Vertex *displacement)
+{
+  end_before = mesh.end;
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const Vertex &start = substep_start[s], &by = displacement[s];
+    mesh.end[s] = Vec3(start.x + by.x, start.y + by.y, start.z + by.z);
+  }
+  mesh.halo.forward_positions(0, mesh.end.data(), remaining);
+  Vec3 together = Vec3::Zero();
+  for (std::size_t s = 0; s < end_before.size(); s++) together += mesh.end[s] - end_before[s];
+  if (!end_before.empty()) together /= static_cast<double>(end_before.size());
+  double max_sq = 0.0;
+  for (std::size_t s = 0; s < end_before.size(); s++)
+    max_sq = std::max(max_sq, (mesh.end[s] - end_before[s] - together).squaredNorm());
+  path += std::sqrt(max_sq);
+}
+
+// From substep to substep the closest points turn little: where their direction turns round inside
+// both, one side has passed the other.
+
+void ClothRows::project_normal(int k)
+{
+  ContactRow &row = rows[k];
+  const ClosestPoints at = closest_points(row.kind, row.of_slots(mesh.end));
+  const double length = at.vector.norm();
+  const bool passed = at.vector.dot(row.normal) < 0.0 && inside_both(row.kind, at);
+  const double distance = passed ? -length : length;
+  if (length > 0.0) row.normal = at.vector / distance;
+  if (row.normal_correction == 0.0) {
+    if (distance >= row.gap) row.awake_from = 2.0 * path + distance - row.gap;
+    if (distance >= row.gap || (!passed && !is_nearest(row, at))) return;
+  }
+  row.weight = at.weight;
+  if (!row.active) {
+    if (mesh.rules.restitution > 0.0) row.speed_before = row.relative(velocity).dot(row.normal);
+    row.active = true;
+    active.push_back(k);
+  }
+  mesh.counts.cloth_contacts++;
+  const double step =
+      std::max((row.gap - distance) * masses.of(row, mesh.w_solver), -row.normal_correction);
+  row.normal_correction += step;
+  masses.apply(row, step * row.normal);
+}
+
+// Is no other pair of the same surfaces nearer there?  Closest points at the end of an edge are
+// those of a vertex and a triangle.
+
+bool ClothRows::is_nearest(const ContactRow &row, const ClosestPoints &at) const
+{
+  if (row.kind == PairKind::POINT_TRIANGLE)
+    return !mesh.is_nearer_to_another(row.members[1],
+                                      {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector);
+  return inside_both(row.kind, at) &&
+      !inclines_beside(row.members[0], mesh.end[row.slots[0]], -at.vector) &&
+      !inclines_beside(row.members[1], mesh.end[row.slots[2]], at.vector);
+}
+
+// into a triangle at an edge, on which `at` is
+
+bool ClothRows::inclines_beside(int e, const Vec3 &at, const Vec3 &from_nearest) const
+{
+  const auto &[a, b] = edges.edges[e];
+  const Vec3 edge = mesh.end[b] - mesh.end[a];
+  for (int k = edges.first[e]; k < edges.first[e + 1]; k++) {
+    Vec3 inward = mesh.end[edges.opposite[k]] - at;
+    inward -= edge.dot(inward) / edge.squaredNorm() * edge;
+    if (inclines_to(inward, from_nearest)) return true;
+  }
+  return false;
+}
+
+// Coulomb friction against the sliding of this substep
+
+void ClothRows::project_friction(ContactRow &row)
+{
+  Vec3 slip = row.relative(mesh.end) - row.relative(from);
+  slip -= slip.dot(row.normal) * row.normal;
+  const Vec3 target =
+      clamp_length(row.friction_correction - masses.of(row, mesh.w_solver) * slip,
+                   mesh.rules.friction * row.normal_correction);
+  masses.apply(row, target - row.friction_correction);
+  row.friction_correction = target;
+}
+
+void ClothRows::end_substep(Vertex *v, double dt)
+{
+  const WallTimer clock(mesh.counts.seconds);
+  load_velocities(v);
+  masses.clear_impulses();
+  for (const int k : active)
+    if (rows[k].normal_correction > 0.0) solve_velocity(rows[k], dt);
+  mesh.halo.reverse_add(0, masses.impulse.data());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const Vec3 &impulse = masses.impulse[s];
+    v[s].x += mesh.w_solver[s] * impulse[0];
+    v[s].y += mesh.w_solver[s] * impulse[1];
+    v[s].z += mesh.w_solver[s] * impulse[2];
+    received[s] += impulse;
+  }
+}
+
+void ClothRows::solve_velocity(const ContactRow &row, double dt)
+{
+  const ContactMotion motion{row.relative(velocity), row.normal, row.speed_before,
+                             masses.of(row, mesh.w_solver)};
+  const ExchangedImpulse so_far{row.normal_correction / dt, row.friction_correction / dt};
+  masses.apply(row, contact_impulse(motion, so_far, mesh.rules.restitution,
+                                    mesh.rules.friction));
+}
+
+void ClothRows::load_velocities(const Vertex *v)
+{
+  velocity.resize(mesh.halo.n_slots());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = Vec3(v[s].x, v[s].y, v[s].z);
+  mesh.halo.forward_velocities(0, velocity.data());
+}
+
+void ClothRows::end_step()
+{
+  const WallTimer clock(mesh.counts.seconds);
+  for (int s = 0; s < mesh.halo.n_owned(); s++)
+    if (mesh.w[s] == 0.0)
+      for (int d = 0; d < 3; d++) mesh.counts.impulse[d] += received[s][d] / force->ftm2v;
+}
+
+double ClothRows::memory_usage() const
+{
+  return masses.bytes() + bytes_of(rows, active, from, end_before, velocity, received);
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The edges of the triangles that a rank knows, and what lies on both sides of each.
+
+#ifndef SPHCLOTH_CONTACT_MESH_EDGES_H
+#define SPHCLOTH_CONTACT_MESH_EDGES_H
+
+#include "contact/triangle_set.h"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class MeshEdges : protected Pointers {
+ public:
+  MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_) : Pointers(lmp_), mesh(mesh_) {}
+
+  // after each list build, behind the triangles
+  void rebuild();
+
+  std::vector<std::array<int, 2>> edges;    // slots
+  // the third vertices of the triangles at edge e: opposite[first[e] .. first[e+1])
+  std::vector<int> first, opposite;
+  std::vector<tagint> lowest;    // the lower ID of the two vertices of an edge
+
+  // The rank that owns it looks after the pairs of an edge with edges of higher IDs.
+  int vertex_of_lowest(int e) const
+  {
+    const auto &[a, b] = edges[e];
+    return tags[a] < tags[b] ? a : b;
+  }
+  tagint tag(int slot) const { return tags[slot]; }
+
+  // Are two vertices joined by a bond?
+  bool joined(int slot, int other) const;
+
+  double memory_usage() const;
+
+ private:
+  const TriangleSet &mesh;
+  std::vector<tagint> tags;    // of slots
+  std::vector<int> index;    // of slots, in the topology
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

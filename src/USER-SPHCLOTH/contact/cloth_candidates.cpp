@@ -135,7 +135,9 @@ void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
   bool joined = false;
   for (int first = 0; first < first_side(kind); first++)
     for (int second = first_side(kind); second < 4; second++)
-      joined = joined || edges.joined(slots[first], slots[second]);
+      joined = joined ||
+          ((mesh.start[slots[first]] - mesh.start[slots[second]]).norm() < mesh.rules.thickness &&
+           edges.joined(slots[first], slots[second]));
   pairs.push_back({kind, slots, members, joined, distance});
 }
 

@@ -25,7 +25,7 @@ struct ClothPair {
   sphcloth::PairKind kind;
   std::array<int, 4> slots;    // vertex and triangle, or two edges
   std::array<int, 2> members;    // triangle: the second; edges: both
-  bool joined;    // by a bond between the two sides: near as the cloth is made
+  bool joined;    // by a bond that is shorter than the thickness: a seam
   double distance;    // when the list was made
 };
 

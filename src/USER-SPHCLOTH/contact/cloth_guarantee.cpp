@@ -22,6 +22,9 @@ using namespace sphcloth;
 // at all times, and what a pair that would have less is given at the end
 static constexpr double KEEP = 0.1, GIVEN = 0.5;
 
+// A pair that is nearer than this, of the thickness, hardly comes nearer.
+static constexpr double CLOSE = 0.02, KEEP_CLOSE = 0.9;
+
 static constexpr int MAX_PASSES = 20;
 
 void ClothGuarantee::rebuild()
@@ -38,19 +41,35 @@ bool ClothGuarantee::resolve_collisions()
   const WallTimer clock(mesh.counts.seconds);
   mesh.load_step();
   pushed.clear();
-  int pass = 0;
-  for (; pass < MAX_PASSES; pass++) {
+  bool any = false;
+  for (int pass = 0; pass <= MAX_PASSES; pass++) {
     find_collisions();
-    const double mine[2] = {rows.empty() ? 0.0 : 1.0, pass == 0 ? max_displacement() : 0.0};
-    double all[2];
-    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-    if (pass == 0) check_reach(all[1]);
+    const bool can_push = std::any_of(rows.begin(), rows.end(), [this](const ContactRow &row) {
+      return missing(row) > 0.0;
+    });
+    const double mine[3] = {rows.empty() ? 0.0 : 1.0, can_push ? 1.0 : 0.0,
+                            pass == 0 ? max_displacement() : 0.0};
+    double all[3];
+    MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);
+    if (pass == 0) check_reach(all[2]);
     if (all[0] == 0.0) break;
+    any = true;
+    if (all[1] == 0.0 || pass == MAX_PASSES) {
+      solve_velocities();
+      freeze_zones();
+      return true;
+    }
     push_apart();
   }
-  if (pass > 0) solve_velocities();
-  if (pass == MAX_PASSES) freeze_zones();
-  return pass > 0;
+  if (any) solve_velocities();
+  return any;
+}
+
+// of the gap at the end of the step
+
+double ClothGuarantee::missing(const ContactRow &row) const
+{
+  return row.gap - row.relative(mesh.end).dot(row.normal);
 }
 
 static PairMotion motion_of(const ClothPair &pair, const MovingTriangles &mesh)
@@ -72,15 +91,17 @@ void ClothGuarantee::find_collisions()
   candidates.for_near(0.0, [&](const ClothPair &pair, const ClosestPoints &at) {
     const double apart = std::min(thickness, at.vector.norm());
     const PairMotion motion = motion_of(pair, mesh);
-    if (stays_apart(motion, at.vector, KEEP * apart)) return;
-    const SafeTime safe = safe_time(motion, KEEP * apart);
+    const double keep = std::max(KEEP * apart, std::min(KEEP_CLOSE * apart, CLOSE * thickness));
+    if (stays_apart(motion, at.vector, keep)) return;
+    const SafeTime safe = safe_time(motion, keep);
     ContactRow row{};
     row.kind = pair.kind;
     row.slots = pair.slots;
     row.members = pair.members;
     row.weight = closest_points(pair.kind, motion.at(safe.time)).weight;
     row.normal = safe.vector.normalized();
-    row.gap = GIVEN * apart;
+    row.gap = std::max(GIVEN * apart, keep);
+    if(getenv("DBG")) printf("step %ld kind %d d0/th %.3g app %.3g t %.3g tags %d %d %d %d\n",(long)update->ntimestep,(int)pair.kind,at.vector.norm()/thickness,max_approach(motion)/thickness,safe.time,(int)atom->tag[mesh.halo.atom_of(pair.slots[0])],(int)atom->tag[mesh.halo.atom_of(pair.slots[1])],(int)atom->tag[mesh.halo.atom_of(pair.slots[2])],(int)atom->tag[mesh.halo.atom_of(pair.slots[3])]);
     rows.push_back(row);
     masses.count(row);
   });
@@ -91,8 +112,8 @@ void ClothGuarantee::push_apart()
   masses.share(mesh.halo);
   masses.clear_impulses();
   for (const ContactRow &row : rows) {
-    const double missing = row.gap - row.relative(mesh.end).dot(row.normal);
-    if (missing > 0.0) masses.apply(row, missing * masses.of(row, mesh.w) * row.normal);
+    const double depth = missing(row);
+    if (depth > 0.0) masses.apply(row, depth * masses.of(row, mesh.w) * row.normal);
     mesh.counts.cloth_stops++;
     pushed.push_back(row);
   }

@@ -51,6 +51,7 @@ class ClothGuarantee : protected Pointers {
   double longest_edge = 0.0;
 
   void find_collisions();
+  double missing(const ContactRow &) const;
   void push_apart();
   void solve_velocities();
   void freeze_zones();

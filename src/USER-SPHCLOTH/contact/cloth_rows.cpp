@@ -161,26 +161,30 @@ void ClothRows::project_normal(int k)
 }
 
 // Is no other pair of the same surfaces nearer there?  Closest points at the end of an edge are
-// those of a vertex and a triangle.
+// those of a vertex and a triangle.  What the two sides have in common does not count: where a cloth
+// is folded it is always nearer.
 
 bool ClothRows::is_nearest(const ContactRow &row, const ClosestPoints &at) const
 {
+  const auto &[p, q, a, b] = row.slots;
   if (row.kind == PairKind::POINT_TRIANGLE)
-    return !mesh.is_nearer_to_another(row.members[1],
-                                      {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector);
-  return inside_both(row.kind, at) &&
-      !inclines_beside(row.members[0], mesh.end[row.slots[0]], -at.vector) &&
-      !inclines_beside(row.members[1], mesh.end[row.slots[2]], at.vector);
+    return !mesh.is_nearer_to_another(
+        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, 1.0, p);
+  return inside_both(row.kind, at) && !inclines_beside(row.members[0], -at.vector, {a, b}) &&
+      !inclines_beside(row.members[1], at.vector, {p, q});
 }
 
-// into a triangle at an edge, on which `at` is
+// into a triangle at an edge whose third vertex is none of the other side
 
-bool ClothRows::inclines_beside(int e, const Vec3 &at, const Vec3 &from_nearest) const
+bool ClothRows::inclines_beside(int e, const Vec3 &from_nearest,
+                                const std::array<int, 2> &other_side) const
 {
   const auto &[a, b] = edges.edges[e];
   const Vec3 edge = mesh.end[b] - mesh.end[a];
   for (int k = edges.first[e]; k < edges.first[e + 1]; k++) {
-    Vec3 inward = mesh.end[edges.opposite[k]] - at;
+    const int c = edges.opposite[k];
+    if (c == other_side[0] || c == other_side[1]) continue;
+    Vec3 inward = mesh.end[c] - mesh.end[a];
     inward -= edge.dot(inward) / edge.squaredNorm() * edge;
     if (inclines_to(inward, from_nearest)) return true;
   }

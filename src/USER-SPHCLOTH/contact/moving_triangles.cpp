@@ -112,7 +112,7 @@ ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3
 // those of the triangle itself lead away from the point.
 
 bool MovingTriangles::is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                                           double part) const
+                                           double part, int slot_of_point) const
 {
   std::array<int, 3> at{};    // the vertices of the edge, or the vertex
   int n = 0;
@@ -124,6 +124,7 @@ bool MovingTriangles::is_nearer_to_another(int t, const Vec3 &weight, const Vec3
   for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
     const std::array<int, 3> &other = triangles[incident[k]];
     if (n == 2 && std::find(other.begin(), other.end(), at[1]) == other.end()) continue;
+    if (std::find(other.begin(), other.end(), slot_of_point) != other.end()) continue;
     for (int s : other) {
       if (s == at[0] || (n == 2 && s == at[1])) continue;
       Vec3 direction = position_at(s, part) - a;

@@ -62,9 +62,9 @@ class MovingTriangles : public TriangleSet {
     return sphcloth::contact_start({p, start[a], start[b], start[c]});
   }
   // Of a point at this vector from its nearest point in a triangle, which has these weights: is it
-  // nearer to another triangle at the same edge or vertex?
-  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                            double part = 1.0) const;
+  // nearer to another triangle at the same edge or vertex?  Not to one of which it is a vertex.
+  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest, double part = 1.0,
+                            int slot_of_point = -1) const;
 
   sphcloth::Box swept_box(int t) const;    // with room for contact
 

@@ -31,9 +31,10 @@ double ClothCandidates::margin() const
   return thickness * std::clamp(0.5 * neighbor->skin / thickness, 1.0, MAX_MARGIN);
 }
 
-void ClothCandidates::update(double max_stride)
+void ClothCandidates::update(double max_approach)
 {
-  measure_strides(max_stride);
+  limit = max_approach;
+  measure_strides();
   if (known) measure_paths();
   if (known && longest_path <= margin()) return;
   find();
@@ -50,13 +51,13 @@ static Eigen::Vector3d mean_difference(const std::vector<Eigen::Vector3d> &of,
   return of.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(of.size()));
 }
 
-void ClothCandidates::measure_strides(double max_stride)
+void ClothCandidates::measure_strides()
 {
   const Vec3 together = mean_difference(mesh.end, mesh.start);
   stride.resize(mesh.start.size());
   longest_stride = 0.0;
   for (std::size_t s = 0; s < stride.size(); s++) {
-    stride[s] = std::min((mesh.end[s] - mesh.start[s] - together).norm(), max_stride);
+    stride[s] = std::min((stride_of(static_cast<int>(s)) - together).norm(), limit);
     longest_stride = std::max(longest_stride, stride[s]);
   }
 }

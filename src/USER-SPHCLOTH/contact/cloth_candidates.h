@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -41,9 +42,9 @@ class ClothCandidates : protected Pointers {
   // after each list build: there is no list
   void clear();
 
-  // After each change of the sweeps of vertices, which are taken to move by at most `max_stride` in
-  // this step, beside what they move together.
-  void update(double max_stride = std::numeric_limits<double>::infinity());
+  // After each change of the sweeps of vertices.  The two sides of a pair are taken to approach by at
+  // most `max_approach` in this step.
+  void update(double max_approach = std::numeric_limits<double>::infinity());
 
   // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest
   // points at the start of the step).
@@ -51,12 +52,12 @@ class ClothCandidates : protected Pointers {
   {
     for (const ClothPair &pair : pairs) {
       const std::array<int, 4> &s = pair.slots;
-      const int n = sphcloth::first_side(pair.kind);
-      if (pair.distance > reach + longest_of_sides(path, s, n)) continue;
+      if (pair.distance > reach + longest_of_sides(path, s, sphcloth::first_side(pair.kind))) continue;
       const sphcloth::ClosestPoints at =
           closest_points(pair.kind, {mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]],
                                      mesh.start[s[3]]});
-      if (at.vector.norm() <= reach + longest_of_sides(stride, s, n)) visit(pair, at);
+      const double room = at.vector.norm() - reach;
+      if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
     }
   }
   static double max_reach(const ContactRules &);
@@ -72,6 +73,7 @@ class ClothCandidates : protected Pointers {
   // of vertices, beside what they move together: in this step; and since then, with this step
   std::vector<double> stride, path;
   double longest_stride = 0.0, longest_path = 0.0;
+  double limit = 0.0;    // of an approach
   TriangleDiscs discs;
   std::vector<sphcloth::Box> boxes;
   sphcloth::BoxGrid grid;
@@ -81,8 +83,20 @@ class ClothCandidates : protected Pointers {
     return n == 1 ? of[s[0]] + std::max({of[s[1]], of[s[2]], of[s[3]]})
                   : std::max(of[s[0]], of[s[1]]) + std::max(of[s[2]], of[s[3]]);
   }
+  // how much nearer to one another both sides may come in this step
+  double longest_approach(const ClothPair &pair) const
+  {
+    const int n = sphcloth::first_side(pair.kind);
+    double longest_sq = 0.0;
+    for (int i = 0; i < n; i++)
+      for (int j = n; j < 4; j++)
+        longest_sq = std::max(longest_sq, (stride_of(pair.slots[i]) - stride_of(pair.slots[j]))
+                                              .squaredNorm());
+    return std::sqrt(longest_sq);
+  }
+  Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }
   double margin() const;
-  void measure_strides(double max_stride);
+  void measure_strides();
   void measure_paths();
   void find();
   void find_triangles(double cutoff);

@@ -18,9 +18,9 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// of the thickness: by which vertices are expected to move in a step, beside what they move
-// together; and what a pair that is too near gets back in one
-static constexpr double MAX_STRIDE = 0.5, RECOVERY = 0.1;
+// of the thickness: by which two sides are expected to approach in a step, and what a pair that is
+// too near gets back in one
+static constexpr double MAX_APPROACH = 1.0, RECOVERY = 0.1;
 
 void ClothRows::rebuild()
 {
@@ -37,8 +37,7 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   remaining = dt;
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
   mesh.halo.forward_positions(0, mesh.end.data());
-  candidates.update(MAX_STRIDE * mesh.rules.thickness);
-  mesh.end = mesh.start;
+  candidates.update(MAX_APPROACH * mesh.rules.thickness);
   find_rows();
   int mine = !rows.empty(), any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
@@ -70,8 +69,10 @@ void ClothRows::find_rows()
     row.awake_from = distance - row.gap;
     mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, pair.joined ? thickness : distance);
     rows.push_back(row);
-    if (is_nearest(row, at)) masses.count(row);
   });
+  mesh.end = mesh.start;
+  for (const ContactRow &row : rows)
+    if (share(row, {row.weight, row.relative(mesh.start)}) > 0.0) masses.count(row);
 }
 
 void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
@@ -143,10 +144,12 @@ void ClothRows::project_normal(int k)
   const bool passed = at.vector.dot(row.normal) < 0.0 && inside_both(row.kind, at);
   const double distance = passed ? -length : length;
   if (length > 0.0) row.normal = at.vector / distance;
-  if (row.normal_correction == 0.0) {
-    if (distance >= row.gap) row.awake_from = 2.0 * path + distance - row.gap;
-    if (distance >= row.gap || (!passed && !is_nearest(row, at))) return;
+  if (row.normal_correction == 0.0 && distance >= row.gap) {
+    row.awake_from = 2.0 * path + distance - row.gap;
+    return;
   }
+  const double counts = passed ? 1.0 : share(row, at);
+  if (counts == 0.0 && row.normal_correction == 0.0) return;
   row.weight = at.weight;
   if (!row.active) {
     if (mesh.rules.restitution > 0.0) row.speed_before = row.relative(velocity).dot(row.normal);
@@ -155,40 +158,43 @@ void ClothRows::project_normal(int k)
   }
   mesh.counts.cloth_contacts++;
   const double step =
-      std::max((row.gap - distance) * masses.of(row, mesh.w_solver), -row.normal_correction);
+      std::max(counts * (row.gap - distance) * masses.of(row, mesh.w_solver),
+               -row.normal_correction);
   row.normal_correction += step;
   masses.apply(row, step * row.normal);
 }
 
-// Is no other pair of the same surfaces nearer there?  Closest points at the end of an edge are
-// those of a vertex and a triangle.  What the two sides have in common does not count: where a cloth
-// is folded it is always nearer.
+// How much it counts: not where another pair of the same surfaces is nearer, continuously.  What the
+// two sides have in common does not count: where a cloth is folded it is always nearer.
 
-bool ClothRows::is_nearest(const ContactRow &row, const ClosestPoints &at) const
+double ClothRows::share(const ContactRow &row, const ClosestPoints &at) const
 {
   const auto &[p, q, a, b] = row.slots;
   if (row.kind == PairKind::POINT_TRIANGLE)
-    return !mesh.is_nearer_to_another(
-        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, 1.0, p);
-  return inside_both(row.kind, at) && !inclines_beside(row.members[0], -at.vector, {a, b}) &&
-      !inclines_beside(row.members[1], at.vector, {p, q});
+    return share_of_leaning(mesh.leaning_into_others(
+        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, 1.0, p));
+  const double of_edges = share_of_edges(row.of_slots(mesh.end), at);
+  if (of_edges == 0.0) return 0.0;
+  return of_edges * share_of_leaning(leaning_beside(row.members[0], -at.vector, {a, b})) *
+      share_of_leaning(leaning_beside(row.members[1], at.vector, {p, q}));
 }
 
 // into a triangle at an edge whose third vertex is none of the other side
 
-bool ClothRows::inclines_beside(int e, const Vec3 &from_nearest,
-                                const std::array<int, 2> &other_side) const
+double ClothRows::leaning_beside(int e, const Vec3 &from_nearest,
+                                 const std::array<int, 2> &other_side) const
 {
   const auto &[a, b] = edges.edges[e];
   const Vec3 edge = mesh.end[b] - mesh.end[a];
+  double most = 0.0;
   for (int k = edges.first[e]; k < edges.first[e + 1]; k++) {
     const int c = edges.opposite[k];
     if (c == other_side[0] || c == other_side[1]) continue;
     Vec3 inward = mesh.end[c] - mesh.end[a];
     inward -= edge.dot(inward) / edge.squaredNorm() * edge;
-    if (inclines_to(inward, from_nearest)) return true;
+    most = std::max(most, leaning(inward, from_nearest));
   }
-  return false;
+  return most > 0.0 ? most / from_nearest.norm() : 0.0;
 }
 
 // Coulomb friction against the sliding of this substep

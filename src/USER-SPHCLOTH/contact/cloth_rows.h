@@ -50,9 +50,9 @@ class ClothRows : public SolverCoupling, protected Pointers {
   void find_rows();
   void load_positions(const sphcloth::Vertex *displacement);
   void load_velocities(const sphcloth::Vertex *v);
-  bool is_nearest(const ContactRow &, const sphcloth::ClosestPoints &) const;
-  bool inclines_beside(int edge, const Vec3 &from_nearest,
-                       const std::array<int, 2> &other_side) const;
+  double share(const ContactRow &, const sphcloth::ClosestPoints &) const;
+  double leaning_beside(int edge, const Vec3 &from_nearest,
+                        const std::array<int, 2> &other_side) const;
   void project_normal(int row);
   void project_friction(ContactRow &);
   void solve_velocity(const ContactRow &, double dt);

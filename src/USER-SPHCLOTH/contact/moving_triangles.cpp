@@ -111,16 +111,17 @@ ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3
 // At an edge: inwards in the other triangle.  At a vertex: along all edges that end there, of which
 // those of the triangle itself lead away from the point.
 
-bool MovingTriangles::is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                                           double part, int slot_of_point) const
+double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
+                                            double part, int slot_of_point) const
 {
   std::array<int, 3> at{};    // the vertices of the edge, or the vertex
   int n = 0;
   for (int q = 0; q < 3; q++)
     if (weight[q] > 0.0) at[n++] = triangles[t][q];
-  if (n == 3) return false;
+  if (n == 3) return 0.0;
   const Vec3 a = position_at(at[0], part);
   const Vec3 edge = n == 2 ? Vec3(position_at(at[1], part) - a) : Vec3::Zero();
+  double most = 0.0;
   for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
     const std::array<int, 3> &other = triangles[incident[k]];
     if (n == 2 && std::find(other.begin(), other.end(), at[1]) == other.end()) continue;
@@ -129,10 +130,10 @@ bool MovingTriangles::is_nearer_to_another(int t, const Vec3 &weight, const Vec3
       if (s == at[0] || (n == 2 && s == at[1])) continue;
       Vec3 direction = position_at(s, part) - a;
       if (n == 2) direction -= edge.dot(direction) / edge.squaredNorm() * edge;
-      if (inclines_to(direction, from_nearest)) return true;
+      most = std::max(most, leaning(direction, from_nearest));
     }
   }
-  return false;
+  return most > 0.0 ? most / from_nearest.norm() : 0.0;
 }
 
 Box MovingTriangles::swept_box(int t) const

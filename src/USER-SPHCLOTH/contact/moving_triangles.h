@@ -61,10 +61,16 @@ class MovingTriangles : public TriangleSet {
     const auto &[a, b, c] = triangles[t];
     return sphcloth::contact_start({p, start[a], start[b], start[c]});
   }
-  // Of a point at this vector from its nearest point in a triangle, which has these weights: is it
-  // nearer to another triangle at the same edge or vertex?  Not to one of which it is a vertex.
-  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest, double part = 1.0,
-                            int slot_of_point = -1) const;
+  // Of a point at this vector from its nearest point in a triangle, which has these weights: how far
+  // does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above SEAM
+  // the point is nearer to one of these.  Triangles of which it is a vertex do not count.
+  double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest, double part = 1.0,
+                             int slot_of_point = -1) const;
+  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
+                            double part = 1.0) const
+  {
+    return leaning_into_others(t, weight, from_nearest, part) > sphcloth::SEAM;
+  }
 
   sphcloth::Box swept_box(int t) const;    // with room for contact
 

@@ -75,6 +75,31 @@ inline bool inside_both(PairKind kind, const ClosestPoints &at)
   return w[0] > 0.0 && w[1] > 0.0 && w[2] < 0.0 && w[3] < 0.0;
 }
 
+// How much two edges count as such: not at all where they are parallel, or where their closest
+// points are at an end, which belong to points and triangles; and fully a little away from that.
+// Parallel edges: Li et al., ACM Trans. Graph. 39(4) (2020) 49, section 5.
+
+inline double share_of_edges(const FourPoints &x, const ClosestPoints &at)
+{
+  constexpr double FULL_SINE_SQ = 0.01, FULL_INSIDE = 0.05;
+  const std::array<double, 4> &w = at.weight;
+  const double inside = std::min({w[0], w[1], -w[2], -w[3]}) / FULL_INSIDE;
+  if (inside <= 0.0) return 0.0;
+  const Vec3 first = x[1] - x[0], second = x[3] - x[2];
+  const double sine_sq =
+      first.cross(second).squaredNorm() / (first.squaredNorm() * second.squaredNorm());
+  return std::min(1.0, inside) * std::min(1.0, sine_sq / FULL_SINE_SQ);
+}
+
+// The same of a pair that leans, from its closest points, into what borders on one of them, by this
+// cosine: what borders is nearer.
+
+inline double share_of_leaning(double cosine)
+{
+  constexpr double NONE = 0.1;
+  return std::clamp(1.0 - cosine / NONE, 0.0, 1.0);
+}
+
 }    // namespace sphcloth
 
 #endif

@@ -120,12 +120,14 @@ inline Vec3 distance_vector(const Vec3 &p, const Vec3 &a, const Vec3 &b, const V
   return p - weight[0] * a - weight[1] * b - weight[2] * c;
 }
 
-// Is the line to a point, from the nearest point of an edge or a vertex, inclined to what begins
-// there and runs in a direction?  Then the nearest point of all is not on that edge or vertex.
+// Does the line to a point, from the nearest point of an edge or a vertex, lean towards what begins
+// there and runs in a direction?  The cosine between the two, times the length of that line: above
+// SEAM the nearest point of all is not on that edge or vertex.
 
-inline bool inclines_to(const Vec3 &direction, const Vec3 &from_nearest)
+inline double leaning(const Vec3 &direction, const Vec3 &from_nearest)
 {
-  return from_nearest.dot(direction) > SEAM * from_nearest.norm() * direction.norm();
+  const double length = direction.norm();
+  return length > 0.0 ? from_nearest.dot(direction) / length : 0.0;
 }
 
 // The signed volume of point and triangle in the course of the step, times 6:

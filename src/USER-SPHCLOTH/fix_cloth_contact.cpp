@@ -115,7 +115,7 @@ int FixClothContact::setmask()
 void FixClothContact::init()
 {
   surfaces.clear();
-  cloth_surfaces.clear();
+  cloth_with_cloth.reset();
   obstacles.clear();
   obstacle_surfaces.clear();
   sheets.clear();
@@ -133,7 +133,11 @@ void FixClothContact::init()
     vertex_bits |= cloth->groupbit;
   }
   const int particle_bits = bits_of_particles(cloths);
-  for (FixPBDCloth *cloth : cloths) add_cloth(cloth, particle_bits);
+  if (cloth_meets_cloth && !cloths.empty()) let_cloth_meet_cloth(cloths);
+  for (FixPBDCloth *cloth : cloths) {
+    surfaces.push_back(make_surface(cloth, particle_bits));
+    cloth->register_coupling(&surfaces.back()->solver);
+  }
   if (surfaces.empty() && obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
@@ -172,15 +176,16 @@ int FixClothContact::bits_of_particles(const std::vector<FixPBDCloth *> &cloths)
   return groupbit;
 }
 
-void FixClothContact::add_cloth(FixPBDCloth *cloth, int groupbits)
+// the first coupling of each cloth
+
+void FixClothContact::let_cloth_meet_cloth(const std::vector<FixPBDCloth *> &cloths)
 {
-  surfaces.push_back(make_surface(cloth, groupbits));
-  if (cloth_meets_cloth) {
-    cloth_surfaces.push_back(std::make_unique<ClothSurface>(lmp, cloth, label, cloth_rules, counts,
-                                                            last_positions));
-    cloth->register_coupling(&cloth_surfaces.back()->rows);
-  }
-  cloth->register_coupling(&surfaces.back()->solver);
+  cloth_with_cloth = std::make_unique<ClothWithCloth>(
+      lmp, std::vector<ContactMesh *>(cloths.begin(), cloths.end()), vertex_bits, label,
+      cloth_rules, counts, last_positions);
+  FixPBDCloth::solve_together(cloths);
+  for (std::size_t k = 0; k < cloths.size(); k++)
+    cloths[k]->register_coupling(cloth_with_cloth->couplings()[k]);
 }
 
 void FixClothContact::pre_exchange()
@@ -278,6 +283,7 @@ void FixClothContact::setup_post_neighbor()
   if (rules.sides) find_sheets();
   post_neighbor();
   for_all_surfaces([](ContactSurface &surface) { surface.stabilization.warn_of_too_near(); });
+  if (cloth_with_cloth) cloth_with_cloth->check_start();
 }
 
 void FixClothContact::find_sheets()
@@ -298,7 +304,7 @@ void FixClothContact::post_neighbor()
   wrap_last_positions();
   const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
   for_all_surfaces([distance](ContactSurface &surface) { surface.rebuild(distance); });
-  for (auto &surface : cloth_surfaces) surface->rebuild();
+  if (cloth_with_cloth) cloth_with_cloth->rebuild();
   if (walls) walls->update_candidates();
   if (rules.sides) find_sides();
 }
@@ -325,7 +331,7 @@ void FixClothContact::initial_integrate(int)
 
 void FixClothContact::post_integrate()
 {
-  const std::size_t n = surfaces.size() + cloth_surfaces.size() + obstacle_surfaces.size();
+  const std::size_t n = surfaces.size() + (cloth_with_cloth ? 1 : 0) + obstacle_surfaces.size();
   for (int round = 0; round < MAX_ROUNDS; round++)
     if (!resolve_penetrations() || n == 1) break;
   if (!excess_velocities.empty()) subtract_excess_velocities();
@@ -335,7 +341,7 @@ void FixClothContact::post_integrate()
 bool FixClothContact::resolve_penetrations()
 {
   bool any = false;
-  for (auto &surface : cloth_surfaces) any = surface->guarantee.resolve_collisions() || any;
+  if (cloth_with_cloth) any = cloth_with_cloth->resolve_collisions();
   for_all_surfaces([&any](ContactSurface &surface) {
     any = surface.stabilization.resolve_penetrations() || any;
   });
@@ -493,7 +499,7 @@ double FixClothContact::memory_usage()
   double bytes = 0.0;
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
-  for (const auto &surface : cloth_surfaces) bytes += surface->memory_usage();
+  if (cloth_with_cloth) bytes += cloth_with_cloth->memory_usage();
   for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
 }

@@ -12,7 +12,7 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "fix.h"
 
-#include "contact/cloth_surface.h"
+#include "contact/cloth_with_cloth.h"
 #include "contact/contact_surface.h"
 #include "contact/obstacle.h"
 #include "contact/obstacle_coupling.h"
@@ -91,7 +91,7 @@ class FixClothContact : public Fix, public SideSource {
   ParticleColumns last_positions, impulses, excess_velocities;
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
-  std::vector<std::unique_ptr<ClothSurface>> cloth_surfaces;    // the same, if cloth meets cloth
+  std::unique_ptr<ClothWithCloth> cloth_with_cloth;    // where cloth meets cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
   std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
@@ -114,7 +114,7 @@ class FixClothContact : public Fix, public SideSource {
   void read_arguments(ArgReader &);
   void read_obstacle(ArgReader &);
   int bits_of_particles(const std::vector<FixPBDCloth *> &cloths);
-  void add_cloth(FixPBDCloth *, int groupbits);
+  void let_cloth_meet_cloth(const std::vector<FixPBDCloth *> &cloths);
   bool resolve_penetrations();
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);

@@ -125,6 +125,7 @@ int FixPBDCloth::setmask()
 void FixPBDCloth::init()
 {
   couplings.clear();
+  solved_here = {this};
   check_vertices();
   held.stop_pins();
   mesh.gather(groupbit);
@@ -223,20 +224,51 @@ void FixPBDCloth::post_neighbor()
 
 void FixPBDCloth::post_integrate()
 {
+  if (solved_here.empty()) return;
+  std::vector<Substepping *> solvers;
+  for (FixPBDCloth *cloth : solved_here) {
+    cloth->begin_step();
+    solvers.push_back(&cloth->substepping);
+  }
+  for (int n = 0; n < substepping.substeps(); n++) Substepping::substep(n, solvers);
+  for (FixPBDCloth *cloth : solved_here) cloth->end_step();
+}
+
+void FixPBDCloth::begin_step()
+{
   held.move_pins(vertices.halo);
-  substepping.begin_step({update->dt, powers_of_two});
+  substepping.begin_step({update->dt, powers_of_two}, present, holders);
   if (half_kick.on())
     half_kick.apply(vertices, substepping.substeps(), update->dt, force->ftm2v, atom);
   load();
   if (holders.wanted()) holders.begin_step();
   begin_couplings();
   reference.rescale(substepping.usual_substeps(), substepping.substep_dt());
-  for (int n = 0; n < substepping.substeps(); n++) substepping.substep(n, present, holders);
+}
+
+void FixPBDCloth::end_step()
+{
   if (holders.wanted()) holders.end_step();
   store();
   for (SolverCoupling *coupling : present) coupling->end_step();
   measured = false;
   substepping.end_step();
+}
+
+void FixPBDCloth::solve_together(const std::vector<FixPBDCloth *> &cloths)
+{
+  FixPBDCloth *first = cloths.front();
+  const Substepping::Options &one = first->options.solving;
+  for (FixPBDCloth *cloth : cloths) {
+    const Substepping::Options &other = cloth->options.solving;
+    if (one.solver != other.solver || one.iterations != other.iterations)
+      cloth->error->all(FLERR,
+                        "{}: solver and iterations differ from those of {}, and the two may meet: "
+                        "give both the same, or put the cloths into one fix",
+                        cloth->label, first->label);
+    cloth->solved_here.clear();
+  }
+  first->solved_here = cloths;
 }
 
 void FixPBDCloth::begin_couplings()

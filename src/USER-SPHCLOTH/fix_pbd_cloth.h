@@ -75,6 +75,9 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
 
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
+  // Until then the first of these cloths solves all of them, substep by substep; it is an error if
+  // their solvers differ.
+  static void solve_together(const std::vector<FixPBDCloth *> &);
 
   // rest lengths and angles of the edges and hinges of the topology
   const ClothConstraints &rest() const { return constraints; }
@@ -105,6 +108,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;
   std::vector<SolverCoupling *> couplings, present;    // those that are near in this step
+  std::vector<FixPBDCloth *> solved_here;    // cloths that this fix solves: itself, or none
 
   double holder_force[3];    // in the last step, this rank's part
   bool measured;    // the next two are of the last step, this rank's part
@@ -113,7 +117,9 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void take_rest_positions(const char *);
   void check_vertices();
   void check_styles();
+  void begin_step();
   void begin_couplings();
+  void end_step();
   void load();
   void store();
   void measure();

@@ -19,8 +19,11 @@ static constexpr int ALL = ClothConstraints::ALL;
 // does a k below 1.  Where steps go to and fro between powers of two that would feed what they
 // stretch: substeps stay as long as those of the shortest recent step.
 
-void Substepping::begin_step(const StepInfo &step)
+void Substepping::begin_step(const StepInfo &step, const std::vector<SolverCoupling *> &meets,
+                             HolderForces &holders_)
 {
+  couplings = &meets;
+  holders = &holders_;
   // factors: by which substeps may lengthen from step to step, and by which a step may be longer
   // than the shortest recent one for its substeps to be as short
   constexpr double LENGTHENS = 1.01, MAX_RATIO = 8.0, ROUNDING = 1e-6;
@@ -33,28 +36,68 @@ void Substepping::begin_step(const StepInfo &step)
   n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));
 }
 
-void Substepping::substep(int n, const std::vector<SolverCoupling *> &couplings,
-                          HolderForces &holders)
+// the first couplings of all cloths, then the second ones: what couples cloths is the first of each
+
+template <class Do>
+static void for_each_coupling(const std::vector<Substepping *> &cloths, Do something)
+{
+  bool any = true;
+  for (std::size_t k = 0; any; k++) {
+    any = false;
+    for (Substepping *cloth : cloths)
+      if (k < cloth->present().size()) {
+        something(*cloth, *cloth->present()[k]);
+        any = true;
+      }
+  }
+}
+
+void Substepping::substep(int n, const std::vector<Substepping *> &cloths)
+{
+  for (Substepping *cloth : cloths) cloth->begin_substep(n);
+  for_each_coupling(cloths, [](Substepping &cloth, SolverCoupling &coupling) {
+    coupling.begin_substep(cloth.vertices.start.data(), cloth.vertices.v.data(),
+                           cloth.substep_dt());
+  });
+  bool done = false;
+  while (!done) {
+    for (Substepping *cloth : cloths) cloth->sweep();
+    for_each_coupling(cloths, [](Substepping &cloth, SolverCoupling &coupling) {
+      coupling.project(cloth.vertices.displacement.data());
+    });
+    done = true;
+    for (Substepping *cloth : cloths) done = cloth->is_done() && done;
+  }
+  for (Substepping *cloth : cloths) cloth->end_substep();
+  for_each_coupling(cloths, [](Substepping &cloth, SolverCoupling &coupling) {
+    coupling.end_substep(cloth.vertices.v.data(), cloth.substep_dt());
+  });
+  for (Substepping *cloth : cloths)
+    if (n < cloth->n_substeps - 1) cloth->vertices.start = cloth->vertices.p;
+}
+
+void Substepping::begin_substep(int n)
 {
   const double dt = substep_dt();
-  const bool last = n == n_substeps - 1;
   if (options.damping > 0.0) damp();    // before the forces: weight is not damped
   // from velocities at the time of the positions to those of half a step later
   apply_forces((options.from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v);
-  predict(last);
-  for (SolverCoupling *coupling : couplings)
-    coupling->begin_substep(vertices.start.data(), vertices.v.data(), dt);
+  predict(n == n_substeps - 1);
+  std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
+  std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
+  sweeps = 0;
+}
 
-  project_all(couplings);
+void Substepping::end_substep()
+{
+  const double dt = substep_dt();
   vertices.update_positions();
-  if (holders.wanted()) {
+  if (holders->wanted()) {
     const Vertex *start = options.from_start ? vertices.start.data() : nullptr;
-    holders.add_pull(constraints.distance, start, dt, n_substeps);
-    holders.add_pull(constraints.bending, start, dt, n_substeps);
+    holders->add_pull(constraints.distance, start, dt, n_substeps);
+    holders->add_pull(constraints.bending, start, dt, n_substeps);
   }
   set_velocities();
-  for (SolverCoupling *coupling : couplings) coupling->end_substep(vertices.v.data(), dt);
-  if (!last) vertices.start = vertices.p;
 }
 
 void Substepping::apply_forces(double dtf)
@@ -106,28 +149,27 @@ void Substepping::damp()
   }
 }
 
-void Substepping::project_all(const std::vector<SolverCoupling *> &couplings)
+void Substepping::sweep()
 {
-  const double dt = substep_dt();
-  Vertex *displacement = vertices.displacement.data();
-  const ClothState state{vertices.start.data(), displacement, options.from_start,
+  const ClothState state{vertices.start.data(), vertices.displacement.data(), options.from_start,
                          uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
                          inv_dt_sq(),
                          single_sweeps() ? STABLE_HINGE_SHARE : 1.0};
-  std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
-  std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
-  const int n = uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations;
-  for (sweeps = 0; sweeps < n;) {
-    uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
-    for (SolverCoupling *coupling : couplings) {
-      coupling->project(displacement);
-      vertices.halo.forward_displacements(ALL, displacement, dt);
-    }
-    sweeps++;
-    if (options.tolerance == 0.0) continue;
+  uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
+  sweeps++;
+}
+
+// Collective.  Other ranks learn what the couplings of all cloths have moved.
+
+bool Substepping::is_done()
+{
+  if (!couplings->empty())
+    vertices.halo.forward_displacements(ALL, vertices.displacement.data(), substep_dt());
+  if (options.tolerance > 0.0) {
     vertices.update_positions();
-    if (converged()) break;
+    if (converged()) return true;
   }
+  return sweeps >= (uses(ClothSolver::SUBSTEPS) ? 1 : options.iterations);
 }
 
 // One after the other in a fixed order, a sweep pulls harder one way than the other: what it does

@@ -52,14 +52,16 @@ class Substepping : protected Pointers {
   bool uses(ClothSolver one) const { return options.solver == one; }
   int usual_substeps() const { return uses(ClothSolver::SUBSTEPS) ? options.iterations : 1; }
 
-  // cuts the next step into substeps
-  void begin_step(const StepInfo &);
+  // cuts the next step into substeps, with what meets the cloth in it; forces of the holders are
+  // summed where they are wanted
+  void begin_step(const StepInfo &, const std::vector<SolverCoupling *> &, HolderForces &);
   int substeps() const { return n_substeps; }
+  const std::vector<SolverCoupling *> &present() const { return *couplings; }
   double substep_dt() const { return step_dt / n_substeps; }
 
-  // Substep n from vertices.start and velocities v; forces of the holders are summed where they are
-  // wanted.
-  void substep(int n, const std::vector<SolverCoupling *> &couplings, HolderForces &);
+  // Substep n of several cloths from vertices.start and velocities v, phase by phase: what couples
+  // them finds all in the same one.
+  static void substep(int n, const std::vector<Substepping *> &cloths);
   void end_step() { started = true; }
 
   // largest C + a lambda of this rank's constraints, relative to lengths; elastic energy of those
@@ -82,6 +84,8 @@ class Substepping : protected Pointers {
   const Options &options;
   ClothConstraints &constraints;
   ClothVertices &vertices;
+  const std::vector<SolverCoupling *> *couplings = nullptr;    // of this step
+  HolderForces *holders = nullptr;
   // steps: the present one, and the shortest of the recent ones
   double step_dt = 0.0, recent_shortest = std::numeric_limits<double>::infinity();
   int n_substeps = 1;
@@ -89,11 +93,14 @@ class Substepping : protected Pointers {
   bool started = false;    // velocities are those of half a step ago, see direction start
 
   double inv_dt_sq() const;
+  void begin_substep(int n);
+  void sweep();
+  bool is_done();
+  void end_substep();
   void apply_forces(double dt);
   void predict(bool last);
   void set_velocities();
   void damp();
-  void project_all(const std::vector<SolverCoupling *> &couplings);
   void gauss_seidel(const sphcloth::ClothState &);
   void project_color(int color, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);

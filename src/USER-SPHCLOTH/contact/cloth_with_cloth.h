@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Contact of cloths with themselves and one another: one mesh of all, and the phases of a step.
+
+#ifndef SPHCLOTH_CONTACT_CLOTH_WITH_CLOTH_H
+#define SPHCLOTH_CONTACT_CLOTH_WITH_CLOTH_H
+
+#include "contact/cloth_candidates.h"
+#include "contact/cloth_guarantee.h"
+#include "contact/cloth_rows.h"
+#include "contact/joined_cloths.h"
+#include "contact/mesh_edges.h"
+#include "contact/moving_triangles.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class ClothWithCloth : protected Pointers {
+ public:
+  // groupbits: of all cloths; see MovingTriangles for the others
+  ClothWithCloth(LAMMPS *, const std::vector<ContactMesh *> &cloths, int groupbits,
+                 const std::string &label, const ContactRules &rules, ContactCounts &counts,
+                 const ParticleColumns &last_positions);
+  ClothWithCloth(const ClothWithCloth &) = delete;    // phases refer to one another
+  ClothWithCloth &operator=(const ClothWithCloth &) = delete;
+
+  // what takes part in the solver of each cloth
+  const std::vector<SolverCoupling *> &couplings() const { return parts; }
+
+  void rebuild();    // after each list build
+  // At the start of a run, behind it, collective.  Errors: a thickness above the height of
+  // a triangle; edges that pass through triangles.
+  void check_start();
+
+  bool resolve_collisions() { return guarantee.resolve_collisions(); }
+
+  double memory_usage() const;
+
+ private:
+  std::unique_ptr<JoinedCloths> joined;    // if there are several
+  MovingTriangles triangles;
+  MeshEdges edges;
+  ClothCandidates candidates;
+  ClothRows rows;
+  ClothGuarantee guarantee;
+  std::unique_ptr<JoinedCoupling> coupling;    // if there are several
+  std::vector<SolverCoupling *> parts;
+
+  void check_heights() const;
+  void warn_of_too_near() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds edges that pass through triangles.
+
+#include "contact/tangles.h"
+
+#include "comm.h"
+#include "core/contact/edge_through_triangle.h"
+#include "core/geometry/box_grid.h"
+#include "error.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+namespace {
+
+// in the form in which ranks exchange it
+
+struct Tangle {
+  double ids[5];    // of the edge, and of the triangle
+  double place[3];
+};
+
+constexpr int MAX_EXAMPLES = 3;    // of each rank, and of the message
+
+struct Tangles {
+  double count = 0.0;
+  std::array<Tangle, MAX_EXAMPLES> example{};
+
+  void add(const Tangle &one)
+  {
+    if (count < MAX_EXAMPLES) example[static_cast<int>(count)] = one;
+    count++;
+  }
+};
+
+Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges)
+{
+  std::vector<Box> boxes(mesh.triangles.size());
+  for (std::size_t t = 0; t < boxes.size(); t++)
+    for (const int s : mesh.triangles[t]) boxes[t].extend(mesh.start[s]);
+  BoxGrid grid;
+  grid.build(boxes);
+  Tangles found;
+  for (std::size_t e = 0; e < edges.edges.size(); e++) {
+    if (mesh.halo.is_ghost(edges.vertex_of_lowest(static_cast<int>(e)))) continue;
+    const auto &[p, q] = edges.edges[e];
+    Box box(mesh.start[p]);
+    box.extend(mesh.start[q]);
+    grid.query(box, [&](int t) {
+      const auto &[a, b, c] = mesh.triangles[t];
+      if (p == a || p == b || p == c || q == a || q == b || q == c) return;
+      const std::vector<Vec3> &x = mesh.start;
+      if (!passes_through(x[p], x[q], x[a], x[b], x[c])) return;
+      const Vec3 place = place_of_passing(x[p], x[q], x[a], x[b], x[c]);
+      Tangle one{{}, {place[0], place[1], place[2]}};
+      const int slots[5] = {p, q, a, b, c};
+      for (int k = 0; k < 5; k++) one.ids[k] = static_cast<double>(edges.tag(slots[k]));
+      found.add(one);
+    });
+  }
+  return found;
+}
+
+}    // namespace
+
+void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const MeshEdges &edges)
+{
+  const Tangles mine = find_tangles(mesh, edges);
+  constexpr int SIZE = sizeof(Tangles) / sizeof(double);
+  std::vector<Tangles> all(lmp->comm->nprocs);
+  MPI_Allgather(&mine, SIZE, MPI_DOUBLE, all.data(), SIZE, MPI_DOUBLE, lmp->world);
+
+  double count = 0.0;
+  int shown = 0;
+  std::string examples;
+  for (const Tangles &one : all) {
+    for (int k = 0; k < MAX_EXAMPLES && k < one.count && shown < MAX_EXAMPLES; k++, shown++) {
+      const auto &[ids, place] = one.example[k];
+      examples += fmt::format("{}edge {:.0f}-{:.0f} through triangle {:.0f}-{:.0f}-{:.0f} at "
+                              "({:.6g}, {:.6g}, {:.6g})",
+                              shown ? "; " : "", ids[0], ids[1], ids[2], ids[3], ids[4], place[0],
+                              place[1], place[2]);
+    }
+    count += one.count;
+  }
+  if (count > 0.0)
+    lmp->error->all(FLERR,
+                    "{}: cloth starts tangled, {:.0f} edges pass through triangles: {}; place the "
+                    "cloths apart, or give 'cloth no'",
+                    mesh.label, count, examples);
+}

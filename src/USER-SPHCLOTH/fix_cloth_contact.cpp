@@ -119,7 +119,6 @@ void FixClothContact::init()
   obstacles.clear();
   obstacle_surfaces.clear();
   sheets.clear();
-  couplings.clear();
   vertex_bits = 0;
   std::vector<FixPBDCloth *> cloths;
   bool behind = false;
@@ -133,16 +132,15 @@ void FixClothContact::init()
     vertex_bits |= cloth->groupbit;
   }
   const int particle_bits = bits_of_particles(cloths);
-  if (cloth_meets_cloth && !cloths.empty()) let_cloth_meet_cloth(cloths);
-  for (FixPBDCloth *cloth : cloths) {
-    surfaces.push_back(make_surface(cloth, particle_bits));
-    cloth->register_coupling(&surfaces.back()->solver);
-  }
+  for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth, particle_bits));
   if (surfaces.empty() && obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
   for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
+  for (std::size_t k = 0; k < cloths.size(); k++)
+    cloths[k]->register_coupling(&surfaces[k]->solver);
+  if (!cloths.empty() && (cloth_meets_cloth || !obstacles.empty())) couple_cloths(cloths);
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
@@ -176,13 +174,19 @@ int FixClothContact::bits_of_particles(const std::vector<FixPBDCloth *> &cloths)
   return groupbit;
 }
 
-// the first coupling of each cloth
+// behind water: the last coupling of each cloth
 
-void FixClothContact::let_cloth_meet_cloth(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::couple_cloths(const std::vector<FixPBDCloth *> &cloths)
 {
-  cloth_with_cloth = std::make_unique<ClothWithCloth>(
-      lmp, std::vector<ContactMesh *>(cloths.begin(), cloths.end()), vertex_bits, label,
-      cloth_rules, counts, last_positions);
+  ClothWithCloth::Meshes meshes{{cloths.begin(), cloths.end()}, {}, vertex_bits, 0};
+  for (const auto &obstacle : obstacles) {
+    meshes.obstacles.push_back(obstacle.get());
+    meshes.obstacle_bits |= obstacle->groupbit;
+  }
+  cloth_with_cloth =
+      std::make_unique<ClothWithCloth>(lmp, meshes, label,
+                                       ClothRules{cloth_rules, rules, cloth_meets_cloth}, counts,
+                                       last_positions);
   FixPBDCloth::solve_together(cloths);
   for (std::size_t k = 0; k < cloths.size(); k++)
     cloths[k]->register_coupling(cloth_with_cloth->couplings()[k]);
@@ -218,8 +222,14 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
                std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
   double needed = longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
          wanted = longest + rules.thickness + neighbor->skin + displacement;
-  if (cloth_meets_cloth) {
-    const double reach = ClothGuarantee::reach(longest, cloth_rules.thickness);
+  if (cloth_with_cloth) {
+    double of_cloth = 0.0, of_obstacles = 0.0;
+    for (const auto &surface : surfaces)
+      of_cloth = std::max(of_cloth, surface->triangles.mesh->topology().longest_edge());
+    for (const auto &obstacle : obstacles)
+      of_obstacles = std::max(of_obstacles, obstacle->topology().longest_edge());
+    const double reach = ClothGuarantee::reach(
+        of_cloth, of_obstacles, std::max(rules.thickness, cloth_rules.thickness));
     needed = std::max(needed, reach);
     wanted = std::max(wanted, reach + neighbor->skin + displacement);
   }
@@ -232,19 +242,14 @@ std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh,
                                           last_positions);
 }
 
-// The group of this fix and the vertices of all cloths collide with it.
-
 void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDCloth *> &cloths)
 {
   const int bit = group->bitmask[obstacle_group];
   const char *name = group->names[obstacle_group];
-  int groupbits = groupbit;
-  for (FixPBDCloth *cloth : cloths) {
+  for (const FixPBDCloth *cloth : cloths)
     if (share_atoms(atom, bit, cloth->groupbit, world))
       error->all(FLERR, "{}: obstacle group {} holds vertices of fix {}: an obstacle is no cloth",
                  label, name, cloth->id);
-    groupbits |= cloth->groupbit;
-  }
   if (share_atoms(atom, bit, groupbit, world))
     error->all(
         FLERR,
@@ -259,13 +264,7 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
                "{}: obstacle group {} has no triangles: they are LAMMPS angles; 'sphcloth mesh' "
                "writes them",
                label, name);
-  obstacle_surfaces.push_back(make_surface(&obstacle, groupbits));
-  for (std::size_t k = 0; k < cloths.size(); k++) {
-    couplings.push_back(std::make_unique<ObstacleCoupling>(lmp, surfaces[k]->triangles,
-                                                           obstacle_surfaces.back()->triangles));
-    cloths[k]->register_coupling(couplings.back().get());
-    obstacle_surfaces.back()->triangles.add_vertices_of(cloths[k]);
-  }
+  obstacle_surfaces.push_back(make_surface(&obstacle, bits_of_particles(cloths)));
 }
 
 // every cloth has gathered its mesh by now
@@ -324,10 +323,10 @@ void FixClothContact::initial_integrate(int)
 {
   for_all_surfaces([](ContactSurface &surface) { surface.triangles.moved.clear(); });
   impulses.clear();
-  counts.cloth_gap = ClothCandidates::max_reach(cloth_rules);
+  counts.cloth_gap = cloth_rules.thickness;
 }
 
-// The cloths have been solved, with their contacts: see SolverContact and ObstacleCoupling.
+// The cloths have been solved, with their contacts: see SolverContact and ClothRows.
 
 void FixClothContact::post_integrate()
 {
@@ -500,6 +499,5 @@ double FixClothContact::memory_usage()
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   if (cloth_with_cloth) bytes += cloth_with_cloth->memory_usage();
-  for (const auto &coupling : couplings) bytes += coupling->memory_usage();
   return bytes;
 }

@@ -15,7 +15,6 @@ FixStyle(cloth/contact,FixClothContact);
 #include "contact/cloth_with_cloth.h"
 #include "contact/contact_surface.h"
 #include "contact/obstacle.h"
-#include "contact/obstacle_coupling.h"
 #include "fluid/mesh_boundary.h"
 #include "fluid/side_source.h"
 #include "lammps_util/ghost_reach.h"
@@ -91,11 +90,10 @@ class FixClothContact : public Fix, public SideSource {
   ParticleColumns last_positions, impulses, excess_velocities;
   std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
-  std::unique_ptr<ClothWithCloth> cloth_with_cloth;    // where cloth meets cloth
+  std::unique_ptr<ClothWithCloth> cloth_with_cloth;    // or obstacles, if any do
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
   std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
-  std::vector<std::unique_ptr<ObstacleCoupling>> couplings;    // of every cloth and obstacle
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
   double view_distance;
@@ -114,7 +112,7 @@ class FixClothContact : public Fix, public SideSource {
   void read_arguments(ArgReader &);
   void read_obstacle(ArgReader &);
   int bits_of_particles(const std::vector<FixPBDCloth *> &cloths);
-  void let_cloth_meet_cloth(const std::vector<FixPBDCloth *> &cloths);
+  void couple_cloths(const std::vector<FixPBDCloth *> &cloths);
   bool resolve_penetrations();
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);

@@ -117,7 +117,7 @@ def test_a_moving_table_throws_cloth_and_water(tmp_path):
         "create_atoms 2 region rain"
     )
     lmp.commands_string(scene(tmp_path, table, fixes, cloth=cloth, drops=drops))
-    lmp.command("run 200")
+    lmp.command("run 250")
     kind, x, v = (by_id(lmp, name) for name in ("type", "x", "v"))
     assert x[kind == 3, 2].min() > 0.15 + 0.0099
     assert v[kind == 3, 2] == pytest.approx(np.full((kind == 3).sum(), 2.0), abs=0.05)

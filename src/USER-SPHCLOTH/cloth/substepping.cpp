@@ -36,20 +36,17 @@ void Substepping::begin_step(const StepInfo &step, const std::vector<SolverCoupl
   n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));
 }
 
-// the first couplings of all cloths, then the second ones: what couples cloths is the first of each
+// The last couplings of all cloths come last, and together: what couples cloths is the last of each.
 
 template <class Do>
 static void for_each_coupling(const std::vector<Substepping *> &cloths, Do something)
 {
-  bool any = true;
-  for (std::size_t k = 0; any; k++) {
-    any = false;
+  std::size_t most = 0;
+  for (const Substepping *cloth : cloths) most = std::max(most, cloth->present().size());
+  for (std::size_t from_end = most; from_end > 0; from_end--)
     for (Substepping *cloth : cloths)
-      if (k < cloth->present().size()) {
-        something(*cloth, *cloth->present()[k]);
-        any = true;
-      }
-  }
+      if (const std::size_t size = cloth->present().size(); size >= from_end)
+        something(*cloth, *cloth->present()[size - from_end]);
 }
 
 void Substepping::substep(int n, const std::vector<Substepping *> &cloths)

@@ -71,7 +71,7 @@ void CandidatePairs::find()
     positions_then[d].assign(last, last + atom->nlocal);
   }
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!mesh.can_move(i)) continue;
+    if (!mesh.collides(i)) continue;
     const Sweep particle = mesh.sweep_of(i);
     const std::size_t first = candidates.size();
     discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {

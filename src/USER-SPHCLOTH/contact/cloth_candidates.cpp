@@ -20,14 +20,11 @@ void ClothCandidates::clear()
   known = false;
 }
 
-double ClothCandidates::max_reach(const ContactRules &rules)
-{
-  return MAX_REACH * rules.thickness;
-}
+double ClothCandidates::max_reach() const { return MAX_REACH * rules.max_thickness(); }
 
 double ClothCandidates::margin() const
 {
-  const double thickness = mesh.rules.thickness;
+  const double thickness = rules.max_thickness();
   return thickness * std::clamp(0.5 * neighbor->skin / thickness, 1.0, MAX_MARGIN);
 }
 
@@ -75,20 +72,47 @@ void ClothCandidates::measure_paths()
 
 void ClothCandidates::find()
 {
-  const double cutoff = max_reach(mesh.rules) + 2.0 * std::max(margin(), longest_stride);
+  const double cutoff = max_reach() + 2.0 * std::max(margin(), longest_stride);
   pairs.clear();
   vertices_then = mesh.start;
   known = true;
-  find_triangles(cutoff);
-  find_edges(cutoff);
+  for (const bool obstacles : {false, true}) find_among(obstacles, cutoff);
 }
 
-void ClothCandidates::find_triangles(double cutoff)
+// obstacles, or cloth
+
+void ClothCandidates::find_among(bool obstacles, double cutoff)
 {
-  discs.build(mesh, cutoff, [](std::size_t) { return 0.0; });
+  triangles_there.clear();
+  discs.clear();
+  for (std::size_t t = 0; t < mesh.triangles.size(); t++) {
+    const auto &[a, b, c] = mesh.triangles[t];
+    if (edges.is_obstacle(a) != obstacles) continue;
+    triangles_there.push_back(static_cast<int>(t));
+    discs.push_back(disc_around(mesh.start[a], mesh.start[b], mesh.start[c]));
+  }
+  edges_there.clear();
+  boxes.clear();
+  for (std::size_t e = 0; e < edges.edges.size(); e++) {
+    const auto &[a, b] = edges.edges[e];
+    if (edges.is_obstacle(a) != obstacles) continue;
+    edges_there.push_back(static_cast<int>(e));
+    boxes.emplace_back(mesh.start[a]);
+    boxes.back().extend(mesh.start[b]);
+  }
+  if (triangles_there.empty()) return;
+  find_triangles(obstacles, cutoff);
+  if (obstacles || rules.cloth_meets_cloth) find_edges(obstacles, cutoff);
+}
+
+void ClothCandidates::find_triangles(bool obstacles, double cutoff)
+{
+  disc_grid.build(discs, cutoff);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    if (edges.is_obstacle(s) ? obstacles : !obstacles && !rules.cloth_meets_cloth) continue;
     const std::size_t begin = pairs.size();
-    discs.grid.within(mesh.start[s], cutoff, [&](int t) {
+    disc_grid.within(mesh.start[s], cutoff, [&](int n) {
+      const int t = triangles_there[n];
       const auto &[a, b, c] = mesh.triangles[t];
       if (s == a || s == b || s == c) return;
       add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t}, cutoff);
@@ -98,26 +122,22 @@ void ClothCandidates::find_triangles(double cutoff)
   }
 }
 
-void ClothCandidates::find_edges(double cutoff)
+void ClothCandidates::find_edges(bool obstacles, double cutoff)
 {
-  boxes.resize(edges.edges.size());
-  for (std::size_t e = 0; e < boxes.size(); e++) {
-    const auto &[a, b] = edges.edges[e];
-    boxes[e] = Box(mesh.start[a]);
-    boxes[e].extend(mesh.start[b]);
-  }
-  grid.build(boxes);
-  for (int e = 0; e < static_cast<int>(boxes.size()); e++) {
-    if (mesh.halo.is_ghost(edges.vertex_of_lowest(e))) continue;
+  box_grid.build(boxes);
+  for (int e = 0; e < static_cast<int>(edges.edges.size()); e++) {
     const auto &[p, q] = edges.edges[e];
+    if (edges.is_obstacle(p) || mesh.halo.is_ghost(edges.vertex_of_lowest(e))) continue;
     const std::size_t begin = pairs.size();
-    Box near = boxes[e];
+    Box near(mesh.start[p]);
+    near.extend(mesh.start[q]);
     near.min().array() -= cutoff;
     near.max().array() += cutoff;
-    grid.query(near, [&](int other) {
-      if (edges.lowest[other] < edges.lowest[e] || !boxes[other].intersects(near)) return;
+    box_grid.query(near, [&](int n) {
+      const int other = edges_there[n];
       const auto &[a, b] = edges.edges[other];
-      if (p == a || p == b || q == a || q == b) return;
+      if (!obstacles && edges.lowest[other] < edges.lowest[e]) return;
+      if (p == a || p == b || q == a || q == b || !boxes[n].intersects(near)) return;
       add(PairKind::EDGE_EDGE, {p, q, a, b}, {e, other}, cutoff);
     });
     std::sort(pairs.begin() + begin, pairs.end(),
@@ -133,16 +153,18 @@ void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
       closest_points(kind, {mesh.start[i], mesh.start[j], mesh.start[k], mesh.start[l]})
           .vector.norm();
   if (distance > cutoff) return;
+  const bool with_obstacle = edges.is_obstacle(i) != edges.is_obstacle(l);
   bool joined = false;
   for (int first = 0; first < first_side(kind); first++)
     for (int second = first_side(kind); second < 4; second++)
       joined = joined ||
-          ((mesh.start[slots[first]] - mesh.start[slots[second]]).norm() < mesh.rules.thickness &&
+          ((mesh.start[slots[first]] - mesh.start[slots[second]]).norm() < rules.cloth.thickness &&
            edges.joined(slots[first], slots[second]));
-  pairs.push_back({kind, slots, members, joined, distance});
+  pairs.push_back({kind, slots, members, with_obstacle, joined, distance});
 }
 
 double ClothCandidates::memory_usage() const
 {
-  return discs.bytes() + grid.bytes() + bytes_of(pairs, vertices_then, stride, path, boxes);
+  return disc_grid.bytes() + box_grid.bytes() +
+      bytes_of(pairs, vertices_then, stride, path, triangles_there, edges_there, discs, boxes);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Broad phase of cloth with itself: the vertices and triangles, and the edges, of a mesh that may
-// meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex of both edges that
-// has the lowest ID.
+// Broad phase of cloth with cloth and with obstacles: the vertices and triangles, and the edges, of
+// a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex of
+// both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
 // The list is made with a margin, and holds while vertices stay within it, but for what they move
 // all together, and until the next list build of LAMMPS.  Which pairs are visited does not depend on
 // when that was.
@@ -11,8 +11,8 @@
 
 #include "contact/mesh_edges.h"
 #include "contact/moving_triangles.h"
-#include "contact/triangle_discs.h"
 #include "core/contact/closest_points.h"
+#include "core/geometry/disc_grid.h"
 
 #include <algorithm>
 #include <array>
@@ -26,6 +26,7 @@ struct ClothPair {
   sphcloth::PairKind kind;
   std::array<int, 4> slots;    // vertex and triangle, or two edges
   std::array<int, 2> members;    // triangle: the second; edges: both
+  bool with_obstacle;
   bool joined;    // by a bond that is shorter than the thickness: a seam
   double distance;    // when the list was made
 };
@@ -34,8 +35,9 @@ class ClothCandidates : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  ClothCandidates(LAMMPS *lmp_, const MovingTriangles &mesh_, const MeshEdges &edges_) :
-      Pointers(lmp_), mesh(mesh_), edges(edges_)
+  ClothCandidates(LAMMPS *lmp_, const MovingTriangles &mesh_, const MeshEdges &edges_,
+                  const ClothRules &rules_) :
+      Pointers(lmp_), rules(rules_), mesh(mesh_), edges(edges_)
   {
   }
 
@@ -60,7 +62,8 @@ class ClothCandidates : protected Pointers {
       if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
     }
   }
-  static double max_reach(const ContactRules &);
+  double max_reach() const;
+  const ClothRules rules;
 
   double memory_usage() const;
 
@@ -74,9 +77,12 @@ class ClothCandidates : protected Pointers {
   std::vector<double> stride, path;
   double longest_stride = 0.0, longest_path = 0.0;
   double limit = 0.0;    // of an approach
-  TriangleDiscs discs;
+  // of a search: triangles and edges of cloth, or of obstacles
+  std::vector<int> triangles_there, edges_there;
+  std::vector<sphcloth::Disc> discs;
+  sphcloth::DiscGrid disc_grid;
   std::vector<sphcloth::Box> boxes;
-  sphcloth::BoxGrid grid;
+  sphcloth::BoxGrid box_grid;
 
   static double longest_of_sides(const std::vector<double> &of, const std::array<int, 4> &s, int n)
   {
@@ -99,8 +105,9 @@ class ClothCandidates : protected Pointers {
   void measure_strides();
   void measure_paths();
   void find();
-  void find_triangles(double cutoff);
-  void find_edges(double cutoff);
+  void find_among(bool obstacles, double cutoff);
+  void find_triangles(bool obstacles, double cutoff);
+  void find_edges(bool obstacles, double cutoff);
   void add(sphcloth::PairKind, const std::array<int, 4> &slots, const std::array<int, 2> &members,
            double cutoff);
 };

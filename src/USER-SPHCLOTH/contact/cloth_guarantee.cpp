@@ -32,8 +32,8 @@ void ClothGuarantee::rebuild()
   if (!ghosts.matters()) return;
   vertices_then.resize(mesh.halo.n_owned());
   for (int s = 0; s < mesh.halo.n_owned(); s++) vertices_then[s] = mesh.position(s);
-  const double here = mesh.longest_edge_here();
-  MPI_Allreduce(&here, &longest_edge, 1, MPI_DOUBLE, MPI_MAX, world);
+  const std::array<double, 2> here = edges.longest_here();
+  MPI_Allreduce(here.data(), longest.data(), 2, MPI_DOUBLE, MPI_MAX, world);
 }
 
 bool ClothGuarantee::resolve_collisions()
@@ -84,12 +84,12 @@ static PairMotion motion_of(const ClothPair &pair, const MovingTriangles &mesh)
 
 void ClothGuarantee::find_collisions()
 {
-  const double thickness = mesh.rules.thickness;
   rows.clear();
   masses.begin(mesh.halo.n_slots());
   candidates.update();
   candidates.for_near(0.0, [&](const ClothPair &pair, const ClosestPoints &at) {
-    const double apart = std::min(thickness, at.vector.norm());
+    const ContactRules &rules = candidates.rules.of(pair.with_obstacle);
+    const double thickness = rules.thickness, apart = std::min(thickness, at.vector.norm());
     const PairMotion motion = motion_of(pair, mesh);
     const double keep = std::max(KEEP * apart, std::min(KEEP_CLOSE * apart, CLOSE * thickness));
     if (stays_apart(motion, at.vector, keep)) return;
@@ -98,10 +98,10 @@ void ClothGuarantee::find_collisions()
     row.kind = pair.kind;
     row.slots = pair.slots;
     row.members = pair.members;
+    row.rules = &rules;
     row.weight = closest_points(pair.kind, motion.at(safe.time)).weight;
     row.normal = safe.vector.normalized();
     row.gap = std::max(GIVEN * apart, keep);
-    if(getenv("DBG")) printf("step %ld kind %d d0/th %.3g app %.3g t %.3g tags %d %d %d %d\n",(long)update->ntimestep,(int)pair.kind,at.vector.norm()/thickness,max_approach(motion)/thickness,safe.time,(int)atom->tag[mesh.halo.atom_of(pair.slots[0])],(int)atom->tag[mesh.halo.atom_of(pair.slots[1])],(int)atom->tag[mesh.halo.atom_of(pair.slots[2])],(int)atom->tag[mesh.halo.atom_of(pair.slots[3])]);
     rows.push_back(row);
     masses.count(row);
   });
@@ -131,7 +131,6 @@ void ClothGuarantee::push_apart()
 
 void ClothGuarantee::solve_velocities()
 {
-  const double friction = mesh.rules.friction;
   masses.begin(mesh.halo.n_slots());
   for (const ContactRow &row : pushed) masses.count(row);
   masses.share(mesh.halo);
@@ -146,9 +145,9 @@ void ClothGuarantee::solve_velocities()
     const Vec3 relative = row.relative(velocity);
     const double speed = relative.dot(row.normal);
     if (speed >= 0.0) continue;
-    const double mass = masses.of(row, mesh.w), step = -(1.0 + mesh.rules.restitution) * speed * mass;
+    const double mass = masses.of(row, mesh.w), step = -(1.0 + row.rules->restitution) * speed * mass;
     const Vec3 sliding = mass * (relative - speed * row.normal);
-    masses.apply(row, step * row.normal - clamp_length(sliding, friction * step));
+    masses.apply(row, step * row.normal - clamp_length(sliding, row.rules->friction * step));
   }
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
@@ -200,7 +199,7 @@ double ClothGuarantee::max_displacement() const
 void ClothGuarantee::check_reach(double displacement) const
 {
   if (!ghosts.matters() || !mesh.has_triangles()) return;
-  const double needed = reach(longest_edge, mesh.rules.thickness) + 2.0 * displacement,
+  const double needed = reach(longest[0], longest[1], candidates.rules.max_thickness()) + 2.0 * displacement,
                has = ghosts.reach();
   if (needed > has)
     error->all(FLERR,

@@ -10,6 +10,8 @@
 #include "contact/cloth_candidates.h"
 #include "contact/contact_row.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -18,8 +20,9 @@ class ClothGuarantee : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  ClothGuarantee(LAMMPS *lmp_, MovingTriangles &mesh_, ClothCandidates &candidates_) :
-      Pointers(lmp_), mesh(mesh_), candidates(candidates_), ghosts(lmp, mesh.label)
+  ClothGuarantee(LAMMPS *lmp_, MovingTriangles &mesh_, const MeshEdges &edges_,
+                 ClothCandidates &candidates_) :
+      Pointers(lmp_), mesh(mesh_), edges(edges_), candidates(candidates_), ghosts(lmp, mesh.label)
   {
   }
 
@@ -29,10 +32,11 @@ class ClothGuarantee : protected Pointers {
   // Of the motion from the last step's positions to the present ones.  Collective; was there any?
   bool resolve_collisions();
 
-  // how far ghosts must reach for meshes with such edges: the triangles at both ends of each pair
-  static double reach(double longest_edge, double thickness)
+  // how far ghosts must reach for edges of such lengths: over that of the cloth, the gap, and what
+  // borders on the other one
+  static double reach(double longest_of_cloth, double longest_of_obstacles, double thickness)
   {
-    return 3.0 * longest_edge + thickness;
+    return longest_of_cloth + thickness + std::max(longest_of_cloth, longest_of_obstacles);
   }
 
   double memory_usage() const
@@ -42,13 +46,14 @@ class ClothGuarantee : protected Pointers {
 
  private:
   MovingTriangles &mesh;
+  const MeshEdges &edges;
   ClothCandidates &candidates;
   GhostReach ghosts;
   SplitMasses masses;
   std::vector<ContactRow> rows;    // of this pass
   std::vector<ContactRow> pushed;    // of all passes
   std::vector<Vec3> velocity, vertices_then;    // of owned vertices, at the list build
-  double longest_edge = 0.0;
+  std::array<double, 2> longest{};    // edge of cloth, and of obstacles
 
   void find_collisions();
   double missing(const ContactRow &) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Projects the contacts of a cloth with itself.
+// Projects the contacts of cloth with cloth and with obstacles.
 //
 // Which of many near pairs push: only the nearest of a place, whose direction does not lean into
 // what borders on it, as in Chen, Diaz & Yuksel, Offset geometric contact, ACM Trans. Graph. 44(4)
@@ -37,7 +37,7 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   remaining = dt;
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
   mesh.halo.forward_positions(0, mesh.end.data());
-  candidates.update(MAX_APPROACH * mesh.rules.thickness);
+  candidates.update(MAX_APPROACH * candidates.rules.max_thickness());
   find_rows();
   int mine = !rows.empty(), any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
@@ -52,27 +52,29 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
 
 void ClothRows::find_rows()
 {
-  const double thickness = mesh.rules.thickness;
   rows.clear();
   active.clear();
   masses.begin(mesh.halo.n_slots());
-  candidates.for_near(ClothCandidates::max_reach(mesh.rules), [&](const ClothPair &pair, const ClosestPoints &at) {
+  candidates.for_near(candidates.max_reach(), [&](const ClothPair &pair, const ClosestPoints &at) {
     const double distance = at.vector.norm();
     if (distance == 0.0) return;
     ContactRow row{};
     row.kind = pair.kind;
     row.slots = pair.slots;
     row.members = pair.members;
+    row.rules = &candidates.rules.of(pair.with_obstacle);
     row.weight = at.weight;
     row.normal = at.vector / distance;
+    const double thickness = row.rules->thickness;
     row.gap = std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness);
     row.awake_from = distance - row.gap;
-    mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, pair.joined ? thickness : distance);
+    if (!pair.with_obstacle && !pair.joined)
+      mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
     rows.push_back(row);
   });
   mesh.end = mesh.start;
   for (const ContactRow &row : rows)
-    if (share(row, {row.weight, row.relative(mesh.start)}) > 0.0) masses.count(row);
+    masses.count(row, share(row, {row.weight, row.relative(mesh.start)}));
 }
 
 void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
@@ -88,8 +90,8 @@ void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt
     rows[k].friction_correction.setZero();
   }
   active.clear();
-  if (mesh.rules.restitution > 0.0) load_velocities(v);
-  if (mesh.rules.friction == 0.0) return;
+  if (candidates.rules.cloth.restitution > 0.0) load_velocities(v);
+  if (std::max(candidates.rules.cloth.friction, candidates.rules.obstacle.friction) == 0.0) return;
   from.resize(mesh.halo.n_slots());
   for (int s = 0; s < mesh.halo.n_owned(); s++)
     from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
@@ -104,7 +106,7 @@ void ClothRows::project(Vertex *displacement)
   for (int k = 0; k < static_cast<int>(rows.size()); k++) {
     if (rows[k].awake_from > 2.0 * path) continue;
     project_normal(k);
-    if (mesh.rules.friction > 0.0 && rows[k].active) project_friction(rows[k]);
+    if (rows[k].active && rows[k].rules->friction > 0.0) project_friction(rows[k]);
   }
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
@@ -152,13 +154,13 @@ void ClothRows::project_normal(int k)
   if (counts == 0.0 && row.normal_correction == 0.0) return;
   row.weight = at.weight;
   if (!row.active) {
-    if (mesh.rules.restitution > 0.0) row.speed_before = row.relative(velocity).dot(row.normal);
+    if (row.rules->restitution > 0.0) row.speed_before = row.relative(velocity).dot(row.normal);
     row.active = true;
     active.push_back(k);
   }
   mesh.counts.cloth_contacts++;
   const double step =
-      std::max(counts * (row.gap - distance) * masses.of(row, mesh.w_solver),
+      std::max((row.gap - distance) * masses.of(row, mesh.w_solver, counts),
                -row.normal_correction);
   row.normal_correction += step;
   masses.apply(row, step * row.normal);
@@ -172,7 +174,7 @@ double ClothRows::share(const ContactRow &row, const ClosestPoints &at) const
   const auto &[p, q, a, b] = row.slots;
   if (row.kind == PairKind::POINT_TRIANGLE)
     return share_of_leaning(mesh.leaning_into_others(
-        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, 1.0, p));
+        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, p));
   const double of_edges = share_of_edges(row.of_slots(mesh.end), at);
   if (of_edges == 0.0) return 0.0;
   return of_edges * share_of_leaning(leaning_beside(row.members[0], -at.vector, {a, b})) *
@@ -205,7 +207,7 @@ void ClothRows::project_friction(ContactRow &row)
   slip -= slip.dot(row.normal) * row.normal;
   const Vec3 target =
       clamp_length(row.friction_correction - masses.of(row, mesh.w_solver) * slip,
-                   mesh.rules.friction * row.normal_correction);
+                   row.rules->friction * row.normal_correction);
   masses.apply(row, target - row.friction_correction);
   row.friction_correction = target;
 }
@@ -213,6 +215,7 @@ void ClothRows::project_friction(ContactRow &row)
 void ClothRows::end_substep(Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
+  masses.share_by_load(mesh.halo, rows, active);
   load_velocities(v);
   masses.clear_impulses();
   for (const int k : active)
@@ -230,10 +233,10 @@ void ClothRows::end_substep(Vertex *v, double dt)
 void ClothRows::solve_velocity(const ContactRow &row, double dt)
 {
   const ContactMotion motion{row.relative(velocity), row.normal, row.speed_before,
-                             masses.of(row, mesh.w_solver)};
+                             masses.by_load(row, mesh.w_solver)};
   const ExchangedImpulse so_far{row.normal_correction / dt, row.friction_correction / dt};
-  masses.apply(row, contact_impulse(motion, so_far, mesh.rules.restitution,
-                                    mesh.rules.friction));
+  masses.apply(row, contact_impulse(motion, so_far, row.rules->restitution,
+                                    row.rules->friction));
 }
 
 void ClothRows::load_velocities(const Vertex *v)
@@ -246,9 +249,11 @@ void ClothRows::load_velocities(const Vertex *v)
 void ClothRows::end_step()
 {
   const WallTimer clock(mesh.counts.seconds);
-  for (int s = 0; s < mesh.halo.n_owned(); s++)
-    if (mesh.w[s] == 0.0)
-      for (int d = 0; d < 3; d++) mesh.counts.impulse[d] += received[s][d] / force->ftm2v;
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    if (mesh.w[s] > 0.0 || received[s].isZero(0.0)) continue;
+    for (int d = 0; d < 3; d++) mesh.counts.impulse[d] += received[s][d] / force->ftm2v;
+    if (edges.is_obstacle(s)) mesh.mesh->push_held(mesh.halo.atom_of(s), received[s]);
+  }
 }
 
 double ClothRows::memory_usage() const

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joins cloths where there are several, and checks what a run starts from.
+// Joins meshes where there are several, and checks what a run starts from.
 
 #include "contact/cloth_with_cloth.h"
 
@@ -14,30 +14,35 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-static ContactMesh *one_of(const std::vector<ContactMesh *> &cloths, JoinedCloths *joined)
+static std::unique_ptr<JoinedCloths> join(LAMMPS *lmp, const std::string &label,
+                                          const ClothWithCloth::Meshes &meshes)
 {
-  return joined ? static_cast<ContactMesh *>(joined) : cloths.front();
+  std::vector<ContactMesh *> all = meshes.cloths;
+  all.insert(all.end(), meshes.obstacles.begin(), meshes.obstacles.end());
+  if (all.size() == 1) return nullptr;
+  return std::make_unique<JoinedCloths>(lmp, label, all, meshes.cloth_bits | meshes.obstacle_bits);
 }
 
-ClothWithCloth::ClothWithCloth(LAMMPS *lmp_, const std::vector<ContactMesh *> &cloths,
-                               int groupbits, const std::string &label, const ContactRules &rules_,
-                               ContactCounts &counts, const ParticleColumns &last_positions) :
+ClothWithCloth::ClothWithCloth(LAMMPS *lmp_, const Meshes &meshes, const std::string &label,
+                               const ClothRules &rules, ContactCounts &counts,
+                               const ParticleColumns &last_positions) :
     Pointers(lmp_),
-    joined(cloths.size() > 1 ? new JoinedCloths(lmp, label, cloths, groupbits) : nullptr),
-    triangles(lmp, one_of(cloths, joined.get()), label, 0, rules_, counts, last_positions),
-    edges(lmp, triangles), candidates(lmp, triangles, edges),
-    rows(lmp, triangles, edges, candidates), guarantee(lmp, triangles, candidates)
+    joined(join(lmp, label, meshes)),
+    triangles(lmp, joined ? static_cast<ContactMesh *>(joined.get()) : meshes.cloths.front(), label,
+              0, rules.obstacle, counts, last_positions),
+    edges(lmp, triangles, meshes.obstacle_bits), candidates(lmp, triangles, edges, rules),
+    rows(lmp, triangles, edges, candidates), guarantee(lmp, triangles, edges, candidates)
 {
-  parts = {&rows};
-  if (!joined) return;
-  coupling = std::make_unique<JoinedCoupling>(lmp, rows, triangles.halo);
-  parts.clear();
-  for (const ContactMesh *cloth : cloths) parts.push_back(coupling->add_part(cloth));
+  if (joined) {
+    coupling = std::make_unique<JoinedCoupling>(lmp, rows, triangles, edges);
+    for (const ContactMesh *cloth : meshes.cloths) parts.push_back(coupling->add_part(cloth));
+  } else
+    parts = {&rows};
 }
 
 void ClothWithCloth::rebuild()
 {
-  triangles.rebuild(triangles.rules.thickness);
+  triangles.rebuild(candidates.rules.max_thickness());
   edges.rebuild();
   candidates.clear();
   rows.rebuild();
@@ -48,8 +53,8 @@ void ClothWithCloth::rebuild()
 void ClothWithCloth::check_start()
 {
   triangles.load_positions();
-  check_heights();
-  check_tangles(lmp, triangles, edges);
+  if (candidates.rules.cloth_meets_cloth) check_heights();
+  check_tangles(lmp, triangles, edges, candidates.rules.cloth_meets_cloth);
   candidates.update();
   warn_of_too_near();
 }
@@ -61,32 +66,35 @@ void ClothWithCloth::check_heights() const
 {
   double mine = std::numeric_limits<double>::infinity(), lowest;
   for (const auto &[i, j, k] : triangles.triangles) {
+    if (edges.is_obstacle(i)) continue;
     const Vec3 a = triangles.end[i], b = triangles.end[j], c = triangles.end[k];
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     mine = std::min(mine, (b - a).cross(c - a).norm() / longest);
   }
   MPI_Allreduce(&mine, &lowest, 1, MPI_DOUBLE, MPI_MIN, world);
-  if (triangles.rules.thickness > lowest)
+  const double thickness = candidates.rules.cloth.thickness;
+  if (thickness > lowest)
     error->all(FLERR,
                "{}: the thickness {} of cloth that meets cloth is above the height {:.6g} of the "
                "lowest triangle: lower it with 'cloth/thickness', or make the mesh coarser",
-               triangles.label, triangles.rules.thickness, lowest);
+               triangles.label, thickness, lowest);
 }
 
 void ClothWithCloth::warn_of_too_near() const
 {
   bigint mine = 0, all;
-  candidates.for_near(0.999 * triangles.rules.thickness,
-                      [&mine](const ClothPair &pair, const ClosestPoints &) {
-                        if (!pair.joined) mine++;
+  candidates.for_near(candidates.rules.max_thickness(),
+                      [&](const ClothPair &pair, const ClosestPoints &at) {
+                        const double thickness = candidates.rules.of(pair.with_obstacle).thickness;
+                        if (!pair.joined && at.vector.norm() < 0.999 * thickness) mine++;
                       });
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all > 0 && comm->me == 0)
     error->warning(FLERR,
-                   "{}: {} pairs of vertices and triangles or of edges start nearer to one another "
-                   "than the thickness {}: they get their gap by a tenth of it per step; place the "
-                   "cloths farther apart, or lower the thickness",
-                   triangles.label, all, triangles.rules.thickness);
+                   "{}: {} pairs of vertices and triangles or of edges, of cloth and cloth or "
+                   "obstacles, start nearer to one another than the thickness: they get their gap "
+                   "by a tenth of it per step; place them farther apart, or lower the thickness",
+                   triangles.label, all);
 }
 
 double ClothWithCloth::memory_usage() const

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Contact of cloths with themselves and one another: one mesh of all, and the phases of a step.
+// Contact of cloths with themselves, one another and obstacles: one mesh of all, and the phases of
+// a step.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_WITH_CLOTH_H
 #define SPHCLOTH_CONTACT_CLOTH_WITH_CLOTH_H
@@ -19,10 +20,14 @@ namespace LAMMPS_NS {
 
 class ClothWithCloth : protected Pointers {
  public:
-  // groupbits: of all cloths; see MovingTriangles for the others
-  ClothWithCloth(LAMMPS *, const std::vector<ContactMesh *> &cloths, int groupbits,
-                 const std::string &label, const ContactRules &rules, ContactCounts &counts,
-                 const ParticleColumns &last_positions);
+  struct Meshes {
+    std::vector<ContactMesh *> cloths, obstacles;
+    int cloth_bits, obstacle_bits;    // group bits of their vertices
+  };
+
+  // see MovingTriangles for the others
+  ClothWithCloth(LAMMPS *, const Meshes &, const std::string &label, const ClothRules &,
+                 ContactCounts &counts, const ParticleColumns &last_positions);
   ClothWithCloth(const ClothWithCloth &) = delete;    // phases refer to one another
   ClothWithCloth &operator=(const ClothWithCloth &) = delete;
 
@@ -39,13 +44,13 @@ class ClothWithCloth : protected Pointers {
   double memory_usage() const;
 
  private:
-  std::unique_ptr<JoinedCloths> joined;    // if there are several
+  std::unique_ptr<JoinedCloths> joined;    // if it is more than one mesh
   MovingTriangles triangles;
   MeshEdges edges;
   ClothCandidates candidates;
   ClothRows rows;
   ClothGuarantee guarantee;
-  std::unique_ptr<JoinedCoupling> coupling;    // if there are several
+  std::unique_ptr<JoinedCoupling> coupling;    // the same
   std::vector<SolverCoupling *> parts;
 
   void check_heights() const;

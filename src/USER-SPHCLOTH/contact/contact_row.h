@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A contact between vertices: signed weights of four of them and a normal, by which it pushes all
-// four, equal and opposite.  Rows are solved at once, with the mass of a vertex split evenly over its
-// rows, which keeps momentum and always converges: Tonge, Benevolenski & Voroshilov, ACM Trans.
-// Graph. 31 (2012) 105.
+// four, equal and opposite.  Rows are solved at once, with the mass of a vertex split over its rows,
+// evenly or as these push, which keeps momentum and always converges: Tonge, Benevolenski &
+// Voroshilov, ACM Trans. Graph. 31 (2012) 105.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_ROW_H
 #define SPHCLOTH_CONTACT_CONTACT_ROW_H
@@ -21,6 +21,7 @@ struct ContactRow {
   sphcloth::PairKind kind;
   std::array<int, 4> slots;    // see ClothPair
   std::array<int, 2> members;
+  const ContactRules *rules;
   std::array<double, 4> weight;
   Vec3 normal;    // from the second side to the first
   double gap = 0.0;    // to be kept
@@ -42,7 +43,7 @@ struct ContactRow {
   }
 };
 
-// by how many rows the mass of each vertex is split, and what rows push in a pass
+// by what the mass of each vertex is split, and what rows push in a pass
 
 class SplitMasses {
  public:
@@ -50,39 +51,62 @@ class SplitMasses {
 
   std::vector<Vec3> impulse;    // by slot
 
-  void begin(int n_slots) { rows_at.assign(n_slots, Vec3::Zero()); }
-  void count(const ContactRow &row)
+  void begin(int n_slots) { shares.assign(n_slots, Vec3::Zero()); }
+  // the share of a row in a mass grows with its weight there, and with how much it counts at all
+  void count(const ContactRow &row, double counts = 1.0)
   {
-    for (const int s : row.slots) rows_at[s][0] += 1.0;
+    for (int k = 0; k < 4; k++) shares[row.slots[k]][0] += counts * std::fabs(row.weight[k]);
   }
-  // collective: rows of all ranks
+  // behind begin(); collective: rows of all ranks
   void share(VertexHalo &halo)
   {
-    halo.reverse_add(0, rows_at.data());
-    halo.forward(0, rows_at.data());
+    halo.reverse_add(0, shares.data());
+    halo.forward(0, shares.data());
   }
 
   // 0 if nothing can move; a row that was not counted counts itself
-  double of(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  double of(const ContactRow &row, const std::vector<double> &inverse_mass,
+            double counts = 1.0) const
   {
     double inverse = 0.0;
     for (int k = 0; k < 4; k++) {
       const int s = row.slots[k];
-      inverse += inverse_mass[s] * std::max(1.0, rows_at[s][0]) * row.weight[k] * row.weight[k];
+      const double weight = std::fabs(row.weight[k]);
+      inverse += inverse_mass[s] * weight * std::max(counts * weight, shares[s][0]);
     }
-    return inverse > 0.0 ? 1.0 / inverse : 0.0;
+    return inverse > 0.0 ? counts / inverse : 0.0;
   }
 
-  void clear_impulses() { impulse.assign(rows_at.size(), Vec3::Zero()); }
+  // The same by load, so that a row that hardly pushes hardly counts.  Collective.
+  void share_by_load(VertexHalo &halo, const std::vector<ContactRow> &rows,
+                     const std::vector<int> &active)
+  {
+    loads.assign(shares.size(), Vec3::Zero());
+    for (const int n : active)
+      for (int k = 0; k < 4; k++)
+        loads[rows[n].slots[k]][0] += rows[n].normal_correction * std::fabs(rows[n].weight[k]);
+    halo.reverse_add(0, loads.data());
+    halo.forward(0, loads.data());
+  }
+  double by_load(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
+    double inverse = 0.0;
+    for (int k = 0; k < 4; k++)
+      inverse +=
+          inverse_mass[row.slots[k]] * std::fabs(row.weight[k]) * loads[row.slots[k]][0];
+    return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
+  }
+
+  void clear_impulses() { impulse.assign(shares.size(), Vec3::Zero()); }
   void apply(const ContactRow &row, const Vec3 &by)
   {
     for (int k = 0; k < 4; k++) impulse[row.slots[k]] += row.weight[k] * by;
   }
 
-  double bytes() const { return sphcloth::bytes_of(impulse, rows_at); }
+  double bytes() const { return sphcloth::bytes_of(impulse, shares, loads); }
 
  private:
-  std::vector<Vec3> rows_at;    // in [0]
+  std::vector<Vec3> shares, loads;    // by slot, in [0]
 };
 
 }    // namespace LAMMPS_NS

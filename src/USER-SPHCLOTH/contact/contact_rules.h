@@ -6,6 +6,8 @@
 
 #include "platform.h"
 
+#include <algorithm>
+
 namespace LAMMPS_NS {
 
 struct ContactRules {
@@ -13,6 +15,19 @@ struct ContactRules {
   double friction = 0.0;       // Coulomb's coefficient
   double restitution = 0.0;    // share of the approaching speed that comes back
   bool sides = true;           // fluids above and below a sheet do not interact
+};
+
+// of cloth with cloth, and with obstacles
+
+struct ClothRules {
+  const ContactRules &cloth, &obstacle;
+  const bool &cloth_meets_cloth;
+
+  const ContactRules &of(bool with_obstacle) const { return with_obstacle ? obstacle : cloth; }
+  double max_thickness() const
+  {
+    return cloth_meets_cloth ? std::max(cloth.thickness, obstacle.thickness) : obstacle.thickness;
+  }
 };
 
 struct ContactCounts {

@@ -3,6 +3,7 @@
 
 #include "contact/joined_cloths.h"
 
+#include "atom.h"
 #include "core/util/bytes.h"
 
 using namespace LAMMPS_NS;
@@ -20,11 +21,27 @@ void JoinedCoupling::rebuild()
 {
   for (auto &part : parts) {
     part->slots.clear();
-    for (int s = 0; s < halo.n_owned(); s++)
-      if (part->cloth->has_vertex(halo.atom_of(s))) part->slots.push_back(s);
+    for (int s = 0; s < mesh.halo.n_owned(); s++)
+      if (part->cloth->has_vertex(mesh.halo.atom_of(s))) part->slots.push_back(s);
   }
-  start.resize(halo.n_owned());
-  other.resize(halo.n_owned());
+  moved.clear();
+  for (int s = 0; s < mesh.halo.n_owned(); s++)
+    if (edges.is_obstacle(s)) moved.push_back(s);
+  start.resize(mesh.halo.n_owned());
+  other.resize(mesh.halo.n_owned());
+}
+
+// Vertices of obstacles: start after a share of the step, and `other` as a multiple of their
+// displacement in the step
+
+void JoinedCoupling::move_obstacles(double passed, double multiple)
+{
+  for (const int s : moved) {
+    const sphcloth::Sweep sweep = mesh.sweep_of(mesh.halo.atom_of(s));
+    const Eigen::Vector3d by = sweep.end - sweep.start, at = sweep.start + passed * by;
+    start[s] = {at[0], at[1], at[2], 0.0};
+    other[s] = {multiple * by[0], multiple * by[1], multiple * by[2], 0.0};
+  }
 }
 
 void JoinedCoupling::scatter()
@@ -46,8 +63,15 @@ bool JoinedCoupling::Part::begin_step(const Vertex *from, const Vertex *end, dou
 {
   gather(from, whole.start);
   gather(end, whole.other);
-  if (is_last())
-    whole.present = whole.all.begin_step(whole.start.data(), whole.other.data(), dt);
+  if (!is_last()) return true;
+  whole.step_dt = dt;
+  whole.elapsed = 0.0;
+  whole.move_obstacles(0.0, 0.0);
+  for (const int s : whole.moved) {
+    const double *x = whole.atom->x[whole.mesh.halo.atom_of(s)];
+    whole.other[s] = {x[0], x[1], x[2], 0.0};
+  }
+  whole.present = whole.all.begin_step(whole.start.data(), whole.other.data(), dt);
   return true;
 }
 
@@ -56,7 +80,11 @@ void JoinedCoupling::Part::begin_substep(const Vertex *from, const Vertex *v, do
   if (!whole.present) return;
   gather(from, whole.start);
   gather(v, whole.other);
-  if (is_last()) whole.all.begin_substep(whole.start.data(), whole.other.data(), dt);
+  if (!is_last()) return;
+  whole.move_obstacles(whole.elapsed / whole.step_dt, 1.0 / whole.step_dt);
+  whole.elapsed += dt;
+  whole.all.begin_substep(whole.start.data(), whole.other.data(), dt);
+  whole.substep_dt = dt;
 }
 
 void JoinedCoupling::Part::project(Vertex *displacement)
@@ -65,6 +93,8 @@ void JoinedCoupling::Part::project(Vertex *displacement)
   target = displacement;
   gather(displacement, whole.other);
   if (!is_last()) return;
+  whole.move_obstacles((whole.elapsed - whole.substep_dt) / whole.step_dt,
+                       whole.substep_dt / whole.step_dt);
   whole.all.project(whole.other.data());
   whole.scatter();
 }
@@ -75,6 +105,7 @@ void JoinedCoupling::Part::end_substep(Vertex *v, double dt)
   target = v;
   gather(v, whole.other);
   if (!is_last()) return;
+  whole.move_obstacles(whole.elapsed / whole.step_dt, 1.0 / whole.step_dt);
   whole.all.end_substep(whole.other.data(), dt);
   whole.scatter();
 }
@@ -89,4 +120,4 @@ Eigen::Vector3d JoinedCoupling::Part::impulse_on(int slot) const
   return whole.present ? whole.all.impulse_on(slots[slot]) : Eigen::Vector3d::Zero();
 }
 
-double JoinedCoupling::memory_usage() const { return sphcloth::bytes_of(start, other); }
+double JoinedCoupling::memory_usage() const { return sphcloth::bytes_of(start, other, moved); }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Several cloths as one mesh, and a coupling of that mesh in the solvers of all of them.
+// Several cloths and obstacles as one mesh, and a coupling of that mesh in the solvers of all cloths.
 
 #ifndef SPHCLOTH_CONTACT_JOINED_CLOTHS_H
 #define SPHCLOTH_CONTACT_JOINED_CLOTHS_H
 
 #include "cloth/solver_coupling.h"
-#include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
+#include "contact/mesh_edges.h"
+#include "contact/moving_triangles.h"
 
 #include <memory>
 #include <string>
@@ -46,12 +47,14 @@ class JoinedCloths : public ContactMesh {
 
 // The solvers of the cloths go through their phases together.  Each has a part of the coupling, which
 // copies its vertices; the last part that is called in a phase calls the coupling of all, and copies
-// what that changes back to all.
+// what that changes back to all.  Vertices of obstacles are on their way from where the last step has
+// left them to where they are.
 
 class JoinedCoupling : protected Pointers {
  public:
-  JoinedCoupling(LAMMPS *lmp_, SolverCoupling &all_, const VertexHalo &halo_) :
-      Pointers(lmp_), all(all_), halo(halo_)
+  JoinedCoupling(LAMMPS *lmp_, SolverCoupling &all_, const MovingTriangles &mesh_,
+                 const MeshEdges &edges_) :
+      Pointers(lmp_), all(all_), mesh(mesh_), edges(edges_)
   {
   }
 
@@ -86,11 +89,16 @@ class JoinedCoupling : protected Pointers {
   };
 
   SolverCoupling &all;
-  const VertexHalo &halo;
+  const MovingTriangles &mesh;
+  const MeshEdges &edges;
+  std::vector<int> moved;    // slots of obstacles
+  double step_dt = 0.0, substep_dt = 0.0;
+  double elapsed = 0.0;    // of the step, with this substep
   std::vector<std::unique_ptr<Part>> parts;
   bool present = false;    // in this step
   std::vector<sphcloth::Vertex> start, other;    // owned vertices of all
 
+  void move_obstacles(double position, double displacement);
   void scatter();
 };
 

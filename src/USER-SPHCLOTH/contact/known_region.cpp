@@ -89,7 +89,7 @@ void KnownRegion::check(double vertex_displacement) const
     const Vec3 from = in_box(sweep.start), to = in_box(sweep.end);
     const Vec3 low = from.cwiseMin(to), high = from.cwiseMax(to);
     const double unknown = missing(low, high, margin);
-    if (unknown == 0.0 || !may_meet_mesh(low, high, near) || !mesh.can_move(i)) continue;
+    if (unknown == 0.0 || !may_meet_mesh(low, high, near)) continue;
     rank_error(lmp, FLERR,
                "{}: particle {} moves by {:.6g} in step {}, vertices by up to {:.6g} since the "
                "last list build: farther than ghosts let its rank see triangles; lower the time "

@@ -15,8 +15,11 @@ void MeshEdges::rebuild()
   const ClothTopology &cloth = mesh.mesh->topology();
   tags.resize(mesh.halo.n_slots());
   index.resize(tags.size());
+  obstacle.resize(tags.size());
   for (std::size_t s = 0; s < tags.size(); s++) {
-    tags[s] = atom->tag[mesh.halo.atom_of(static_cast<int>(s))];
+    const int i = mesh.halo.atom_of(static_cast<int>(s));
+    tags[s] = atom->tag[i];
+    obstacle[s] = (atom->mask[i] & obstacle_bits) != 0;
     index[s] = cloth.index_of(tags[s]);
   }
 
@@ -44,6 +47,16 @@ void MeshEdges::rebuild()
   first.push_back(static_cast<int>(opposite.size()));
 }
 
+std::array<double, 2> MeshEdges::longest_here() const
+{
+  std::array<double, 2> longest{0.0, 0.0};
+  for (const auto &[a, b] : edges) {
+    double &so_far = longest[is_obstacle(a) ? 1 : 0];
+    so_far = std::max(so_far, (mesh.position(b) - mesh.position(a)).norm());
+  }
+  return longest;
+}
+
 bool MeshEdges::joined(int slot, int other) const
 {
   const ClothElements<2> &bonds = mesh.mesh->topology().edges;
@@ -58,5 +71,5 @@ bool MeshEdges::joined(int slot, int other) const
 
 double MeshEdges::memory_usage() const
 {
-  return sphcloth::bytes_of(edges, first, opposite, lowest, tags, index);
+  return sphcloth::bytes_of(edges, first, opposite, lowest, tags, obstacle, index);
 }

@@ -13,7 +13,11 @@ namespace LAMMPS_NS {
 
 class MeshEdges : protected Pointers {
  public:
-  MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_) : Pointers(lmp_), mesh(mesh_) {}
+  // obstacle_bits: groups of vertices that are of obstacles
+  MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_, int obstacle_bits_) :
+      Pointers(lmp_), mesh(mesh_), obstacle_bits(obstacle_bits_)
+  {
+  }
 
   // after each list build, behind the triangles
   void rebuild();
@@ -30,6 +34,10 @@ class MeshEdges : protected Pointers {
     return tags[a] < tags[b] ? a : b;
   }
   tagint tag(int slot) const { return tags[slot]; }
+  bool is_obstacle(int slot) const { return obstacle[slot]; }
+
+  // the longest edges of cloth and of obstacles that are here, at the last list build
+  std::array<double, 2> longest_here() const;
 
   // Are two vertices joined by a bond?
   bool joined(int slot, int other) const;
@@ -38,7 +46,9 @@ class MeshEdges : protected Pointers {
 
  private:
   const TriangleSet &mesh;
+  const int obstacle_bits;
   std::vector<tagint> tags;    // of slots
+  std::vector<char> obstacle;
   std::vector<int> index;    // of slots, in the topology
 };
 

@@ -53,14 +53,6 @@ void MovingTriangles::load_positions()
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
 }
 
-bool MovingTriangles::can_move(int i) const
-{
-  if (!(atom->mask[i] & groupbits)) return false;
-  return std::none_of(others.begin(), others.end(), [i](const ContactMesh *other) {
-    return other->has_vertex(i) && other->inverse_mass(i) == 0.0;
-  });
-}
-
 // from where the last step has left it to where it is
 
 Sweep MovingTriangles::sweep_of(int i) const
@@ -70,57 +62,52 @@ Sweep MovingTriangles::sweep_of(int i) const
   return {Vec3(last[0][i], last[1][i], last[2][i]), Vec3(x[0], x[1], x[2])};
 }
 
-std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t, double part) const
+std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t) const
 {
   std::array<Sweep, 3> sweep;
-  for (int q = 0; q < 3; q++)
-    sweep[q] = {start[triangles[t][q]], position_at(triangles[t][q], part)};
+  for (int q = 0; q < 3; q++) sweep[q] = {start[triangles[t][q]], end[triangles[t][q]]};
   return sweep;
 }
 
 ContactResult MovingTriangles::contact(const Sweep &p, int t, double slack) const
 {
   return of_nearest(point_triangle_contact(p, sweep_of_triangle(t), rules.thickness, slack), p.end,
-                    t, 1.0);
+                    t);
 }
 
-ContactResult MovingTriangles::contact_since(const ContactStart &begin, const Sweep &p, int t,
-                                             double part) const
+ContactResult MovingTriangles::contact_since(const ContactStart &begin, const Sweep &p, int t) const
 {
   const auto &[i, j, k] = triangles[t];
-  const Vec3 a = position_at(i, part), b = position_at(j, part), c = position_at(k, part);
-  const PointAndTriangle now{p.end, a, b, c};
+  const PointAndTriangle now{p.end, end[i], end[j], end[k]};
   const ContactResult found = begin.side * now.height > 0.0
       ? point_triangle_nearness(now, begin.side, begin.gap(rules.thickness), 0.0)
-      : point_triangle_contact(p, sweep_of_triangle(t, part), rules.thickness, 0.0);
-  return of_nearest(found, p.end, t, part);
+      : point_triangle_contact(p, sweep_of_triangle(t), rules.thickness, 0.0);
+  return of_nearest(found, p.end, t);
 }
 
 // None if the point is nearer to another triangle, unless it passes through
 
-ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3 &p, int t,
-                                          double part) const
+ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3 &p, int t) const
 {
   if (!found.hit || found.through) return found;
   Vec3 from_nearest = p;
-  for (int q = 0; q < 3; q++)
-    from_nearest -= found.weight[q] * position_at(triangles[t][q], part);
-  return is_nearer_to_another(t, found.weight, from_nearest, part) ? ContactResult() : found;
+  for (int q = 0; q < 3; q++) from_nearest -= found.weight[q] * end[triangles[t][q]];
+  return is_nearer_to_another(t, found.weight, from_nearest) ? ContactResult() : found;
 }
 
 // At an edge: inwards in the other triangle.  At a vertex: along all edges that end there, of which
 // those of the triangle itself lead away from the point.
 
 double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                                            double part, int slot_of_point) const
+                                            int slot_of_point) const
 {
   std::array<int, 3> at{};    // the vertices of the edge, or the vertex
   int n = 0;
   for (int q = 0; q < 3; q++)
     if (weight[q] > 0.0) at[n++] = triangles[t][q];
   if (n == 3) return 0.0;
-  const Vec3 a = position_at(at[0], part);
-  const Vec3 edge = n == 2 ? Vec3(position_at(at[1], part) - a) : Vec3::Zero();
+  const Vec3 a = end[at[0]];
+  const Vec3 edge = n == 2 ? Vec3(end[at[1]] - a) : Vec3::Zero();
   double most = 0.0;
   for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
     const std::array<int, 3> &other = triangles[incident[k]];
@@ -128,24 +115,12 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
     if (std::find(other.begin(), other.end(), slot_of_point) != other.end()) continue;
     for (int s : other) {
       if (s == at[0] || (n == 2 && s == at[1])) continue;
-      Vec3 direction = position_at(s, part) - a;
+      Vec3 direction = end[s] - a;
       if (n == 2) direction -= edge.dot(direction) / edge.squaredNorm() * edge;
       most = std::max(most, leaning(direction, from_nearest));
     }
   }
   return most > 0.0 ? most / from_nearest.norm() : 0.0;
-}
-
-Box MovingTriangles::swept_box(int t) const
-{
-  Box box;
-  for (int s : triangles[t]) {
-    box.extend(start[s]);
-    box.extend(end[s]);
-  }
-  box.min().array() -= 2.0 * rules.thickness;
-  box.max().array() += 2.0 * rules.thickness;
-  return box;
 }
 
 bool MovingTriangles::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,

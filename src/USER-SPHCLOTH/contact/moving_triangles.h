@@ -6,6 +6,7 @@
 #ifndef SPHCLOTH_CONTACT_MOVING_TRIANGLES_H
 #define SPHCLOTH_CONTACT_MOVING_TRIANGLES_H
 
+#include "atom.h"
 #include "contact/contact_rules.h"
 #include "contact/triangle_set.h"
 #include "core/contact/point_triangle.h"
@@ -39,23 +40,20 @@ class MovingTriangles : public TriangleSet {
   void load_step();
   void load_positions();
 
-  // does an atom collide with this mesh, and can it give way?
-  bool can_move(int atom) const;
-  // a mesh whose vertices collide with this one: held vertices do not give way
-  void add_vertices_of(const ContactMesh *other) { others.push_back(other); }
+  // does an atom collide with this mesh?
+  bool collides(int i) const { return atom->mask[i] & groupbits; }
 
   const ParticleColumns &last_positions;    // of owned atoms, at the start of the step
   sphcloth::Sweep sweep_of(int atom) const;
-  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t, double part = 1.0) const;
-  // Contact with a point whose start is that of the step, `part` of which has passed.  One that is
-  // nearer to another triangle at the same edge or vertex only counts if it passes through: the
+  std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
+  // Contact with a point whose start is that of the step.  One that is nearer to another triangle at the same edge or vertex only counts if it passes through: the
   // normal of a surface is that of the triangle that is nearest.
   sphcloth::ContactResult contact(const sphcloth::Sweep &, int t, double slack) const;
   // The same where the start of the step is known, for iterations within it: without slack, a
   // distance, and the whole step only for a point that ends on the other side of the triangle's
   // plane.  Passing through twice is not seen.
   sphcloth::ContactResult contact_since(const sphcloth::ContactStart &, const sphcloth::Sweep &,
-                                        int t, double part = 1.0) const;
+                                        int t) const;
   sphcloth::ContactStart contact_start(const Vec3 &p, int t) const
   {
     const auto &[a, b, c] = triangles[t];
@@ -64,15 +62,12 @@ class MovingTriangles : public TriangleSet {
   // Of a point at this vector from its nearest point in a triangle, which has these weights: how far
   // does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above SEAM
   // the point is nearer to one of these.  Triangles of which it is a vertex do not count.
-  double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest, double part = 1.0,
+  double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
                              int slot_of_point = -1) const;
-  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                            double part = 1.0) const
+  bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest) const
   {
-    return leaning_into_others(t, weight, from_nearest, part) > sphcloth::SEAM;
+    return leaning_into_others(t, weight, from_nearest) > sphcloth::SEAM;
   }
-
-  sphcloth::Box swept_box(int t) const;    // with room for contact
 
   // Does the first contact go deeper?  Two triangles may be hit alike, on an edge: then all ranks
   // take the same one.
@@ -85,15 +80,7 @@ class MovingTriangles : public TriangleSet {
   double memory_usage() const;
 
  private:
-  std::vector<const ContactMesh *> others;
-
-  sphcloth::ContactResult of_nearest(const sphcloth::ContactResult &, const Vec3 &p, int t,
-                                     double part) const;
-
-  Vec3 position_at(int slot, double part) const
-  {
-    return part == 1.0 ? end[slot] : Vec3(start[slot] + part * (end[slot] - start[slot]));
-  }
+  sphcloth::ContactResult of_nearest(const sphcloth::ContactResult &, const Vec3 &p, int t) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -18,7 +18,7 @@ void SheetSides::find(double cutoff, int sheet, std::vector<Sides> &sides)
   mesh.load_positions();
   discs.build(mesh, cutoff, [](std::size_t) { return 0.0; });
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!mesh.can_move(i)) continue;
+    if (!mesh.collides(i)) continue;
     const double *x = atom->x[i];
     const int side = side_at(Vec3(x[0], x[1], x[2]), cutoff);
     if (side != 0) sides[i] |= side_of_sheet(sheet, side > 0);

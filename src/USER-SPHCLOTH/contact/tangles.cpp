@@ -38,7 +38,7 @@ struct Tangles {
   }
 };
 
-Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges)
+Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges, bool cloth_meets_cloth)
 {
   std::vector<Box> boxes(mesh.triangles.size());
   for (std::size_t t = 0; t < boxes.size(); t++)
@@ -53,6 +53,8 @@ Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges)
     box.extend(mesh.start[q]);
     grid.query(box, [&](int t) {
       const auto &[a, b, c] = mesh.triangles[t];
+      if (edges.is_obstacle(p) ? edges.is_obstacle(a) : !edges.is_obstacle(a) && !cloth_meets_cloth)
+        return;
       if (p == a || p == b || p == c || q == a || q == b || q == c) return;
       const std::vector<Vec3> &x = mesh.start;
       if (!passes_through(x[p], x[q], x[a], x[b], x[c])) return;
@@ -68,9 +70,10 @@ Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges)
 
 }    // namespace
 
-void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const MeshEdges &edges)
+void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const MeshEdges &edges,
+                              bool cloth_meets_cloth)
 {
-  const Tangles mine = find_tangles(mesh, edges);
+  const Tangles mine = find_tangles(mesh, edges, cloth_meets_cloth);
   constexpr int SIZE = sizeof(Tangles) / sizeof(double);
   std::vector<Tangles> all(lmp->comm->nprocs);
   MPI_Allgather(&mine, SIZE, MPI_DOUBLE, all.data(), SIZE, MPI_DOUBLE, lmp->world);
@@ -91,6 +94,6 @@ void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const Me
   if (count > 0.0)
     lmp->error->all(FLERR,
                     "{}: cloth starts tangled, {:.0f} edges pass through triangles: {}; place the "
-                    "cloths apart, or give 'cloth no'",
+                    "cloths and obstacles apart",
                     mesh.label, count, examples);
 }

@@ -10,8 +10,9 @@
 namespace LAMMPS_NS {
 
 // Collective: it is an error if edges pass through triangles, where they are at the start of the
-// step.  The message names some of them, and the places.
-void check_tangles(LAMMPS *, const MovingTriangles &, const MeshEdges &);
+// step: cloth through obstacles and, if it meets cloth, through cloth.  The message names some of
+// them, and the places.
+void check_tangles(LAMMPS *, const MovingTriangles &, const MeshEdges &, bool cloth_meets_cloth);
 
 }    // namespace LAMMPS_NS
 

@@ -32,8 +32,8 @@ static constexpr int MAX_ROUNDS = 10;
 ------------------------------------------------------------------------- */
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
-    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), ghosts(lmp, label),
-    cloth_meets_cloth(false), view_distance(0.0), vertex_bits(0)
+    Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), options(lmp, label),
+    rules(options.rules), ghosts(lmp, label), view_distance(0.0), vertex_bits(0), particle_bits(0)
 {
   vector_flag = 1;
   size_vector = 15;
@@ -44,60 +44,14 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
   create_attribute = 1;
 
   ArgReader args(lmp, label, narg, arg, 3);
-  read_arguments(args);
-  restart_peratom = !obstacle_groups.empty();
+  options.read(args);
+  if (options.walls) walls = std::make_unique<MeshBoundary>(lmp, label, groupbit);
+  restart_peratom = !options.obstacle_groups.empty();
   last_positions.create(3, atom->nmax);
-  if (!obstacle_groups.empty()) impulses.create(3, atom->nmax);
+  if (!options.obstacle_groups.empty()) impulses.create(3, atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
   atom->add_callback(Atom::GROW);
   if (restart_peratom) atom->add_callback(Atom::RESTART);
-}
-
-void FixClothContact::read_arguments(ArgReader &args)
-{
-  rules.thickness = args.positive("thickness");
-  cloth_rules.friction = -1.0;
-  while (args.more()) {
-    const std::string keyword = args.word("keyword");
-    if (keyword == "friction")
-      rules.friction = args.at_least("friction coefficient", 0.0);
-    else if (keyword == "restitution")
-      rules.restitution = args.fraction("restitution");
-    else if (keyword == "obstacle")
-      read_obstacle(args);
-    else if (keyword == "cloth")
-      cloth_meets_cloth = args.choice(keyword, {"no", "yes"});
-    else if (keyword == "cloth/thickness")
-      cloth_rules.thickness = args.positive("thickness of cloth on cloth");
-    else if (keyword == "cloth/friction")
-      cloth_rules.friction = args.at_least("friction coefficient of cloth on cloth", 0.0);
-    else if (keyword == "sides")
-      rules.sides = args.choice(keyword, {"no", "yes"});
-    else if (keyword == "wall") {
-      const bool yes = args.choice(keyword, {"no", "yes"});
-      walls.reset(yes ? new MeshBoundary(lmp, label, groupbit) : nullptr);
-    } else
-      args.unknown(keyword,
-                   "friction, restitution, sides, wall, obstacle, cloth, cloth/thickness, "
-                   "cloth/friction");
-  }
-  if (!cloth_meets_cloth && (cloth_rules.thickness > 0.0 || cloth_rules.friction >= 0.0))
-    error->all(FLERR,
-               "{}: cloth/thickness and cloth/friction have no effect without 'cloth yes': add it",
-               label);
-  if (cloth_rules.thickness == 0.0) cloth_rules.thickness = rules.thickness;
-  if (cloth_rules.friction < 0.0) cloth_rules.friction = rules.friction;
-  cloth_rules.restitution = rules.restitution;
-}
-
-void FixClothContact::read_obstacle(ArgReader &args)
-{
-  const std::string name = args.word("obstacle group");
-  const int found = group->find(name);
-  if (found < 0) args.fail("obstacle group", name, "define it with the group command first");
-  if (group->count(found) == 0)
-    args.fail("obstacle group", name, "it has no atoms: read or create the obstacle before");
-  obstacle_groups.push_back(found);
 }
 
 FixClothContact::~FixClothContact()
@@ -131,16 +85,16 @@ void FixClothContact::init()
     cloths.push_back(cloth);
     vertex_bits |= cloth->groupbit;
   }
-  const int particle_bits = bits_of_particles(cloths);
-  for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth, particle_bits));
-  if (surfaces.empty() && obstacle_groups.empty())
+  check_group(cloths);
+  for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth));
+  if (surfaces.empty() && options.obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
-  for (int obstacle : obstacle_groups) add_obstacle(obstacle, cloths);
+  for (int obstacle : options.obstacle_groups) add_obstacle(obstacle, cloths);
   for (std::size_t k = 0; k < cloths.size(); k++)
     cloths[k]->register_coupling(&surfaces[k]->solver);
-  if (!cloths.empty() && (cloth_meets_cloth || !obstacles.empty())) couple_cloths(cloths);
+  if (!cloths.empty() && (options.cloth_meets_cloth || !obstacles.empty())) couple_cloths(cloths);
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
@@ -158,20 +112,19 @@ void FixClothContact::init()
 
 // Without water the group is that of the cloth.
 
-int FixClothContact::bits_of_particles(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::check_group(const std::vector<FixPBDCloth *> &cloths)
 {
   int mine = 0, any = 0;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & groupbit && !(atom->mask[i] & vertex_bits)) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (cloth_meets_cloth && !any) return 0;
+  particle_bits = options.cloth_meets_cloth && !any ? 0 : groupbit;
   for (FixPBDCloth *cloth : cloths)
-    if (share_atoms(atom, groupbit, cloth->groupbit, world))
+    if (particle_bits && share_atoms(atom, groupbit, cloth->groupbit, world))
       error->all(FLERR,
                  "{}: group {} holds vertices of fix {}: give the group of the particles that meet "
                  "the cloth",
                  label, group->names[igroup], cloth->id);
-  return groupbit;
 }
 
 // behind water: the last coupling of each cloth
@@ -183,10 +136,9 @@ void FixClothContact::couple_cloths(const std::vector<FixPBDCloth *> &cloths)
     meshes.obstacles.push_back(obstacle.get());
     meshes.obstacle_bits |= obstacle->groupbit;
   }
-  cloth_with_cloth =
-      std::make_unique<ClothWithCloth>(lmp, meshes, label,
-                                       ClothRules{cloth_rules, rules, cloth_meets_cloth}, counts,
-                                       last_positions);
+  cloth_with_cloth = std::make_unique<ClothWithCloth>(
+      lmp, meshes, label, ClothRules{options.cloth_rules, rules, options.cloth_meets_cloth}, counts,
+      last_positions);
   FixPBDCloth::solve_together(cloths);
   for (std::size_t k = 0; k < cloths.size(); k++)
     cloths[k]->register_coupling(cloth_with_cloth->couplings()[k]);
@@ -217,9 +169,8 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
   });
   MPI_Allreduce(&mine, &speed_sq, 1, MPI_DOUBLE, MPI_MAX, world);
   const int steps = std::max({1, neighbor->every, neighbor->delay});
-  const double displacement =
-      std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
-               std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
+  const double displacement = std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
+                                       std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
   double needed = longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
          wanted = longest + rules.thickness + neighbor->skin + displacement;
   if (cloth_with_cloth) {
@@ -229,17 +180,11 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
     for (const auto &obstacle : obstacles)
       of_obstacles = std::max(of_obstacles, obstacle->topology().longest_edge());
     const double reach = ClothGuarantee::reach(
-        of_cloth, of_obstacles, std::max(rules.thickness, cloth_rules.thickness));
+        of_cloth, of_obstacles, std::max(rules.thickness, options.cloth_rules.thickness));
     needed = std::max(needed, reach);
     wanted = std::max(wanted, reach + neighbor->skin + displacement);
   }
   return {needed, wanted};
-}
-
-std::unique_ptr<ContactSurface> FixClothContact::make_surface(ContactMesh *mesh, int groupbits)
-{
-  return std::make_unique<ContactSurface>(lmp, mesh, label, groupbits, rules, counts,
-                                          last_positions);
 }
 
 void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDCloth *> &cloths)
@@ -264,7 +209,7 @@ void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDC
                "{}: obstacle group {} has no triangles: they are LAMMPS angles; 'sphcloth mesh' "
                "writes them",
                label, name);
-  obstacle_surfaces.push_back(make_surface(&obstacle, bits_of_particles(cloths)));
+  obstacle_surfaces.push_back(make_surface(&obstacle));
 }
 
 // every cloth has gathered its mesh by now
@@ -323,7 +268,7 @@ void FixClothContact::initial_integrate(int)
 {
   for_all_surfaces([](ContactSurface &surface) { surface.triangles.moved.clear(); });
   impulses.clear();
-  counts.cloth_gap = cloth_rules.thickness;
+  counts.cloth_gap = options.cloth_rules.thickness;
 }
 
 // The cloths have been solved, with their contacts: see SolverContact and ClothRows.
@@ -406,12 +351,6 @@ void FixClothContact::wrap_last_positions()
     release::minimum_image(domain, displacement);
     for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d] - displacement[d];
   }
-}
-
-void FixClothContact::store_positions()
-{
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d];
 }
 
 /* ----------------------------------------------------------------------

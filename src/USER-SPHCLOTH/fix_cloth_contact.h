@@ -12,7 +12,9 @@ FixStyle(cloth/contact,FixClothContact);
 
 #include "fix.h"
 
+#include "atom.h"
 #include "contact/cloth_with_cloth.h"
+#include "contact/contact_options.h"
 #include "contact/contact_surface.h"
 #include "contact/obstacle.h"
 #include "fluid/mesh_boundary.h"
@@ -27,7 +29,6 @@ FixStyle(cloth/contact,FixClothContact);
 
 namespace LAMMPS_NS {
 
-class ArgReader;
 class FixPBDCloth;
 
 class FixClothContact : public Fix, public SideSource {
@@ -81,14 +82,13 @@ class FixClothContact : public Fix, public SideSource {
  private:
   std::string label;
   GhostReach ghosts;
-  ContactRules rules, cloth_rules;    // of particles with meshes, and of cloth with itself
-  bool cloth_meets_cloth;
+  ContactOptions options;
+  const ContactRules &rules;    // of particles
   ContactCounts counts;    // of this rank, since the fix was made
   // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
   // step, mass times velocity, if there are any; and velocity minus displacement over the step, if
   // densities follow displacements
   ParticleColumns last_positions, impulses, excess_velocities;
-  std::vector<int> obstacle_groups;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::unique_ptr<ClothWithCloth> cloth_with_cloth;    // or obstacles, if any do
   std::vector<std::unique_ptr<Obstacle>> obstacles;
@@ -97,24 +97,29 @@ class FixClothContact : public Fix, public SideSource {
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
   double view_distance;
-  int vertex_bits;    // group bits of the cloths
+  int vertex_bits, particle_bits;    // group bits of the cloths and of the particles
 
   std::array<ParticleColumns *, 3> columns()
   {
     return {&last_positions, &impulses, &excess_velocities};
   }
   std::array<double, 2> ghosts_needed_and_wanted();
-  void store_positions();
+  void store_positions()
+  {
+    for (int i = 0; i < atom->nlocal; i++) last_positions.unpack(i, atom->x[i]);
+  }
   void wrap_last_positions();
   void subtract_excess_velocities();
   void find_sheets();
   void find_sides();
-  void read_arguments(ArgReader &);
-  void read_obstacle(ArgReader &);
-  int bits_of_particles(const std::vector<FixPBDCloth *> &cloths);
+  void check_group(const std::vector<FixPBDCloth *> &cloths);
   void couple_cloths(const std::vector<FixPBDCloth *> &cloths);
   bool resolve_penetrations();
-  std::unique_ptr<ContactSurface> make_surface(ContactMesh *, int groupbits);
+  std::unique_ptr<ContactSurface> make_surface(ContactMesh *mesh)
+  {
+    return std::make_unique<ContactSurface>(lmp, mesh, label, particle_bits, rules, counts,
+                                            last_positions);
+  }
   void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
   template <class Do> void for_all_surfaces(Do something)
   {

@@ -6,7 +6,7 @@
 
 #include "atom.h"
 #include "bond.h"
-#include "cloth/pbd_material.h"
+#include "cloth/cloth_input.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -68,34 +68,11 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   options.read(args);
-  if (!options.rest_property.empty()) take_rest_positions(options.rest_property.c_str());
+  if (!options.rest_property.empty())
+    ClothInput(lmp, this, label).read_rest_positions(options.rest_property, rest_x);
   if (options.attachbit) want_reaction_forces();
   if (substepping.uses(ClothSolver::SUBSTEPS)) half_kick.turn_on(atom->nmax);
   held.stop_pins();
-}
-
-void FixPBDCloth::take_rest_positions(const char *property)
-{
-  int flag, cols;
-  const std::string name = utils::strmatch(property, "^d2_") ? property + 3 : property;
-  const int index = atom->find_custom(name.c_str(), flag, cols);
-  if (index < 0 || flag != 1 || cols != 3)
-    error->all(FLERR,
-               "{}: rest property '{}' does not exist: define it with 'fix ID all property/atom "
-               "d2_{} 3' and read it from the data file",
-               label, property, name);
-  int mine = 0, any = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) {
-      rest_x[d][i] = atom->darray[index][i][d];
-      if (atom->mask[i] & groupbit && rest_x[d][i] != 0.0) mine = 1;
-    }
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any)
-    error->all(FLERR,
-               "{}: rest property '{}' is 0 everywhere: fill it with 'set', from the data file, or "
-               "from the restart file by the fix ID that it was written with",
-               label, property);
 }
 
 FixPBDCloth::~FixPBDCloth()
@@ -126,13 +103,14 @@ void FixPBDCloth::init()
 {
   couplings.clear();
   solved_here = {this};
-  check_vertices();
+  const ClothInput input(lmp, this, label);
+  input.check_vertices();
   held.stop_pins();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
-  check_styles();
+  input.check_styles();
   if (ghosts.matters()) {
     mesh.measure();
     ghosts.require(mesh.widest_element(), mesh.widest_element());
@@ -141,33 +119,6 @@ void FixPBDCloth::init()
   const Substepping::Options &solving = options.solving;
   constraints.color(solving.symmetric_sweeps ? 2 * solving.iterations : solving.iterations,
                     substepping.uses(ClothSolver::JACOBI));
-}
-
-// No other cloth has them, and all have a mass.  Only per-atom masses may be missing.
-
-void FixPBDCloth::check_vertices()
-{
-  for (Fix *other : modify->get_fix_by_style("^pbd/cloth$")) {
-    if (other == this) continue;
-    if (share_atoms(atom, groupbit, other->groupbit, world))
-      error->all(FLERR,
-                 "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
-                 label, other->id);
-  }
-  tagint mine = 0, massless;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !(atom_mass(atom, i) > 0.0)) mine = atom->tag[i];
-  MPI_Allreduce(&mine, &massless, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (massless)
-    error->all(FLERR, "{}: vertex {} has no mass: give it one with 'set group {} mass'", label,
-               massless, group->names[igroup]);
-}
-
-void FixPBDCloth::check_styles()
-{
-  if (!force->bond || !dynamic_cast<HasPBDMaterials *>(force->bond_match("pbd")))
-    error->all(FLERR, "{}: bond_style {} holds no stiffness: use 'bond_style pbd'", label,
-               force->bond_style ? force->bond_style : "none");
 }
 
 // the fix that integrates the fluid knows its scheme since its init()

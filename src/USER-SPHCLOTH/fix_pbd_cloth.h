@@ -114,9 +114,6 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   bool measured;    // the next two are of the last step, this rank's part
   double last_residual, last_energy;
 
-  void take_rest_positions(const char *);
-  void check_vertices();
-  void check_styles();
   void begin_step();
   void begin_couplings();
   void end_step();

@@ -97,10 +97,10 @@ BOOST_AUTO_TEST_CASE(motion_of_all_together_does_not_matter)
 
 BOOST_AUTO_TEST_CASE(layers_that_slide_far_are_told_by_the_plane_between_them)
 {
-  const Vec3 far(100.0, 0.0, 0.0);
+  const Vec3 slide(100.0, 0.0, 0.0);
   PairMotion pair{PairKind::POINT_TRIANGLE,
                   {Vec3(0, 0, 0.01), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)},
-                  {far, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+                  {slide, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   BOOST_CHECK(stays_apart(pair, {0, 0, 0.01}, 1e-3));
   pair.displacement[0] += Vec3(0, 0, -0.0095);    // it is beside the triangle when it is so low
   BOOST_CHECK(stays_apart(pair, {0, 0, 0.01}, 1e-3));

@@ -19,7 +19,10 @@ Vec3 random_point()
   return {coordinate(random_numbers), coordinate(random_numbers), coordinate(random_numbers)};
 }
 
-FourPoints random_points() { return {random_point(), random_point(), random_point(), random_point()}; }
+FourPoints random_points()
+{
+  return {random_point(), random_point(), random_point(), random_point()};
+}
 
 // the smallest distance of points of both sides on a fine grid
 

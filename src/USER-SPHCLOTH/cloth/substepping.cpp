@@ -36,14 +36,15 @@ void Substepping::begin_step(const StepInfo &step, const std::vector<SolverCoupl
   n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));
 }
 
-// The last couplings of all cloths come last, and together: what couples cloths is the last of each.
+// The last couplings of all cloths come last, and together: what couples cloths is the last of
+// each.
 
 template <class Do>
 static void for_each_coupling(const std::vector<Substepping *> &cloths, Do something)
 {
-  std::size_t most = 0;
-  for (const Substepping *cloth : cloths) most = std::max(most, cloth->present().size());
-  for (std::size_t from_end = most; from_end > 0; from_end--)
+  std::size_t max_size = 0;
+  for (const Substepping *cloth : cloths) max_size = std::max(max_size, cloth->present().size());
+  for (std::size_t from_end = max_size; from_end > 0; from_end--)
     for (Substepping *cloth : cloths)
       if (const std::size_t size = cloth->present().size(); size >= from_end)
         something(*cloth, *cloth->present()[size - from_end]);
@@ -148,10 +149,10 @@ void Substepping::damp()
 
 void Substepping::sweep()
 {
-  const ClothState state{vertices.start.data(), vertices.displacement.data(), options.from_start,
-                         uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
-                         inv_dt_sq(),
-                         single_sweeps() ? STABLE_HINGE_SHARE : 1.0};
+  const ClothState state{
+      vertices.start.data(), vertices.displacement.data(),
+      options.from_start,    uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
+      inv_dt_sq(),           single_sweeps() ? STABLE_HINGE_SHARE : 1.0};
   uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
   sweeps++;
 }

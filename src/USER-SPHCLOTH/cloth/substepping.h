@@ -105,10 +105,7 @@ class Substepping : protected Pointers {
   void project_color(int color, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
   // each substep goes through the constraints once, in one direction
-  bool single_sweeps() const
-  {
-    return uses(ClothSolver::SUBSTEPS) && !options.symmetric_sweeps;
-  }
+  bool single_sweeps() const { return uses(ClothSolver::SUBSTEPS) && !options.symmetric_sweeps; }
   bool converged() const;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Broad phase of cloth with cloth and with obstacles: the vertices and triangles, and the edges, of
-// a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex of
-// both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
-// The list is made with a margin, and holds while vertices stay within it, but for what they move
-// all together, and until the next list build of LAMMPS.  Which pairs are visited does not depend on
+// a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex
+// of both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.  The
+// list is made with a margin, and holds while vertices stay within it, but for what they move all
+// together, and until the next list build of LAMMPS.  Which pairs are visited does not depend on
 // when that was.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
@@ -44,8 +44,8 @@ class ClothCandidates : protected Pointers {
   // after each list build: there is no list
   void clear();
 
-  // After each change of the sweeps of vertices.  The two sides of a pair are taken to approach by at
-  // most `max_approach` in this step.
+  // After each change of the sweeps of vertices.  The two sides of a pair are taken to approach by
+  // at most `max_approach` in this step.
   void update(double max_approach = std::numeric_limits<double>::infinity());
 
   // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest
@@ -54,10 +54,10 @@ class ClothCandidates : protected Pointers {
   {
     for (const ClothPair &pair : pairs) {
       const std::array<int, 4> &s = pair.slots;
-      if (pair.distance > reach + longest_of_sides(path, s, sphcloth::first_side(pair.kind))) continue;
-      const sphcloth::ClosestPoints at =
-          closest_points(pair.kind, {mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]],
-                                     mesh.start[s[3]]});
+      if (pair.distance > reach + longest_of_sides(path, s, sphcloth::first_side(pair.kind)))
+        continue;
+      const sphcloth::ClosestPoints at = closest_points(
+          pair.kind, {mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]], mesh.start[s[3]]});
       const double room = at.vector.norm() - reach;
       if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
     }
@@ -96,8 +96,8 @@ class ClothCandidates : protected Pointers {
     double longest_sq = 0.0;
     for (int i = 0; i < n; i++)
       for (int j = n; j < 4; j++)
-        longest_sq = std::max(longest_sq, (stride_of(pair.slots[i]) - stride_of(pair.slots[j]))
-                                              .squaredNorm());
+        longest_sq = std::max(longest_sq,
+                              (stride_of(pair.slots[i]) - stride_of(pair.slots[j])).squaredNorm());
     return std::sqrt(longest_sq);
   }
   Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }

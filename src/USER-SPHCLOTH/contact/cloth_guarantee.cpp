@@ -44,9 +44,8 @@ bool ClothGuarantee::resolve_collisions()
   bool any = false;
   for (int pass = 0; pass <= MAX_PASSES; pass++) {
     find_collisions();
-    const bool can_push = std::any_of(rows.begin(), rows.end(), [this](const ContactRow &row) {
-      return missing(row) > 0.0;
-    });
+    const bool can_push = std::any_of(rows.begin(), rows.end(),
+                                      [this](const ContactRow &row) { return missing(row) > 0.0; });
     const double mine[3] = {rows.empty() ? 0.0 : 1.0, can_push ? 1.0 : 0.0,
                             pass == 0 ? max_displacement() : 0.0};
     double all[3];
@@ -145,7 +144,8 @@ void ClothGuarantee::solve_velocities()
     const Vec3 relative = row.relative(velocity);
     const double speed = relative.dot(row.normal);
     if (speed >= 0.0) continue;
-    const double mass = masses.of(row, mesh.w), step = -(1.0 + row.rules->restitution) * speed * mass;
+    const double mass = masses.of(row, mesh.w),
+                 step = -(1.0 + row.rules->restitution) * speed * mass;
     const Vec3 sliding = mass * (relative - speed * row.normal);
     masses.apply(row, step * row.normal - clamp_length(sliding, row.rules->friction * step));
   }
@@ -199,7 +199,8 @@ double ClothGuarantee::max_displacement() const
 void ClothGuarantee::check_reach(double displacement) const
 {
   if (!ghosts.matters() || !mesh.has_triangles()) return;
-  const double needed = reach(longest[0], longest[1], candidates.rules.max_thickness()) + 2.0 * displacement,
+  const double needed = reach(longest[0], longest[1], candidates.rules.max_thickness()) +
+      2.0 * displacement,
                has = ghosts.reach();
   if (needed > has)
     error->all(FLERR,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Behind the solver: the guarantee that no part of a cloth passes another in a step.
-// Most pairs are apart by more than they can approach, or stay on both sides of a plane.  Others are
-// followed through the step; those that would meet are pushed apart, pass after pass, and lose their
+// Behind the solver: the guarantee that no part of a cloth passes another in a step.  Most pairs
+// are apart by more than they can approach, or stay on both sides of a plane.  Others are followed
+// through the step; those that would meet are pushed apart, pass after pass, and lose their
 // approach; what is still caught then moves as a rigid zone.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_GUARANTEE_H

@@ -22,10 +22,7 @@ using namespace sphcloth;
 // too near gets back in one
 static constexpr double MAX_APPROACH = 1.0, RECOVERY = 0.1;
 
-void ClothRows::rebuild()
-{
-  received.assign(mesh.halo.n_owned(), Vec3::Zero());
-}
+void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
 bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
@@ -159,15 +156,14 @@ void ClothRows::project_normal(int k)
     active.push_back(k);
   }
   mesh.counts.cloth_contacts++;
-  const double step =
-      std::max((row.gap - distance) * masses.of(row, mesh.w_solver, counts),
-               -row.normal_correction);
+  const double step = std::max((row.gap - distance) * masses.of(row, mesh.w_solver, counts),
+                               -row.normal_correction);
   row.normal_correction += step;
   masses.apply(row, step * row.normal);
 }
 
-// How much it counts: not where another pair of the same surfaces is nearer, continuously.  What the
-// two sides have in common does not count: where a cloth is folded it is always nearer.
+// How much it counts: not where another pair of the same surfaces is nearer, continuously.  What
+// the two sides have in common does not count: where a cloth is folded it is always nearer.
 
 double ClothRows::share(const ContactRow &row, const ClosestPoints &at) const
 {
@@ -188,15 +184,15 @@ double ClothRows::leaning_beside(int e, const Vec3 &from_nearest,
 {
   const auto &[a, b] = edges.edges[e];
   const Vec3 edge = mesh.end[b] - mesh.end[a];
-  double most = 0.0;
+  double largest = 0.0;
   for (int k = edges.first[e]; k < edges.first[e + 1]; k++) {
     const int c = edges.opposite[k];
     if (c == other_side[0] || c == other_side[1]) continue;
     Vec3 inward = mesh.end[c] - mesh.end[a];
     inward -= edge.dot(inward) / edge.squaredNorm() * edge;
-    most = std::max(most, leaning(inward, from_nearest));
+    largest = std::max(largest, leaning(inward, from_nearest));
   }
-  return most > 0.0 ? most / from_nearest.norm() : 0.0;
+  return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
 // Coulomb friction against the sliding of this substep
@@ -205,9 +201,8 @@ void ClothRows::project_friction(ContactRow &row)
 {
   Vec3 slip = row.relative(mesh.end) - row.relative(from);
   slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target =
-      clamp_length(row.friction_correction - masses.of(row, mesh.w_solver) * slip,
-                   row.rules->friction * row.normal_correction);
+  const Vec3 target = clamp_length(row.friction_correction - masses.of(row, mesh.w_solver) * slip,
+                                   row.rules->friction * row.normal_correction);
   masses.apply(row, target - row.friction_correction);
   row.friction_correction = target;
 }
@@ -235,8 +230,7 @@ void ClothRows::solve_velocity(const ContactRow &row, double dt)
   const ContactMotion motion{row.relative(velocity), row.normal, row.speed_before,
                              masses.by_load(row, mesh.w_solver)};
   const ExchangedImpulse so_far{row.normal_correction / dt, row.friction_correction / dt};
-  masses.apply(row, contact_impulse(motion, so_far, row.rules->restitution,
-                                    row.rules->friction));
+  masses.apply(row, contact_impulse(motion, so_far, row.rules->restitution, row.rules->friction));
 }
 
 void ClothRows::load_velocities(const Vertex *v)

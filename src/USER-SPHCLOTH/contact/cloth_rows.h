@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Contact of cloth with cloth and with obstacles while it is solved: after each sweep over its constraints vertices
-// and triangles, and edges, that are nearer than the thickness are pushed apart.
+// Contact of cloth with cloth and with obstacles while it is solved: after each sweep over its
+// constraints vertices and triangles, and edges, that are nearer than the thickness are pushed
+// apart.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_ROWS_H
 #define SPHCLOTH_CONTACT_CLOTH_ROWS_H

@@ -26,8 +26,7 @@ static std::unique_ptr<JoinedCloths> join(LAMMPS *lmp, const std::string &label,
 ClothWithCloth::ClothWithCloth(LAMMPS *lmp_, const Meshes &meshes, const std::string &label,
                                const ClothRules &rules, ContactCounts &counts,
                                const ParticleColumns &last_positions) :
-    Pointers(lmp_),
-    joined(join(lmp, label, meshes)),
+    Pointers(lmp_), joined(join(lmp, label, meshes)),
     triangles(lmp, joined ? static_cast<ContactMesh *>(joined.get()) : meshes.cloths.front(), label,
               0, rules.obstacle, counts, last_positions),
     edges(lmp, triangles, meshes.obstacle_bits), candidates(lmp, triangles, edges, rules),
@@ -59,8 +58,8 @@ void ClothWithCloth::check_start()
   warn_of_too_near();
 }
 
-// Vertices of neighboring triangles are as far apart as these are high: a thickness above that would
-// push a flat cloth apart.
+// Vertices of neighboring triangles are as far apart as these are high: a thickness above that
+// would push a flat cloth apart.
 
 void ClothWithCloth::check_heights() const
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A contact between vertices: signed weights of four of them and a normal, by which it pushes all
-// four, equal and opposite.  Rows are solved at once, with the mass of a vertex split over its rows,
-// evenly or as these push, which keeps momentum and always converges: Tonge, Benevolenski &
-// Voroshilov, ACM Trans. Graph. 31 (2012) 105.
+// four, equal and opposite.  Rows are solved at once, with the mass of a vertex split over its
+// rows, evenly or as these push, which keeps momentum and always converges: Tonge, Benevolenski &
+// Voroshilov, ACM Trans.  Graph. 31 (2012) 105.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_ROW_H
 #define SPHCLOTH_CONTACT_CONTACT_ROW_H
@@ -92,8 +92,7 @@ class SplitMasses {
   {
     double inverse = 0.0;
     for (int k = 0; k < 4; k++)
-      inverse +=
-          inverse_mass[row.slots[k]] * std::fabs(row.weight[k]) * loads[row.slots[k]][0];
+      inverse += inverse_mass[row.slots[k]] * std::fabs(row.weight[k]) * loads[row.slots[k]][0];
     return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Several cloths and obstacles as one mesh, and a coupling of that mesh in the solvers of all cloths.
+// Several cloths and obstacles as one mesh, and a coupling of that mesh in the solvers of all
+// cloths.
 
 #ifndef SPHCLOTH_CONTACT_JOINED_CLOTHS_H
 #define SPHCLOTH_CONTACT_JOINED_CLOTHS_H
@@ -19,8 +20,7 @@ class JoinedCloths : public ContactMesh {
  public:
   // groupbits: of all of them
   JoinedCloths(LAMMPS *lmp, const std::string &owner, std::vector<ContactMesh *> cloths_,
-               int groupbits) :
-      cloths(std::move(cloths_)), mesh(lmp, owner)
+               int groupbits) : cloths(std::move(cloths_)), mesh(lmp, owner)
   {
     mesh.gather(groupbits);
   }
@@ -45,16 +45,15 @@ class JoinedCloths : public ContactMesh {
   }
 };
 
-// The solvers of the cloths go through their phases together.  Each has a part of the coupling, which
-// copies its vertices; the last part that is called in a phase calls the coupling of all, and copies
-// what that changes back to all.  Vertices of obstacles are on their way from where the last step has
-// left them to where they are.
+// The solvers of the cloths go through their phases together.  Each has a part of the coupling,
+// which copies its vertices; the last part that is called in a phase calls the coupling of all, and
+// copies what that changes back to all.  Vertices of obstacles are on their way from where the last
+// step has left them to where they are.
 
 class JoinedCoupling : protected Pointers {
  public:
   JoinedCoupling(LAMMPS *lmp_, SolverCoupling &all_, const MovingTriangles &mesh_,
-                 const MeshEdges &edges_) :
-      Pointers(lmp_), all(all_), mesh(mesh_), edges(edges_)
+                 const MeshEdges &edges_) : Pointers(lmp_), all(all_), mesh(mesh_), edges(edges_)
   {
   }
 

@@ -106,7 +106,7 @@ double KnownRegion::missing(const Vec3 &low, const Vec3 &high, double margin) co
   double longest = 0.0;
   for (int d = 0; d < 3; d++)
     longest = std::max({longest, (known[d].low - low[d]) / unit[d] + margin,
-                     (high[d] - known[d].high) / unit[d] + margin});
+                        (high[d] - known[d].high) / unit[d] + margin});
   return longest;
 }
 

@@ -108,7 +108,7 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
   if (n == 3) return 0.0;
   const Vec3 a = end[at[0]];
   const Vec3 edge = n == 2 ? Vec3(end[at[1]] - a) : Vec3::Zero();
-  double most = 0.0;
+  double largest = 0.0;
   for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
     const std::array<int, 3> &other = triangles[incident[k]];
     if (n == 2 && std::find(other.begin(), other.end(), at[1]) == other.end()) continue;
@@ -117,10 +117,10 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
       if (s == at[0] || (n == 2 && s == at[1])) continue;
       Vec3 direction = end[s] - a;
       if (n == 2) direction -= edge.dot(direction) / edge.squaredNorm() * edge;
-      most = std::max(most, leaning(direction, from_nearest));
+      largest = std::max(largest, leaning(direction, from_nearest));
     }
   }
-  return most > 0.0 ? most / from_nearest.norm() : 0.0;
+  return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
 bool MovingTriangles::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,

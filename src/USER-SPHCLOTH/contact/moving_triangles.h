@@ -46,8 +46,9 @@ class MovingTriangles : public TriangleSet {
   const ParticleColumns &last_positions;    // of owned atoms, at the start of the step
   sphcloth::Sweep sweep_of(int atom) const;
   std::array<sphcloth::Sweep, 3> sweep_of_triangle(int t) const;
-  // Contact with a point whose start is that of the step.  One that is nearer to another triangle at the same edge or vertex only counts if it passes through: the
-  // normal of a surface is that of the triangle that is nearest.
+  // Contact with a point whose start is that of the step.  One that is nearer to another triangle
+  // at the same edge or vertex only counts if it passes through: the normal of a surface is that of
+  // the triangle that is nearest.
   sphcloth::ContactResult contact(const sphcloth::Sweep &, int t, double slack) const;
   // The same where the start of the step is known, for iterations within it: without slack, a
   // distance, and the whole step only for a point that ends on the other side of the triangle's
@@ -59,9 +60,9 @@ class MovingTriangles : public TriangleSet {
     const auto &[a, b, c] = triangles[t];
     return sphcloth::contact_start({p, start[a], start[b], start[c]});
   }
-  // Of a point at this vector from its nearest point in a triangle, which has these weights: how far
-  // does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above SEAM
-  // the point is nearer to one of these.  Triangles of which it is a vertex do not count.
+  // Of a point at this vector from its nearest point in a triangle, which has these weights: how
+  // far does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above
+  // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.
   double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
                              int slot_of_point = -1) const;
   bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest) const

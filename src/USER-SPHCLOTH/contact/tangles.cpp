@@ -22,7 +22,7 @@ namespace {
 
 struct Tangle {
   double ids[5];    // of the edge, and of the triangle
-  double place[3];
+  double point[3];
 };
 
 constexpr int MAX_EXAMPLES = 3;    // of each rank, and of the message
@@ -58,8 +58,8 @@ Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges, bool c
       if (p == a || p == b || p == c || q == a || q == b || q == c) return;
       const std::vector<Vec3> &x = mesh.start;
       if (!passes_through(x[p], x[q], x[a], x[b], x[c])) return;
-      const Vec3 place = place_of_passing(x[p], x[q], x[a], x[b], x[c]);
-      Tangle one{{}, {place[0], place[1], place[2]}};
+      const Vec3 point = point_of_passing(x[p], x[q], x[a], x[b], x[c]);
+      Tangle one{{}, {point[0], point[1], point[2]}};
       const int slots[5] = {p, q, a, b, c};
       for (int k = 0; k < 5; k++) one.ids[k] = static_cast<double>(edges.tag(slots[k]));
       found.add(one);
@@ -83,11 +83,11 @@ void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const Me
   std::string examples;
   for (const Tangles &one : all) {
     for (int k = 0; k < MAX_EXAMPLES && k < one.count && shown < MAX_EXAMPLES; k++, shown++) {
-      const auto &[ids, place] = one.example[k];
+      const auto &[ids, point] = one.example[k];
       examples += fmt::format("{}edge {:.0f}-{:.0f} through triangle {:.0f}-{:.0f}-{:.0f} at "
                               "({:.6g}, {:.6g}, {:.6g})",
-                              shown ? "; " : "", ids[0], ids[1], ids[2], ids[3], ids[4], place[0],
-                              place[1], place[2]);
+                              shown ? "; " : "", ids[0], ids[1], ids[2], ids[3], ids[4], point[0],
+                              point[1], point[2]);
     }
     count += one.count;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Continuous collision detection by distances alone: a pair cannot meet before its points have moved
-// as far as it is apart, so time advances by what that allows, until the step ends or the distance
-// is used up.  Errors of rounding make it stop too early, never too late.
+// Continuous collision detection by distances alone: a pair cannot meet before its points have
+// moved as far as it is apart, so time advances by what that allows, until the step ends or the
+// distance is used up.  Errors of rounding make it stop too early, never too late.
 //
 // Li, Kaufman & Jiang, ACM Trans. Graph. 40(4) (2021) 170, section 5.
 
@@ -45,7 +45,8 @@ inline double max_approach(const PairMotion &pair)
 inline double max_approach_along(const Vec3 &direction, const PairMotion &pair)
 {
   const int n = first_side(pair.kind);
-  double slowest = direction.dot(pair.displacement[0]), fastest = direction.dot(pair.displacement[3]);
+  double slowest = direction.dot(pair.displacement[0]),
+         fastest = direction.dot(pair.displacement[3]);
   for (int k = 1; k < n; k++) slowest = std::min(slowest, direction.dot(pair.displacement[k]));
   for (int k = n; k < 3; k++) fastest = std::max(fastest, direction.dot(pair.displacement[k]));
   return fastest - slowest;

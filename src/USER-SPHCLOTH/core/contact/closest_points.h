@@ -66,7 +66,8 @@ inline ClosestPoints closest_points(PairKind kind, const FourPoints &x)
   return at;
 }
 
-// Are the closest points inside both edges, or inside the triangle?  If not, another pair is as near.
+// Are the closest points inside both edges, or inside the triangle?  If not, another pair is as
+// near.
 
 inline bool inside_both(PairKind kind, const ClosestPoints &at)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Does an edge pass through a triangle?  By the signs of five volumes: Möller & Trumbore, J. Graphics
-// Tools 2(1) (1997) 21, without a division.
+// Does an edge pass through a triangle?  By the signs of five volumes: Möller & Trumbore, J.
+// Graphics Tools 2(1) (1997) 21, without a division.
 
 #ifndef SPHCLOTH_CORE_CONTACT_EDGE_THROUGH_TRIANGLE_H
 #define SPHCLOTH_CORE_CONTACT_EDGE_THROUGH_TRIANGLE_H
@@ -31,7 +31,7 @@ inline bool passes_through(const Vec3 &p, const Vec3 &q, const Vec3 &a, const Ve
 
 // where it does, from the heights of both ends
 
-inline Vec3 place_of_passing(const Vec3 &p, const Vec3 &q, const Vec3 &a, const Vec3 &b,
+inline Vec3 point_of_passing(const Vec3 &p, const Vec3 &q, const Vec3 &a, const Vec3 &b,
                              const Vec3 &c)
 {
   const double above = volume_of(a, b, c, p), below = volume_of(a, b, c, q);

@@ -156,7 +156,7 @@ inline SignedVolume signed_volume(const Sweep &p, const std::array<Sweep, 3> &tr
 
 struct PointAndTriangle {
   const Vec3 &p, &a, &b, &c;
-  Vec3 normal;      // twice the area long
+  Vec3 normal;    // twice the area long
   double height;    // of the point above the plane, times twice the area
 
   PointAndTriangle(const Vec3 &p_, const Vec3 &a_, const Vec3 &b_, const Vec3 &c_) :

@@ -86,6 +86,13 @@ class Intersections:
         """Return the number of pairs of an edge and a triangle that meet."""
         return len(self.pairs(positions))
 
+    def counts(self, positions: NDArray[np.float64]) -> tuple[int, int]:
+        """Return the number of pairs that meet: of cloth and cloth, of cloth and obstacle."""
+        pairs = self.pairs(positions)
+        edges, corners = self.edges[pairs[:, 0], 0], self.triangles[pairs[:, 1], 0]
+        of_cloth = int(np.sum((edges < self._moving) & (corners < self._moving)))
+        return of_cloth, len(pairs) - of_cloth
+
     def is_free(self, before: NDArray[np.float64], after: NDArray[np.float64]) -> bool:
         """Tell whether all vertices can move on straight lines without that parts meet."""
         import ipctk
@@ -93,6 +100,15 @@ class Intersections:
         return ipctk.is_step_collision_free(
             self._mesh, _dense(before), _dense(after), 0.0, ipctk.LBVH()
         )
+
+    def crossed(self, before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[bool, bool]:
+        """Tell whether straight paths meet: of cloth and cloth, or else of cloth and obstacle."""
+        if self.is_free(before, after):
+            return False, False
+        if self._moving == self.n_vertices:
+            return True, False
+        of_cloth = not self._cloth.is_free(before[: self._moving], after[: self._moving])
+        return of_cloth, not of_cloth
 
     def gap(self, positions: NDArray[np.float64], reach: float) -> float:
         """Return the smallest distance of parts without a common vertex, inf beyond a reach."""
@@ -108,8 +124,16 @@ class Intersections:
         """Tell which pairs of edge and triangle share no vertex and do not lie in obstacles."""
         edges, corners = self.edges[pairs[:, 0]], self.triangles[pairs[:, 1]]
         apart = ~np.any(edges[:, :, None] == corners[:, None, :], axis=(1, 2))
-        moving = self.n_vertices if self.moving is None else self.moving
-        return apart & ((edges[:, 0] < moving) | (corners[:, 0] < moving))
+        return apart & ((edges[:, 0] < self._moving) | (corners[:, 0] < self._moving))
+
+    @property
+    def _moving(self) -> int:
+        return self.n_vertices if self.moving is None else self.moving
+
+    @cached_property
+    def _cloth(self) -> Intersections:
+        """The same without obstacles."""
+        return Intersections(self.triangles[self.triangles[:, 0] < self._moving], self._moving)
 
     @cached_property
     def _mesh(self):
@@ -127,27 +151,29 @@ class Intersections:
 
 @dataclass(frozen=True)
 class Passage:
-    """What :func:`inspect` finds in a run.
+    """What :func:`inspect` finds in a run; cloth is that with cloth, not that with obstacles.
 
     Attributes:
         frames: number of frames.
-        intersected: frames in which parts meet.
-        intersections: pairs of edge and triangle that meet, in the frame that has most of them.
-        not_free: steps from frame to frame in which straight paths meet.
-        first: step of the first frame, or of the end of the first step, that is not free; -1
-            where all are.
+        met: frames in which cloth meets cloth.
+        met_obstacles: frames in which cloth meets an obstacle.
+        most: pairs of an edge and a triangle that meet, of any kind, in the frame with most of them.
+        not_free: steps from frame to frame in which straight paths of cloth and cloth meet.
+        not_free_obstacles: steps in which those of cloth and an obstacle meet.
+        first: step of the first frame, or of the end of the first step, that is not free of any
+            kind; -1 where all are.
         gap: smallest distance over the thickness, inf where none is below ``REACH``; 0 where parts
             meet.
-        gap_step: step of the frame in which it is.
     """
 
     frames: int
-    intersected: int
-    intersections: int
+    met: int
+    met_obstacles: int
+    most: int
     not_free: int
+    not_free_obstacles: int
     first: int
     gap: float
-    gap_step: int
 
 
 def inspect(
@@ -160,30 +186,32 @@ def inspect(
     """Ask every frame of a run, and every step from one to the next.
 
     The paths between frames are straight: dump every step. Where a frame has parts that meet, the
-    steps to it and from it are counted as not free. Distances are measured in one frame of
-    ``gap_every``, since they cost more than all else.
+    steps to it and from it are not free. Distances are measured in one frame of ``gap_every``,
+    since they cost more than all else.
     """
-    steps, counts, gaps, not_free, before = [], [], [], [], None
+    steps, met, crossed, gaps, before = [], [], [], [], None
     for number, frame in enumerate(frames):
         positions = unwrapped(mesh, frame)
         steps.append(frame.step)
-        counts.append(oracle.count(positions))
-        gaps.append(0.0 if counts[-1] else math.inf)
-        if not counts[-1] and number % gap_every == 0:
+        met.append(oracle.counts(positions))
+        gaps.append(0.0 if any(met[-1]) else math.inf)
+        if not any(met[-1]) and number % gap_every == 0:
             gaps[-1] = oracle.gap(positions, REACH * thickness) / thickness
-        if before is not None:
-            not_free.append(any(counts[-2:]) or not oracle.is_free(before, positions))
+        crossed.append((False, False) if before is None else oracle.crossed(before, positions))
         before = positions
-    bad = np.array(counts) > 0
-    bad[1:] |= np.array(not_free, bool)
+    there = np.array(met) > 0
+    swept = np.array(crossed)
+    swept[1:] |= there[1:] | there[:-1]
+    bad = np.any(there | swept, axis=1)
     return Passage(
-        len(steps),
-        int(np.count_nonzero(counts)),
-        max(counts),
-        sum(not_free),
-        steps[int(np.argmax(bad))] if bad.any() else -1,
-        min(gaps),
-        steps[int(np.argmin(gaps))],
+        frames=len(steps),
+        met=int(there[:, 0].sum()),
+        met_obstacles=int(there[:, 1].sum()),
+        most=max(map(sum, met)),
+        not_free=int(swept[:, 0].sum()),
+        not_free_obstacles=int(swept[:, 1].sum()),
+        first=steps[int(np.argmax(bad))] if bad.any() else -1,
+        gap=min(gaps),
     )
 
 

@@ -2,7 +2,8 @@
 
 Limits of every scene:
 
-* ``met`` and ``not_free`` are 0: cloth does not go through cloth, whatever else is true of it.
+* ``met`` and ``not_free`` are 0, and those of obstacles: cloth does not go through cloth, whatever
+  else is true of it.
 * ``missing`` is at most 1/2: the thickness is a distance at which contact holds, and parts that
   come nearer than half of it have lost most of it; what contact promises beyond that is only that
   they do not meet.
@@ -33,7 +34,12 @@ GAP_EVERY = 10
 
 
 def parameters(
-    thickness: float, dt: float, time: float, quick_time: float, friction: float = 0.0
+    thickness: float,
+    dt: float,
+    time: float,
+    quick_time: float,
+    friction: float = 0.0,
+    gravity: float = GRAVITY.default,
 ) -> tuple[Parameter, ...]:
     """Return the parameters of every scene.
 
@@ -43,12 +49,13 @@ def parameters(
         time: default of the time of the run, s.
         quick_time: the same with ``--quick``.
         friction: default of the coefficient of friction of cloth on cloth.
+        gravity: default of the acceleration of gravity, m/s^2.
     """
     return (
         Parameter("contact", "yes", "1", "whether cloth touches cloth", choices=("yes", "no")),
         Parameter("thickness", thickness, "m", "of the contact", 1e-6, 1.0),
         Parameter("friction", friction, "1", "coefficient of cloth on cloth", 0.0, 10.0),
-        GRAVITY,
+        Parameter("gravity", gravity, "m/s^2", "acceleration g", 0.0, 1e3),
         Parameter("fold", 0.02, "1", "stiffness k of the hinges", 0.0, 1.0),
         Parameter("time", time, "s", "time of the run", 1e-3, 100.0, quick=quick_time),
         Parameter("jitter", 1e-3, "thickness", "displacement at the start", 0.0, 0.2),
@@ -61,11 +68,13 @@ def parameters(
 
 
 MEETINGS = (
-    Quantity("met", "frames", "in which an edge goes through a triangle", 0, 0),
-    Quantity("not_free", "steps", "in which straight paths meet", 0, 0),
+    Quantity("met", "frames", "in which an edge of cloth goes through cloth", 0, 0),
+    Quantity("not_free", "steps", "in which straight paths of cloth and cloth meet", 0, 0),
+    Quantity("met_obstacle", "frames", "in which edges of cloth and an obstacle do", 0, 0),
+    Quantity("not_free_obstacle", "steps", "in which their straight paths meet", 0, 0),
     Quantity("missing", "thickness", "by which the smallest distance is too small", 0.5, 0.5),
     Quantity("strain", "1", "largest strain of an edge", 0.05, 0.05),
-    Quantity("intersections", "1", "edges through triangles in the worst frame"),
+    Quantity("most", "1", "edges through triangles in the worst frame"),
     Quantity("first", "step", "that is not free; -1 for none"),
     Quantity("frames", "1", "that were looked at, in all runs"),
 )
@@ -181,11 +190,13 @@ def meetings(scenarios: Sequence[Scenario]) -> dict[str, float]:
     passages = [each.passage for each in scenarios]
     firsts = [passage.first for passage in passages if passage.first >= 0]
     return {
-        "met": sum(passage.intersected for passage in passages),
+        "met": sum(passage.met for passage in passages),
         "not_free": sum(passage.not_free for passage in passages),
+        "met_obstacle": sum(passage.met_obstacles for passage in passages),
+        "not_free_obstacle": sum(passage.not_free_obstacles for passage in passages),
         "missing": max(max(0.0, 1 - passage.gap) for passage in passages),
         "strain": worst(scenarios, lambda each: each.strain),
-        "intersections": max(passage.intersections for passage in passages),
+        "most": max(passage.most for passage in passages),
         "first": min(firsts, default=-1),
         "frames": sum(passage.frames for passage in passages),
     }

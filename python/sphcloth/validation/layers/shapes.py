@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 from trimesh.creation import icosphere
 
 
@@ -127,34 +126,45 @@ def tube(radius: float, length: float, around: int, areal: float) -> Piece:
 
 def ribbon(
     curve: Callable[[NDArray[np.float64]], NDArray[np.float64]],
-    width_along: NDArray[np.float64],
     width: float,
     across: int,
     areal: float,
+    group: int,
 ) -> Piece:
-    """Return a ribbon along a curve; its rest shape is flat, and its first and last row are held.
+    """Return a ribbon along a curve, whose first and last row are held.
+
+    Its width turns as little as it can along the curve, and begins as upright as it can. The edges
+    are as long at rest as at the start.
 
     Args:
         curve: place for a parameter from 0 to 1, from shape (N,) to (N, 3), m.
-        width_along: direction of the width everywhere, a unit vector, shape (3,).
         width: m.
         across: vertices over the width; rows along it keep cells nearly square.
         areal: mass per area, kg/m^2.
+        group: of the pins, 1 or 2.
     """
     fine = np.linspace(0, 1, 20_001)
-    arc = cumulative_trapezoid(
-        np.linalg.norm(np.gradient(curve(fine), fine, axis=0), axis=1), fine, initial=0
-    )
+    chords = np.linalg.norm(np.diff(curve(fine), axis=0), axis=1)
+    arc = np.concatenate([[0], np.cumsum(chords)])
     along = max(3, round(arc[-1] / width * (across - 1)) + 1)
     middle = curve(np.interp(arc[-1] * np.linspace(0, 1, along), arc, fine))
     places, triangles = grid(along, across)
     sideways = width * (places[:, 1] - 0.5)
-    positions = np.repeat(middle, across, axis=0) + sideways[:, None] * width_along
-    chords = np.linalg.norm(np.diff(middle, axis=0), axis=1)
-    length = np.concatenate([[0], np.cumsum(chords)])
-    rest = np.stack([np.repeat(length, across), sideways, 0 * sideways], axis=1)
-    held = np.repeat(np.r_[1, np.zeros(along - 2, np.int64), 2], across)
-    return Piece(positions, rest, triangles, areal, held)
+    upright = np.repeat(_carried(middle), across, axis=0)
+    positions = np.repeat(middle, across, axis=0) + sideways[:, None] * upright
+    held = np.repeat(np.r_[group, np.zeros(along - 2, np.int64), group], across)
+    return Piece(positions, positions, triangles, areal, held)
+
+
+def _carried(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a direction across a curve at each place, carried along without a turn, (N, 3)."""
+    tangents = np.gradient(places, axis=0)
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    found = [np.array([0.0, 0.0, 1.0])]
+    for tangent in tangents:
+        across = found[-1] - (found[-1] @ tangent) * tangent
+        found.append(across / np.linalg.norm(across))
+    return np.array(found[1:])
 
 
 def _triangles(number: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -21,13 +21,13 @@ from sphcloth.validation.layers.shapes import Piece, ball, sheet
 from sphcloth.validation.runner import Runner
 
 PARAMETERS = (
-    Parameter("sheets", 5, "1", "number of sheets", 1, 50),
+    Parameter("sheets", 5, "1", "number of sheets", 1, 50, quick=3),
     Parameter("across", 32, "1", "vertices along a side of a sheet", 4, 400, quick=10),
     Parameter("side", 2.0, "m", "of a sheet", 0.1, 100.0),
     Parameter("radius", 0.5, "m", "of the ball", 0.01, 10.0),
     Parameter("gap", 0.05, "m", "between the sheets, and above the ball", 1e-4, 1.0),
     Parameter("areal", 0.2, "kg/m^2", "mass per area of a sheet", 1e-4, 1e3),
-    *contact.parameters(0.005, 1e-3, 1.0, 0.5),
+    *contact.parameters(0.005, 1e-3, 1.0, 0.25),
 )
 
 QUANTITIES = (
@@ -69,9 +69,7 @@ def _held(values: Mapping[str, Value], height: float) -> Piece:
 def _depth(run: contact.Scenario, values: Mapping[str, Value]) -> float:
     """Return how far a vertex ever is inside the smallest ball in the obstacle's mesh, m."""
     obstacle = run.scene.pieces[-1]
-    inner = np.min(
-        np.linalg.norm(obstacle.positions[obstacle.triangles].mean(axis=1), axis=1)
-    )
+    inner = np.min(np.linalg.norm(obstacle.positions[obstacle.triangles].mean(axis=1), axis=1))
     moving = run.scene.moving
     nearest = min(
         np.min(np.linalg.norm(frame.positions[:moving], axis=1)) for frame in run.run.trajectory

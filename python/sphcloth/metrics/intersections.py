@@ -157,7 +157,7 @@ class Passage:
         frames: number of frames.
         met: frames in which cloth meets cloth.
         met_obstacles: frames in which cloth meets an obstacle.
-        most: pairs of an edge and a triangle that meet, of any kind, in the frame with most of them.
+        most: pairs of an edge and a triangle that meet in the frame with most of them.
         not_free: steps from frame to frame in which straight paths of cloth and cloth meet.
         not_free_obstacles: steps in which those of cloth and an obstacle meet.
         first: step of the first frame, or of the end of the first step, that is not free of any

@@ -40,6 +40,7 @@ def parameters(
     quick_time: float,
     friction: float = 0.0,
     gravity: float = GRAVITY.default,
+    jitter: float = 1e-3,
 ) -> tuple[Parameter, ...]:
     """Return the parameters of every scene.
 
@@ -50,6 +51,7 @@ def parameters(
         quick_time: the same with ``--quick``.
         friction: default of the coefficient of friction of cloth on cloth.
         gravity: default of the acceleration of gravity, m/s^2.
+        jitter: default of the displacement of vertices at the start, in thicknesses.
     """
     return (
         Parameter("contact", "yes", "1", "whether cloth touches cloth", choices=("yes", "no")),
@@ -58,13 +60,20 @@ def parameters(
         Parameter("gravity", gravity, "m/s^2", "acceleration g", 0.0, 1e3),
         Parameter("fold", 0.02, "1", "stiffness k of the hinges", 0.0, 1.0),
         Parameter("time", time, "s", "time of the run", 1e-3, 100.0, quick=quick_time),
-        Parameter("jitter", 1e-3, "thickness", "displacement at the start", 0.0, 0.2),
+        Parameter("jitter", jitter, "thickness", "displacement at the start", 0.0, 0.2),
         Parameter("seed", 1, "1", "seed of the displacement", 1, 900_000_000),
         Parameter("repeats", 1, "1", "runs, each with the next seed; the worst counts", 1, 100),
         Parameter("every", 1, "1", "steps between frames that are looked at", 1, 1000),
         *cloth.solver(dt, 10, method="substeps"),
         *schemes.parameters("constant", 1.0),
     )
+
+
+def exact_parameters(*arguments, **named) -> tuple[Parameter, ...]:
+    """Return the same for a scene that means nothing without contact, and is run once."""
+    left_out = ("contact", "repeats")
+    found = parameters(*arguments, **named)
+    return tuple(each for each in found if each.name not in left_out)
 
 
 MEETINGS = (
@@ -89,7 +98,7 @@ def contact_command(values: Mapping[str, Value], group: str = "cloth", obstacle:
         obstacle: group of the vertices of an obstacle.
     """
     keywords = [f"obstacle {obstacle}"] if obstacle else []
-    if values["contact"] == "yes":
+    if values.get("contact", "yes") == "yes":
         keywords += ["cloth yes", f"cloth/friction {values['friction']!r}"]
     elif obstacle:
         group = "water"
@@ -118,6 +127,23 @@ class Scenario:
         return inspect(
             self.scene.oracle, self.scene.mesh, self.run.trajectory, self.thickness, GAP_EVERY
         )
+
+    @property
+    def moved(self) -> NDArray[np.float64]:
+        """Mean displacement of the free vertices, weighted by mass, in each frame, m, (F, 3)."""
+        free, masses = self.free, self.scene.masses
+        start = self.positions(0)[free]
+        return np.array(
+            [
+                np.average(frame.positions[free] - start, axis=0, weights=masses[free])
+                for frame in self.run.trajectory
+            ]
+        )
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Which vertices are free, shape (V,)."""
+        return np.concatenate([(p.held == 0) & (not p.is_obstacle) for p in self.scene.pieces])
 
     @property
     def strain(self) -> float:
@@ -162,7 +188,7 @@ def play(
     """
     check_installed()
     found = []
-    for n in range(values["repeats"]):
+    for n in range(values.get("repeats", 1)):
         jittered = scene.jittered(values["jitter"] * values["thickness"], values["seed"] + n)
         data = runner.out.resolve() / f"{label}{n or ''}.data"
         jittered.write(data)

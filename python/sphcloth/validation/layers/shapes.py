@@ -92,7 +92,7 @@ def ball(
     # an icosahedron has edges of 1.05 radii; each subdivision halves them
     halvings = int(np.clip(np.ceil(np.log2(1.05 * radius / edge)), 0, 6))
     mesh = icosphere(halvings, radius)
-    positions = np.asarray(mesh.vertices) + [0, 0, height]
+    positions = np.asarray(mesh.vertices) + np.array([0, 0, height])
     faces = np.asarray(mesh.faces, np.int64)
     return Piece(positions, positions, faces, areal, is_obstacle=is_obstacle, fold=2)
 

@@ -70,11 +70,22 @@ class Scene:
         """Mass of each vertex, kg, shape (V,); those of obstacles count as well."""
         return self._cloth.masses
 
+    @cached_property
+    def rigid(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The edges of cloth that are rigid, shape (E, 2), and their lengths at rest, m, (E,)."""
+        bonds = self._cloth.bonds
+        edges = bonds[(bonds[:, 0] == 1) & (bonds[:, 1] < self.moving), 1:]
+        return edges, self._lengths(edges)
+
     @property
     def longest_edge(self) -> float:
         """Length of the longest edge at rest, m."""
-        rest = np.concatenate([piece.rest for piece in self.pieces])
-        return float(np.max(np.linalg.norm(np.diff(rest[self.mesh.edges], axis=1), axis=-1)))
+        return float(np.max(self._lengths(self.mesh.edges)))
+
+    def _lengths(self, edges: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the lengths of edges at rest, m, shape (E,)."""
+        start, end = np.concatenate([piece.rest for piece in self.pieces])[edges.T]
+        return np.linalg.norm(end - start, axis=1)
 
     def jittered(self, by: float, seed: int) -> Scene:
         """Return the scene with free vertices displaced at random.
@@ -115,9 +126,19 @@ class Scene:
         surface = Surface(rest, np.concatenate(triangles), part)
         materials = [Material(piece.areal, dihedral_type=piece.fold) for piece in self.pieces]
         cloth = build_cloth(surface, materials)
+        diagonals = np.array([piece.is_woven for piece in self.pieces])[part]
+        bonds = cloth.bonds.copy()
+        bonds[_longest(surface)[diagonals], 0] = 2
         types = np.concatenate([_types(piece) for piece in self.pieces])
         placed = Surface(self.positions, surface.triangles, part)
-        return replace(cloth, surface=placed, types=types)
+        return replace(cloth, surface=placed, types=types, bonds=bonds)
+
+
+def _longest(surface: Surface) -> NDArray[np.int64]:
+    """Return the number of the longest edge of each triangle, shape (T,)."""
+    sides = surface.side_lengths.reshape(-1, 3)
+    of_triangle = surface.edge_of_half_edge.reshape(-1, 3)
+    return of_triangle[np.arange(len(sides)), np.argmax(sides, axis=1)]
 
 
 def _types(piece: Piece) -> NDArray[np.int64]:

@@ -22,6 +22,8 @@ class Piece:
         held: 0 for a free vertex, 1 and 2 for those of the first and second group of pins, (V,).
         is_obstacle: whether it is an obstacle, which does not deform.
         fold: dihedral type of its hinges: 1 for cloth, 2 for what keeps its shape.
+        is_woven: whether it gives way to shear: the longest sides of triangles, which are the
+            diagonals of cells, are of bond type 2.
     """
 
     positions: NDArray[np.float64]
@@ -31,6 +33,7 @@ class Piece:
     held: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
     is_obstacle: bool = False
     fold: int = 1
+    is_woven: bool = False
 
     def __post_init__(self) -> None:
         """Fill in that no vertex is held where nothing is said."""
@@ -98,7 +101,7 @@ def ball(
 
 
 def tube(radius: float, length: float, around: int, areal: float) -> Piece:
-    """Return an open tube along the x axis, both of whose rims are held.
+    """Return an open tube of woven cloth along the x axis, both of whose rims are held.
 
     Args:
         radius: m.
@@ -121,7 +124,7 @@ def tube(radius: float, length: float, around: int, areal: float) -> Piece:
     closed = np.concatenate([number, number[:, :1]], axis=1)
     held = np.zeros(len(positions), np.int64)
     held[number[0]], held[number[-1]] = 1, 2
-    return Piece(positions, positions, _triangles(closed), areal, held)
+    return Piece(positions, positions, _triangles(closed), areal, held, is_woven=True)
 
 
 def ribbon(

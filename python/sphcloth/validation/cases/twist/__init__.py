@@ -1,6 +1,8 @@
 """A tube of cloth that is wrung: its rims turn against one another and approach.
 
-No reference: cloth does not go through itself, and its edges are rigid. The limits that all scenes
+The cloth is woven: threads along and around the tube are rigid, and the diagonals of cells give
+way, since a tube that is rigid in shear cannot be wrung without a stretch, with contact or without.
+No reference: cloth does not go through itself, and threads are rigid. The limits that all scenes
 share are in :mod:`sphcloth.validation.layers.contact`. A thread along the tube that is bent round
 a neck as thin as the packed cloth, of a radius sqrt(circumference * thickness / pi), fits into the
 room that the rims leave for the default rates: what is strained is strained by contact.
@@ -27,6 +29,7 @@ PARAMETERS = (
     Parameter("length", 2.0, "m", "of the tube", 0.05, 100.0),
     Parameter("around", 48, "1", "vertices around the tube", 8, 1000, quick=16),
     Parameter("areal", 0.2, "kg/m^2", "mass per area", 1e-4, 1e3),
+    Parameter("shear", 0.01, "m/N", "compliance of the diagonals of cells", 0.0, 1e3),
     Parameter("rate", 360.0, "degrees/s", "at which each rim turns", 0.0, 1e4),
     Parameter("approach", 1.0, "m/s", "speed at which the rims approach", 0.0, 10.0),
     *contact.parameters(0.005, 1e-3, 1.0, 0.4, gravity=0.0),
@@ -42,7 +45,11 @@ QUANTITIES = (
 
 def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Wring the tube and look at every step."""
-    variables = {"rate": math.radians(values["rate"]), "approach": values["approach"]}
+    variables = {
+        "rate": math.radians(values["rate"]),
+        "approach": values["approach"],
+        "shear": values["shear"],
+    }
     runs = contact.play(values, runner, scene(values), variables)
     pictures.side_view(runs[0], runner.picture)
     return {

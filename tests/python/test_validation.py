@@ -17,6 +17,7 @@ from sphcloth.errors import UserError
 from sphcloth.validation import compare_schemes, schemes, validate
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.cases import hydrostatic
+from sphcloth.validation.layers import contact as layers
 from sphcloth.validation.runner import Runner
 
 
@@ -176,12 +177,16 @@ def test_a_scheme_that_cannot_be_combined_is_an_error_before_anything_runs(
     assert not out.exists()
 
 
-def test_every_case_with_water_knows_every_scheme() -> None:
+def test_every_case_with_water_or_contact_knows_every_scheme() -> None:
     cases = compare_schemes.cases_with_schemes("all")
     assert {"couette", "dam-break", "lintearia", "jet-on-sheet"} <= {case.name for case in cases}
+    shared = [(layers.FOLDER / name).read_text() for name in ("in.setup", "in.output")]
     for case in cases:
-        assert "pair_style      sph/tait" in case.script.read_text()
-        assert "run_style       sph/adaptive ${scheme}" in case.script.read_text()
+        script = case.script.read_text()
+        for name, text in zip(("setup", "output"), shared, strict=True):
+            script += text if f"include         ${{{name}}}" in script else ""
+        assert "pair_style      sph/tait" in script
+        assert "run_style       sph/adaptive ${scheme}" in script
         for scheme in schemes.SCHEMES:
             settings = {"scheme": scheme}
             if case.knows("density"):

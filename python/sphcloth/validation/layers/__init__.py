@@ -1,0 +1,1 @@
+"""Scenes of cloth in contact with itself, with other cloth and with obstacles."""

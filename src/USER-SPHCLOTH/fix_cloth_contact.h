@@ -81,9 +81,9 @@ class FixClothContact : public Fix, public SideSource {
 
  private:
   std::string label;
-  GhostReach ghosts;
   ContactOptions options;
   const ContactRules &rules;    // of particles
+  GhostReach ghosts;
   ContactCounts counts;    // of this rank, since the fix was made
   // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
   // step, mass times velocity, if there are any; and velocity minus displacement over the step, if

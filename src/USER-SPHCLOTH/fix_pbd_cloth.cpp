@@ -103,14 +103,14 @@ void FixPBDCloth::init()
 {
   couplings.clear();
   solved_here = {this};
-  const ClothInput input(lmp, this, label);
-  input.check_vertices();
+  const ClothInput made_of(lmp, this, label);
+  made_of.check_vertices();
   held.stop_pins();
   mesh.gather(groupbit);
   if (!mesh.edges.size())
     error->all(FLERR, "{}: group {} has no bonds: create the cloth with create_cloth or read_data",
                label, group->names[igroup]);
-  input.check_styles();
+  made_of.check_styles();
   if (ghosts.matters()) {
     mesh.measure();
     ghosts.require(mesh.widest_element(), mesh.widest_element());

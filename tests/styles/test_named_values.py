@@ -14,7 +14,10 @@ STEP = (
     "wait/max wait/mean"
 )
 CLOTH = "force/x force/y force/z strain residual sweeps energy halfkick/x halfkick/y halfkick/z"
-CONTACT = "contacts stops caught overlap impulse/x impulse/y impulse/z force/x force/y force/z cpu"
+CONTACT = (
+    "contacts stops caught overlap impulse/x impulse/y impulse/z force/x force/y force/z cpu "
+    "cloth/contacts cloth/stops cloth/caught cloth/gap"
+)
 
 
 def counts(prefix, limits):
@@ -31,7 +34,7 @@ NAMES = {
 EXTENSIVE = {
     "sph/step": ["updates", "updates/ideal", "sleeping", *PARTICLES.split()],
     "pbd/cloth": [n for n in CLOTH.split() if n not in ("strain", "residual", "sweeps")],
-    "cloth/contact": [n for n in CONTACT.split() if n not in ("overlap", "cpu")],
+    "cloth/contact": [n for n in CONTACT.split() if n not in ("overlap", "cpu", "cloth/gap")],
 }
 YAML = "thermo_modify line yaml format float %.17g\n"
 COMPUTES = "".join(

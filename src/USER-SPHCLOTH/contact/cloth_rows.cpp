@@ -22,6 +22,12 @@ using namespace sphcloth;
 // too near gets back in one
 static constexpr double MAX_APPROACH = 1.0, RECOVERY = 0.1;
 
+// A pass moves loads from layer to layer.  Where so much of a thickness is missing at the start of
+// a step, its projections take more than one.
+static constexpr double MISSING = 0.2;
+static constexpr int MORE_PASSES = 5;
+static constexpr double NONE = -1.0;
+
 void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
 bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
@@ -35,20 +41,24 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
   mesh.halo.forward_positions(0, mesh.end.data());
   candidates.update(MAX_APPROACH * candidates.rules.max_thickness());
-  find_rows();
-  int mine = !rows.empty(), any = 0;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return false;
+  const double missing = find_rows();
+  const double mine = rows.empty() ? NONE : missing;
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (all == NONE) return false;
+  passes = all < MISSING ? 1 : MORE_PASSES;
   masses.share(mesh.halo);
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
 }
 
-// with room for what the constraints of the cloth add to the motion
+// With room for what the constraints of the cloth add to the motion.  What is missing of a thickness
+// anywhere, as a share of it.
 
-void ClothRows::find_rows()
+double ClothRows::find_rows()
 {
+  double missing = 0.0;
   rows.clear();
   active.clear();
   masses.begin(mesh.halo.n_slots());
@@ -65,6 +75,7 @@ void ClothRows::find_rows()
     const double thickness = row.rules->thickness;
     row.gap = std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness);
     row.awake_from = distance - row.gap;
+    if (!pair.joined) missing = std::max(missing, 1.0 - distance / thickness);
     if (!pair.with_obstacle && !pair.joined)
       mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
     rows.push_back(row);
@@ -72,6 +83,7 @@ void ClothRows::find_rows()
   mesh.end = mesh.start;
   for (const ContactRow &row : rows)
     masses.count(row, share(row, {row.weight, row.relative(mesh.start)}));
+  return missing;
 }
 
 void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
@@ -98,6 +110,11 @@ void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt
 void ClothRows::project(Vertex *displacement)
 {
   const WallTimer clock(mesh.counts.seconds);
+  for (int pass = 0; pass < passes; pass++) project_once(displacement);
+}
+
+void ClothRows::project_once(Vertex *displacement)
+{
   load_positions(displacement);
   masses.clear_impulses();
   for (int k = 0; k < static_cast<int>(rows.size()); k++) {

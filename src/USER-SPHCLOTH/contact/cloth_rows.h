@@ -45,10 +45,12 @@ class ClothRows : public SolverCoupling, protected Pointers {
   std::vector<Vec3> from, end_before, velocity;    // vertices at the start of the substep
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
   const sphcloth::Vertex *substep_start = nullptr;
+  int passes = 1;    // of a projection, in this step
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
 
-  void find_rows();
+  double find_rows();
+  void project_once(sphcloth::Vertex *displacement);
   void load_positions(const sphcloth::Vertex *displacement);
   void load_velocities(const sphcloth::Vertex *v);
   double share(const ContactRow &, const sphcloth::ClosestPoints &) const;

@@ -40,9 +40,9 @@ bool ContactOptions::read_of_cloth(ArgReader &args, const std::string &keyword)
   if (keyword == "cloth")
     cloth_meets_cloth = args.choice(keyword, {"no", "yes"});
   else if (keyword == "cloth/thickness")
-    cloth_rules.thickness = args.positive("thickness of cloth on cloth");
+    cloth_rules.thickness = args.positive(keyword);
   else if (keyword == "cloth/friction")
-    cloth_rules.friction = args.at_least("friction coefficient of cloth on cloth", 0.0);
+    cloth_rules.friction = args.at_least(keyword, 0.0);
   else
     return false;
   return true;

@@ -12,12 +12,14 @@ using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 // of the thickness
-static constexpr double MAX_MARGIN = 1.5, MAX_REACH = 1.5;
+static constexpr double MIN_MARGIN = 0.75, MAX_MARGIN = 1.0, MAX_REACH = 1.5;
 
-void ClothCandidates::clear()
+// of the margin: by which patches of vertices that are not near one another may approach
+static constexpr double FAR = 10.0;
+
+void ClothCandidates::rebuild()
 {
-  pairs.clear();
-  known = false;
+  if (tags != edges.all_tags() || triangles != mesh.triangles) known = false;
 }
 
 double ClothCandidates::max_reach() const { return MAX_REACH * rules.max_thickness(); }
@@ -25,63 +27,53 @@ double ClothCandidates::max_reach() const { return MAX_REACH * rules.max_thickne
 double ClothCandidates::margin() const
 {
   const double thickness = rules.max_thickness();
-  return thickness * std::clamp(0.5 * neighbor->skin / thickness, 1.0, MAX_MARGIN);
+  return thickness * std::clamp(0.5 * neighbor->skin / thickness, MIN_MARGIN, MAX_MARGIN);
 }
 
 void ClothCandidates::update(double max_approach)
 {
   limit = max_approach;
-  measure_strides();
-  if (known) measure_paths();
-  if (known && longest_path <= margin()) return;
+  if (known) patches.measure(mesh.start, mesh.end, limit);
+  if (known && holds()) return;
   find();
-  measure_paths();
 }
 
-// Distances do not change with what all vertices move together.
+// Pairs that are not in the list were farther apart than its cutoff, and than their patches.
 
-static Eigen::Vector3d mean_difference(const std::vector<Eigen::Vector3d> &of,
-                                       const std::vector<Eigen::Vector3d> &from)
+bool ClothCandidates::holds() const
 {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t s = 0; s < of.size(); s++) sum += of[s] - from[s];
-  return of.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(of.size()));
-}
-
-void ClothCandidates::measure_strides()
-{
-  const Vec3 together = mean_difference(mesh.end, mesh.start);
-  stride.resize(mesh.start.size());
-  longest_stride = 0.0;
-  for (std::size_t s = 0; s < stride.size(); s++) {
-    stride[s] = std::min((stride_of(static_cast<int>(s)) - together).norm(), limit);
-    longest_stride = std::max(longest_stride, stride[s]);
-  }
-}
-
-void ClothCandidates::measure_paths()
-{
-  const Vec3 together = mean_difference(mesh.start, vertices_then);
-  path.resize(stride.size());
-  longest_path = 0.0;
-  for (std::size_t s = 0; s < path.size(); s++) {
-    path[s] = stride[s] + (mesh.start[s] - vertices_then[s] - together).norm();
-    longest_path = std::max(longest_path, path[s]);
-  }
+  for (int k = 0; k < patches.size(); k++)
+    if (patches.approach(k) > std::max(cutoff, patches.distance(k)) - max_reach()) return false;
+  return patches.approach_of_others() <= far - max_reach();
 }
 
 void ClothCandidates::find()
 {
-  const double cutoff = max_reach() + 2.0 * std::max(margin(), longest_stride);
-  pairs.clear();
-  vertices_then = mesh.start;
   known = true;
-  for (const bool obstacles : {false, true}) find_among(obstacles, cutoff);
+  tags = edges.all_tags();
+  triangles = mesh.triangles;
+  cutoff = max_reach() + 2.0 * margin();
+  far = max_reach() + FAR * margin();
+  patches.build(mesh.triangles, mesh.start, far);
+  patches.measure(mesh.start, mesh.end, limit);
+  if (!holds()) {    // a long step
+    far = std::max(far, max_reach() + patches.approach_of_others());
+    for (int k = 0; k < patches.size(); k++)
+      cutoff = std::max(cutoff, max_reach() + patches.approach(k));
+    far = std::max(far, cutoff);
+    patches.build(mesh.triangles, mesh.start, far);
+    patches.measure(mesh.start, mesh.end, limit);
+  }
+  pairs.clear();
+  patches_of.clear();
+  last_patches = {-1, -1};
+  for (const bool obstacles : {false, true}) find_among(obstacles);
+  sort();
 }
 
 // obstacles, or cloth
 
-void ClothCandidates::find_among(bool obstacles, double cutoff)
+void ClothCandidates::find_among(bool obstacles)
 {
   triangles_there.clear();
   discs.clear();
@@ -101,34 +93,30 @@ void ClothCandidates::find_among(bool obstacles, double cutoff)
     boxes.back().extend(mesh.start[b]);
   }
   if (triangles_there.empty()) return;
-  find_triangles(obstacles, cutoff);
-  if (obstacles || rules.cloth_meets_cloth) find_edges(obstacles, cutoff);
+  find_triangles(obstacles);
+  if (obstacles || rules.cloth_meets_cloth) find_edges(obstacles);
 }
 
-void ClothCandidates::find_triangles(bool obstacles, double cutoff)
+void ClothCandidates::find_triangles(bool obstacles)
 {
   disc_grid.build(discs, cutoff);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     if (edges.is_obstacle(s) ? obstacles : !obstacles && !rules.cloth_meets_cloth) continue;
-    const std::size_t begin = pairs.size();
     disc_grid.within(mesh.start[s], cutoff, [&](int n) {
       const int t = triangles_there[n];
       const auto &[a, b, c] = mesh.triangles[t];
       if (s == a || s == b || s == c) return;
-      add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t}, cutoff);
+      add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
     });
-    std::sort(pairs.begin() + begin, pairs.end(),    // whatever the order of cells
-              [](const ClothPair &p, const ClothPair &q) { return p.members[1] < q.members[1]; });
   }
 }
 
-void ClothCandidates::find_edges(bool obstacles, double cutoff)
+void ClothCandidates::find_edges(bool obstacles)
 {
   box_grid.build(boxes);
   for (int e = 0; e < static_cast<int>(edges.edges.size()); e++) {
     const auto &[p, q] = edges.edges[e];
     if (edges.is_obstacle(p) || mesh.halo.is_ghost(edges.vertex_of_lowest(e))) continue;
-    const std::size_t begin = pairs.size();
     Box near(mesh.start[p]);
     near.extend(mesh.start[q]);
     near.min().array() -= cutoff;
@@ -138,15 +126,13 @@ void ClothCandidates::find_edges(bool obstacles, double cutoff)
       const auto &[a, b] = edges.edges[other];
       if (!obstacles && edges.lowest[other] < edges.lowest[e]) return;
       if (p == a || p == b || q == a || q == b || !boxes[n].intersects(near)) return;
-      add(PairKind::EDGE_EDGE, {p, q, a, b}, {e, other}, cutoff);
+      add(PairKind::EDGE_EDGE, {p, q, a, b}, {e, other});
     });
-    std::sort(pairs.begin() + begin, pairs.end(),
-              [](const ClothPair &m, const ClothPair &n) { return m.members[1] < n.members[1]; });
   }
 }
 
 void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
-                          const std::array<int, 2> &members, double cutoff)
+                          const std::array<int, 2> &members)
 {
   const auto &[i, j, k, l] = slots;
   const double distance =
@@ -154,17 +140,42 @@ void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
           .vector.norm();
   if (distance > cutoff) return;
   const bool with_obstacle = edges.is_obstacle(i) != edges.is_obstacle(l);
-  bool joined = false;
-  for (int first = 0; first < first_side(kind); first++)
-    for (int second = first_side(kind); second < 4; second++)
-      joined = joined ||
-          ((mesh.start[slots[first]] - mesh.start[slots[second]]).norm() < rules.cloth.thickness &&
-           edges.joined(slots[first], slots[second]));
-  pairs.push_back({kind, slots, members, with_obstacle, joined, distance});
+  pairs.push_back({kind, slots, members, with_obstacle,
+                   distance < rules.cloth.thickness && are_joined(kind, slots), distance});
+  const std::array<int, 2> both{patches.patch_of(i), patches.patch_of(l)};
+  if (both != last_patches) {
+    last_patches = both;
+    last_pair = patches.pair_of(i, l);
+  }
+  patches_of.push_back(last_pair);
+}
+
+bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots) const
+{
+  for (int k = 0; k < first_side(kind); k++)
+    for (int l = first_side(kind); l < 4; l++)
+      if ((mesh.start[slots[k]] - mesh.start[slots[l]]).norm() < rules.cloth.thickness &&
+          edges.joined(slots[k], slots[l]))
+        return true;
+  return false;
+}
+
+void ClothCandidates::sort()
+{
+  sort_into_buckets(
+      patches.size(),
+      [this](auto add) {
+        for (std::size_t n = 0; n < pairs.size(); n++) add(patches_of[n], static_cast<int>(n));
+      },
+      first, order);
+  nearest.assign(patches.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t n = 0; n < pairs.size(); n++)
+    nearest[patches_of[n]] = std::min(nearest[patches_of[n]], pairs[n].distance);
 }
 
 double ClothCandidates::memory_usage() const
 {
-  return disc_grid.bytes() + box_grid.bytes() +
-      bytes_of(pairs, vertices_then, stride, path, triangles_there, edges_there, discs, boxes);
+  return disc_grid.bytes() + box_grid.bytes() + patches.bytes() +
+      bytes_of(pairs, tags, triangles, first, order, patches_of, nearest, triangles_there,
+               edges_there, discs, boxes);
 }

@@ -102,8 +102,9 @@ void ClothGuarantee::find_collisions()
     row.normal = safe.vector.normalized();
     row.gap = std::max(GIVEN * apart, keep);
     rows.push_back(row);
-    masses.count(row);
   });
+  std::sort(rows.begin(), rows.end());    // whatever the order of candidates
+  for (const ContactRow &row : rows) masses.count(row);
 }
 
 void ClothGuarantee::push_apart()

@@ -53,8 +53,8 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   return true;
 }
 
-// With room for what the constraints of the cloth add to the motion.  What is missing of a thickness
-// anywhere, as a share of it.
+// With room for what the constraints of the cloth add to the motion.  What is missing of a
+// thickness anywhere, as a share of it.
 
 double ClothRows::find_rows()
 {
@@ -80,6 +80,7 @@ double ClothRows::find_rows()
       mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
     rows.push_back(row);
   });
+  std::sort(rows.begin(), rows.end());    // whatever the order of candidates
   mesh.end = mesh.start;
   for (const ContactRow &row : rows)
     masses.count(row, share(row, {row.weight, row.relative(mesh.start)}));

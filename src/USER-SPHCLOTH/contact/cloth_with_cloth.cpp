@@ -43,7 +43,7 @@ void ClothWithCloth::rebuild()
 {
   triangles.rebuild(candidates.rules.max_thickness());
   edges.rebuild();
-  candidates.clear();
+  candidates.rebuild();
   rows.rebuild();
   guarantee.rebuild();
   if (coupling) coupling->rebuild();

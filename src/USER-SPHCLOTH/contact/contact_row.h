@@ -31,6 +31,10 @@ struct ContactRow {
   Vec3 friction_correction = Vec3::Zero();    // the same across the normal
   double speed_before = 0.0;    // along the normal
 
+  bool operator<(const ContactRow &other) const
+  {
+    return kind != other.kind ? kind < other.kind : slots < other.slots;
+  }
   // of the first side relative to the second
   Vec3 relative(const std::vector<Vec3> &of) const
   {

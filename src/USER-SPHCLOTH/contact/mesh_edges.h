@@ -34,6 +34,7 @@ class MeshEdges : protected Pointers {
     return tags[a] < tags[b] ? a : b;
   }
   tagint tag(int slot) const { return tags[slot]; }
+  const std::vector<tagint> &all_tags() const { return tags; }
   bool is_obstacle(int slot) const { return obstacle[slot]; }
 
   // the longest edges of cloth and of obstacles that are here, at the last list build

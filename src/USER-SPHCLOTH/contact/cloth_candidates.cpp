@@ -15,7 +15,7 @@ using namespace sphcloth;
 static constexpr double MIN_MARGIN = 0.75, MAX_MARGIN = 1.0, MAX_REACH = 1.5;
 
 // of the margin: by which patches of vertices that are not near one another may approach
-static constexpr double FAR = 10.0;
+static constexpr double PATCH_MARGIN = 10.0;
 
 void ClothCandidates::rebuild()
 {
@@ -44,7 +44,7 @@ bool ClothCandidates::holds() const
 {
   for (int k = 0; k < patches.size(); k++)
     if (patches.approach(k) > std::max(cutoff, patches.distance(k)) - max_reach()) return false;
-  return patches.approach_of_others() <= far - max_reach();
+  return patches.approach_of_others() <= patch_range - max_reach();
 }
 
 void ClothCandidates::find()
@@ -53,15 +53,15 @@ void ClothCandidates::find()
   tags = edges.all_tags();
   triangles = mesh.triangles;
   cutoff = max_reach() + 2.0 * margin();
-  far = max_reach() + FAR * margin();
-  patches.build(mesh.triangles, mesh.start, far);
+  patch_range = max_reach() + PATCH_MARGIN * margin();
+  patches.build(mesh.triangles, mesh.start, patch_range);
   patches.measure(mesh.start, mesh.end, limit);
   if (!holds()) {    // a long step
-    far = std::max(far, max_reach() + patches.approach_of_others());
+    patch_range = std::max(patch_range, max_reach() + patches.approach_of_others());
     for (int k = 0; k < patches.size(); k++)
       cutoff = std::max(cutoff, max_reach() + patches.approach(k));
-    far = std::max(far, cutoff);
-    patches.build(mesh.triangles, mesh.start, far);
+    patch_range = std::max(patch_range, cutoff);
+    patches.build(mesh.triangles, mesh.start, patch_range);
     patches.measure(mesh.start, mesh.end, limit);
   }
   pairs.clear();

@@ -3,9 +3,9 @@
 // a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex
 // of both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
 //
-// The list is made with a margin.  It holds while patches of vertices stay within that, but for what
-// they move as a whole, also over list builds of LAMMPS that leave vertices where they were.  Which
-// pairs are visited does not depend on when it was made.
+// The list is made with a margin.  It holds while patches of vertices stay within that, but for
+// what they move as a whole, also over list builds of LAMMPS that leave vertices where they were.
+// Which pairs are visited does not depend on when it was made.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
 #define SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
@@ -87,7 +87,7 @@ class ClothCandidates : protected Pointers {
   // of the list
   std::vector<tagint> tags;
   std::vector<std::array<int, 3>> triangles;
-  double cutoff = 0.0, far = 0.0;    // of pairs, and of patches
+  double cutoff = 0.0, patch_range = 0.0;    // of pairs, and of patches
   double limit = 0.0;    // of an approach
   // of a search: triangles and edges of cloth, or of obstacles
   std::vector<int> triangles_there, edges_there;

@@ -54,7 +54,7 @@ void PatchPairs::find_members(const std::vector<std::array<int, 3>> &triangles)
       [this](auto add) {
         for (std::size_t s = 0; s < patch.size(); s++) add(patch[s], static_cast<int>(s));
       },
-      own_first, own);
+      member_first, members);
   sort_into_buckets(
       boxes.size(),
       [&](auto add) {
@@ -65,7 +65,7 @@ void PatchPairs::find_members(const std::vector<std::array<int, 3>> &triangles)
       },
       foreign_first, foreign);
   for (int p = 0; p < n_patches(); p++) {
-    for (int n = own_first[p]; n < own_first[p + 1]; n++) boxes[p].extend(then[own[n]]);
+    for (int n = member_first[p]; n < member_first[p + 1]; n++) boxes[p].extend(then[members[n]]);
     for (int n = foreign_first[p]; n < foreign_first[p + 1]; n++) boxes[p].extend(then[foreign[n]]);
   }
 }
@@ -108,11 +108,12 @@ void PatchPairs::measure(std::vector<Motion> &motions, Displacement displacement
   for (int p = 0; p < n_patches(); p++) {
     Motion &motion = motions[p];
     motion.mean.setZero();
-    for (int n = own_first[p]; n < own_first[p + 1]; n++) motion.mean += displacement(own[n]);
-    motion.mean /= static_cast<double>(own_first[p + 1] - own_first[p]);
+    for (int n = member_first[p]; n < member_first[p + 1]; n++)
+      motion.mean += displacement(members[n]);
+    motion.mean /= static_cast<double>(member_first[p + 1] - member_first[p]);
     double max_sq = 0.0;
-    for (int n = own_first[p]; n < own_first[p + 1]; n++)
-      max_sq = std::max(max_sq, (displacement(own[n]) - motion.mean).squaredNorm());
+    for (int n = member_first[p]; n < member_first[p + 1]; n++)
+      max_sq = std::max(max_sq, (displacement(members[n]) - motion.mean).squaredNorm());
     for (int n = foreign_first[p]; n < foreign_first[p + 1]; n++)
       max_sq = std::max(max_sq, (displacement(foreign[n]) - motion.mean).squaredNorm());
     motion.radius = std::sqrt(max_sq);
@@ -147,6 +148,6 @@ void PatchPairs::measure(const std::vector<Vec3> &start, const std::vector<Vec3>
 double PatchPairs::bytes() const
 {
   return grid.bytes() +
-      bytes_of(then, patch, own_first, own, foreign_first, foreign, boxes, near, near_first, moved,
-               moves, bound, apart);
+      bytes_of(then, patch, member_first, members, foreign_first, foreign, boxes, near, near_first,
+               moved, moves, bound, apart);
 }

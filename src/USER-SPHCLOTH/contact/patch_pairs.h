@@ -50,7 +50,8 @@ class PatchPairs {
 
   std::vector<Vec3> then;    // positions
   std::vector<int> patch;    // of a vertex
-  std::vector<int> own_first, own;    // vertices of patch p: own[own_first[p] .. own_first[p+1])
+  std::vector<int> member_first,
+      members;    // vertices of patch p: members[member_first[p] .. member_first[p+1])
   std::vector<int> foreign_first, foreign;    // those of other patches in its triangles
   std::vector<sphcloth::Box> boxes;
   sphcloth::BoxGrid grid;

@@ -33,8 +33,8 @@ PARAMETERS = (
     Parameter("areal", 0.2, "kg/m^2", "mass per area", 1e-4, 1e3),
     Parameter("shear", 0.01, "m/N", "compliance of the diagonals of cells", 0.0, 1e3),
     Parameter("rate", 360.0, "degrees/s", "at which each rim turns", 0.0, 1e4),
-    Parameter("approach", 1.6, "m/s", "speed at which the rims approach", 0.0, 10.0),
-    Parameter("damping", 5.0, "1/s", "of the edges", 0.0, 1e3),
+    Parameter("approach", 1.8, "m/s", "speed at which the rims approach", 0.0, 10.0),
+    Parameter("damping", 20.0, "1/s", "of the edges", 0.0, 1e3),
     *contact.parameters(0.005, 1e-3, 1.0, 0.4, gravity=0.0),
 )
 

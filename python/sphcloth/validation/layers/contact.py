@@ -82,7 +82,7 @@ MEETINGS = (
     Quantity("met_obstacle", "frames", "in which edges of cloth and an obstacle do", 0, 0),
     Quantity("not_free_obstacle", "steps", "in which their straight paths meet", 0, 0),
     Quantity("missing", "thickness", "by which the smallest distance is too small", 0.5, 0.5),
-    Quantity("strain", "1", "largest strain of an edge", 0.05, 0.05),
+    Quantity("strain", "1", "largest elongation of a rigid edge", 0.05, 0.05),
     Quantity("most", "1", "edges through triangles in the worst frame"),
     Quantity("first", "step", "that is not free; -1 for none"),
     Quantity("frames", "1", "that were looked at, in all runs"),
@@ -147,12 +147,12 @@ class Scenario:
 
     @property
     def strain(self) -> float:
-        """Largest strain of a rigid edge, in one of ``GAP_EVERY`` frames."""
+        """Largest elongation of a rigid edge over its length, in one of ``GAP_EVERY`` frames."""
         edges, rest = self.scene.rigid
         trajectory, found = self.run.trajectory, []
         for number in {*range(0, len(trajectory), GAP_EVERY), len(trajectory) - 1}:
             start, end = trajectory[number].positions[edges.T]
-            found.append(np.max(np.abs(np.linalg.norm(end - start, axis=1) / rest - 1)))
+            found.append(np.max(np.linalg.norm(end - start, axis=1) / rest - 1))
         return float(np.max(found))
 
     def momentum(self) -> NDArray[np.float64]:

@@ -26,8 +26,8 @@ from sphcloth.validation.runner import Runner
 MARGIN = 1.5
 
 PARAMETERS = (
-    Parameter("sheets", 10, "1", "number of sheets", 1, 100, quick=3),
-    Parameter("across", 24, "1", "vertices along a side of a sheet", 4, 400, quick=9),
+    Parameter("sheets", 5, "1", "number of sheets", 1, 100, quick=3),
+    Parameter("across", 20, "1", "vertices along a side of a sheet", 4, 400, quick=9),
     Parameter("side", 1.0, "m", "of a sheet", 0.1, 100.0),
     Parameter("gap", 0.02, "m", "between sheets, to the floor and to the ball", 1e-4, 1.0),
     Parameter("areal", 0.2, "kg/m^2", "mass per area of a sheet", 1e-4, 1e3),

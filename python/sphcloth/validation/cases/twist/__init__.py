@@ -1,11 +1,13 @@
 """A tube of cloth that is wrung: its rims turn against one another and approach.
 
-The cloth is woven: threads along and around the tube are rigid, and the diagonals of cells give
-way, since a tube that is rigid in shear cannot be wrung without a stretch, with contact or without.
+The cloth is woven: threads along and around the tube do not stretch, and the diagonals of cells
+give way, since a tube that is rigid in shear cannot be wrung without a stretch, with contact or
+without. Edges only pull: what is pressed together has wrinkles that are finer than its mesh.
 No reference: cloth does not go through itself, and threads are rigid. The limits that all scenes
-share are in :mod:`sphcloth.validation.layers.contact`. A thread along the tube that is bent round
-a neck as thin as the packed cloth, of a radius sqrt(circumference * thickness / pi), fits into the
-room that the rims leave for the default rates: what is strained is strained by contact.
+share are in :mod:`sphcloth.validation.layers.contact`. The rims
+approach fast enough for threads along the tube that do not stretch: for the default rates a
+straight one is never longer than at rest, sqrt(distance^2 + (2 radius sin(angle / 2))^2), and what
+is left over goes round the neck of packed cloth. The tube starts with the motion of its rims.
 ``rims`` is the error of the place of the held vertices, which turn exactly: round-off, but for
 what a step that varies adds to it.
 """
@@ -31,7 +33,8 @@ PARAMETERS = (
     Parameter("areal", 0.2, "kg/m^2", "mass per area", 1e-4, 1e3),
     Parameter("shear", 0.01, "m/N", "compliance of the diagonals of cells", 0.0, 1e3),
     Parameter("rate", 360.0, "degrees/s", "at which each rim turns", 0.0, 1e4),
-    Parameter("approach", 1.0, "m/s", "speed at which the rims approach", 0.0, 10.0),
+    Parameter("approach", 1.8, "m/s", "speed at which the rims approach", 0.0, 10.0),
+    Parameter("damping", 20.0, "1/s", "of the edges", 0.0, 1e3),
     *contact.parameters(0.005, 1e-3, 1.0, 0.4, gravity=0.0),
 )
 
@@ -49,6 +52,8 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "rate": math.radians(values["rate"]),
         "approach": values["approach"],
         "shear": values["shear"],
+        "length": values["length"],
+        "damping": values["damping"],
     }
     runs = contact.play(values, runner, scene(values), variables)
     pictures.side_view(runs[0], runner.picture)

@@ -2,7 +2,7 @@
 // Projects the contacts of cloth with cloth and with obstacles.
 //
 // Which of many near pairs push: only the nearest of a place, whose direction does not lean into
-// what borders on it, as in Chen, Diaz & Yuksel, Offset geometric contact, ACM Trans. Graph. 44(4)
+// what borders on it, as in Chen et al., Offset geometric contact, ACM Trans. Graph. 44(4)
 // (2025): flat layers push each other along their normals.
 
 #include "contact/cloth_rows.h"

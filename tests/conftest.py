@@ -2,7 +2,8 @@
 
 import os
 
-from sphcloth.programs import YIELDING
+from sphcloth.programs import YIELDING, end_sleep_on_time
 
 for name, value in YIELDING.items():
     os.environ.setdefault(name, value)
+end_sleep_on_time()

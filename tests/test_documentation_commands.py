@@ -149,7 +149,13 @@ def check_export(words: list[str]) -> None:
     assert all(YIELDING[word.split("=")[0]] == word.split("=")[1] for word in words)
 
 
+def check_echo(words: list[str]) -> None:
+    """A value goes to a setting that the kernel has for each process."""
+    assert words[1] == ">" and Path(words[2].replace("$$", "self")).is_file()
+
+
 CHECKS = {
+    "echo": check_echo,
     "export": check_export,
     "sphcloth": check_sphcloth,
     "lmp": check_lmp,

@@ -22,6 +22,7 @@ from sphcloth.log import error_lines
 from sphcloth.programs import lammps_on
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 from sphcloth.summary import summarize
+from sphcloth.trajectory import has_frame
 
 LOG, SCREEN = "log.lammps", "screen.txt"
 POLL_SECONDS = 0.2
@@ -84,8 +85,8 @@ def run_example(
     command = lammps_command(example.script.resolve(), ranks, variables)
     outcome = run_lammps(command, out, t_end, console)
     join(log, dump)
-    if outcome.interrupted and first_step(log) is None:
-        console.print("[yellow]stopped before the first row of output: nothing to sum up[/]")
+    if outcome.interrupted and (first_step(log) is None or not has_frame(dump)):
+        console.print("[yellow]stopped before the first row and frame: nothing to sum up[/]")
         return 1
     if outcome.interrupted:
         console.print("[yellow]stopped: the summary is of what was reached[/]")

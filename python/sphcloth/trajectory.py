@@ -180,6 +180,14 @@ def frame_texts(dump: Path) -> Iterator[tuple[int, bytes]]:
             yield entry.step, texts.read(entry.size)
 
 
+def has_frame(dump: Path) -> bool:
+    """Return whether there is a dump file with a complete frame."""
+    if not dump.is_file():
+        return False
+    with dump.open("rb") as file:
+        return next(_index(file, dump), None) is not None
+
+
 def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
     """Yield the place of each complete frame; warn about an incomplete last one."""
     line, offset = 1, 0

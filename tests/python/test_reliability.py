@@ -1,8 +1,10 @@
 """What makes the tables of docs/evidence/reliability.md: small runs of each, and the page."""
 
+import ctypes
 import itertools
 import json
 import re
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,7 +15,7 @@ from typer.testing import CliRunner
 
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
-from sphcloth.programs import YIELDING, lammps_on
+from sphcloth.programs import PR_SET_TIMERSLACK, YIELDING, lammps_on
 from sphcloth.stress import endurance, page
 from sphcloth.stress.endurance import Growth, Memory, Sample
 from sphcloth.stress.equality import LARGE, SAME, SMALL, End, Found, Scene, Way, keep
@@ -31,6 +33,14 @@ def test_ranks_sleep_only_where_they_are_more_than_cores(monkeypatch):
     assert lammps_on(1, jobs=4)[1:3] == ["-n", "1"]
     monkeypatch.setenv("MPIR_CVAR_ENABLE_HEAVY_YIELD", "0")
     assert "MPIR_CVAR_ENABLE_HEAVY_YIELD" not in lammps_on(3)
+
+
+def test_ranks_that_sleep_wake_on_time(monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1})
+    ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 50000, 0, 0, 0)
+    launcher = lammps_on(3)[:-1]
+    slack = subprocess.check_output([*launcher, "cat", "/proc/self/timerslack_ns"], text=True)
+    assert slack.split() == ["1"] * 3
 
 
 def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path):

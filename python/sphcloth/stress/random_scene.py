@@ -40,6 +40,7 @@ class RandomScene:
         coupling: boundary, none or wall; with the pressure of a boundary.
         contact: whether nothing may pass.
         thickness, friction, restitution: of contact.
+        meets: thickness with which the sheet meets itself, 0 where it does not.
         walls, plate, gravity, shift: whether there are.
         scheme: of the step; whether LAMMPS's own run style does it.
         dt: constant step, or the ceiling.
@@ -86,6 +87,7 @@ class RandomScene:
     pressure: str
     contact: bool
     thickness: float
+    meets: float
     friction: float
     restitution: float
     walls: bool
@@ -190,6 +192,10 @@ def _draw_sheet(r: random.Random, s: dict[str, Any]) -> None:
         s["hinge"] = ("k", min(s["hinge"][1], 0.1))
     s["reference"] = r.random() < 0.5
     s["thickness"] = dx * r.uniform(0.05, 0.3)
+    # draws of its own, so that the others stay what they are
+    meeting = random.Random(f"{s['seed']} meets")
+    meets = s["contact"] and meeting.random() < 0.5
+    s["meets"] = s["edge_length"] * meeting.uniform(0.1, 0.4) if meets else 0.0
     s["friction"] = r.choice((0.0, 0.0, r.uniform(0, 1)))
     s["restitution"] = r.choice((0.0, 0.0, r.uniform(0, 1)))
 

@@ -248,6 +248,8 @@ class _Script:
             words += ["wall yes"]
         if s.plate:
             words += ["obstacle plate"]
+        if s.meets:
+            words += [f"cloth yes cloth/thickness {self.q(s.meets)}"]
         return " ".join(words)
 
     def _output(self) -> list[str]:

@@ -147,7 +147,7 @@ def _plot(
 
 CASE = Case(
     "incline",
-    "sheet on a tilted sheet slides and sticks: Coulomb's friction",
+    "sheet on a tilted sheet: Coulomb's friction",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -110,7 +110,7 @@ def _pull(run: contact.Scenario) -> float:
 
 CASE = Case(
     "knot",
-    "two ribbons in a reef knot pulled tight: no intersection, and it holds",
+    "reef knot of two ribbons: no intersection, and it holds",
     PARAMETERS,
     QUANTITIES,
     measure,

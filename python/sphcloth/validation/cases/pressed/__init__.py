@@ -126,7 +126,7 @@ def _plot(run: contact.Scenario, pile: Pile, means: NDArray[np.float64], path: P
 
 CASE = Case(
     "pressed",
-    "forces and distances of sheets on one another: weights and load",
+    "sheets on one another: weights, load and distances",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -34,12 +34,9 @@ def run(name: str, out: Path, ranks: int = 1, **settings: str) -> Result:
     return validate.validate(validate.find_case(name), given, ranks, True, out, console)
 
 
-@pytest.mark.parametrize("ranks", [1])
 @pytest.mark.parametrize("name", SMALL)
-def test_a_small_case_of_cloth_on_cloth_is_within_its_limits(
-    tmp_path: Path, name: str, ranks: int
-) -> None:
-    result = run(name, tmp_path, ranks)
+def test_a_small_case_of_cloth_on_cloth_is_within_its_limits(tmp_path: Path, name: str) -> None:
+    result = run(name, tmp_path)
     failed = {key: each.value for key, each in result.metrics.items() if each.passed is False}
     assert not failed
 

@@ -2,7 +2,7 @@
 // A contact between vertices: signed weights of four of them and a normal, by which it pushes all
 // four, equal and opposite.  Rows are solved at once, with the mass of a vertex split over its
 // rows, evenly or as these push, which keeps momentum and always converges: Tonge, Benevolenski &
-// Voroshilov, ACM Trans.  Graph. 31 (2012) 105.
+// Voroshilov, ACM Trans. Graph. 31 (2012) 105.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_ROW_H
 #define SPHCLOTH_CONTACT_CONTACT_ROW_H

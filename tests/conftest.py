@@ -2,8 +2,8 @@
 
 import os
 
-from sphcloth.programs import YIELDING, end_sleep_on_time
+from sphcloth.programs import YIELDING, shorten_sleep
 
 for name, value in YIELDING.items():
     os.environ.setdefault(name, value)
-end_sleep_on_time()
+shorten_sleep()

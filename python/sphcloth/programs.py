@@ -18,8 +18,9 @@ YIELDING = {
     "MPIR_CVAR_ENABLE_HEAVY_YIELD": "1",
 }
 
-# prctl(2)
+# prctl(2).  A sleep of less than some microseconds ends before another thread gets its turn.
 PR_SET_TIMERSLACK = 29
+TIMER_SLACK_NS = 20_000
 
 
 def program(name: str) -> Path:
@@ -45,18 +46,18 @@ def lammps_on(ranks: int, bare: bool = False, jobs: int = 1) -> list[str]:
         return [str(program("lmp"))]
     oversubscribed = ranks > 1 and ranks * jobs > len(os.sched_getaffinity(0))
     if oversubscribed:
-        end_sleep_on_time()
+        shorten_sleep()
     settings = [pair for pair in YIELDING.items() if oversubscribed and pair[0] not in os.environ]
     told = [word for pair in settings for word in ("-genv", *pair)]
     return [str(program("mpiexec")), *told, "-n", str(ranks), str(program("lmp"))]
 
 
-def end_sleep_on_time() -> None:
-    """Let the sleep of this thread, and of programs that it starts from now on, end on time.
+def shorten_sleep() -> None:
+    """Let each sleep of this thread, and of programs that it starts from now on, take 20 us.
 
-    Ranks that wait sleep a nanosecond at a time, and Linux adds 50 microseconds to each.
+    Ranks that wait sleep a nanosecond at a time, to which Linux adds 50 us.
     """
-    ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0)
+    ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, TIMER_SLACK_NS, 0, 0, 0)
 
 
 def installed_version(distribution: str) -> str:

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
-from sphcloth.programs import PR_SET_TIMERSLACK, YIELDING, lammps_on
+from sphcloth.programs import PR_SET_TIMERSLACK, TIMER_SLACK_NS, YIELDING, lammps_on
 from sphcloth.stress import endurance, page
 from sphcloth.stress.endurance import Growth, Memory, Sample
 from sphcloth.stress.equality import LARGE, SAME, SMALL, End, Found, Scene, Way, keep
@@ -40,7 +40,7 @@ def test_ranks_that_sleep_wake_on_time(monkeypatch):
     ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 50000, 0, 0, 0)
     launcher = lammps_on(3)[:-1]
     slack = subprocess.check_output([*launcher, "cat", "/proc/self/timerslack_ns"], text=True)
-    assert slack.split() == ["1"] * 3
+    assert slack.split() == [str(TIMER_SLACK_NS)] * 3
 
 
 def test_another_way_ends_in_the_same_state_and_another_scene_does_not(tmp_path):

@@ -14,8 +14,11 @@ using namespace sphcloth;
 // of the thickness
 static constexpr double MIN_MARGIN = 0.75, MAX_MARGIN = 1.0, MAX_REACH = 1.5;
 
-// of the margin: by which patches of vertices that are not near one another may approach
+// of the margin: to which more patches are near
 static constexpr double PATCH_MARGIN = 10.0;
+
+// of the margin: a list that has used more of it than this is made anew with others
+static constexpr double USED = 0.5;
 
 void ClothCandidates::rebuild()
 {
@@ -33,102 +36,215 @@ double ClothCandidates::margin() const
 void ClothCandidates::update(double max_approach)
 {
   limit = max_approach;
-  if (known) patches.measure(mesh.start, mesh.end, limit);
-  if (known && holds()) return;
-  find();
+  if (known) measure();
+  if (!known || !all_hold()) start_anew();
 }
 
-// Pairs that are not in the list were farther apart than its cutoff, and than their patches.
-
-bool ClothCandidates::holds() const
+void ClothCandidates::measure()
 {
-  for (int k = 0; k < patches.size(); k++)
-    if (patches.approach(k) > std::max(cutoff, patches.distance(k)) - max_reach()) return false;
-  return patches.approach_of_others() <= patch_range - max_reach();
-}
-
-void ClothCandidates::find()
-{
-  known = true;
-  tags = edges.all_tags();
-  triangles = mesh.triangles;
-  cutoff = max_reach() + 2.0 * margin();
-  patch_range = max_reach() + PATCH_MARGIN * margin();
-  patches.build(mesh.triangles, mesh.start, patch_range);
-  patches.measure(mesh.start, mesh.end, limit);
-  if (!holds()) {    // a long step
-    patch_range = std::max(patch_range, max_reach() + patches.approach_of_others());
-    for (int k = 0; k < patches.size(); k++)
-      cutoff = std::max(cutoff, max_reach() + patches.approach(k));
-    patch_range = std::max(patch_range, cutoff);
-    patches.build(mesh.triangles, mesh.start, patch_range);
-    patches.measure(mesh.start, mesh.end, limit);
+  patches.measure(mesh.start, mesh.end);
+  for (PatchPair &both : near) {
+    const auto &[p, q] = both.patches;
+    both.approach = both.carried + patches.approach_before(p, q) +
+        std::min(limit, patches.approach_in_step(p, q));
   }
+}
+
+// Pairs that are not in a list were farther apart than what it covers.
+
+bool ClothCandidates::holds(const PatchPair &both) const
+{
+  return !(both.approach > both.covered - max_reach());
+}
+
+bool ClothCandidates::all_hold() const
+{
+  return std::all_of(near.begin(), near.end(), [this](const PatchPair &b) { return holds(b); }) &&
+      !(patches.approach_of_any(limit) > range - max_reach());
+}
+
+// Patches start from where they are.  Lists that will hold for long are kept.
+
+void ClothCandidates::start_anew()
+{
+  pairs_before.clear();
+  near_before.clear();
+  if (known) {
+    for (PatchPair &both : near)
+      both.carried += patches.approach_before(both.patches[0], both.patches[1]);
+    std::swap(near, near_before);
+    std::swap(pairs, pairs_before);
+    patches.start_from(mesh.start);
+  } else {
+    tags = edges.all_tags();
+    triangles = mesh.triangles;
+    patches.build(mesh.triangles, mesh.start);
+    sort_members();
+    known = true;
+  }
+  patches.measure(mesh.start, mesh.end);
+  range = max_reach() + std::max(PATCH_MARGIN * margin(), patches.approach_of_any(limit));
+  find_near();
   pairs.clear();
-  patches_of.clear();
-  last_patches = {-1, -1};
-  for (const bool obstacles : {false, true}) find_among(obstacles);
-  sort();
+  measure_balls();
+  for (PatchPair &both : near)
+    if (!keep(both)) find(both);
 }
 
-// obstacles, or cloth
-
-void ClothCandidates::find_among(bool obstacles)
+void ClothCandidates::find_near()
 {
-  triangles_there.clear();
-  discs.clear();
-  for (std::size_t t = 0; t < mesh.triangles.size(); t++) {
-    const auto &[a, b, c] = mesh.triangles[t];
-    if (edges.is_obstacle(a) != obstacles) continue;
-    triangles_there.push_back(static_cast<int>(t));
-    discs.push_back(disc_around(mesh.start[a], mesh.start[b], mesh.start[c]));
-  }
-  edges_there.clear();
+  near.clear();
   boxes.clear();
-  for (std::size_t e = 0; e < edges.edges.size(); e++) {
-    const auto &[a, b] = edges.edges[e];
-    if (edges.is_obstacle(a) != obstacles) continue;
-    edges_there.push_back(static_cast<int>(e));
-    boxes.emplace_back(mesh.start[a]);
-    boxes.back().extend(mesh.start[b]);
-  }
-  if (triangles_there.empty()) return;
-  find_triangles(obstacles);
-  if (obstacles || rules.cloth_meets_cloth) find_edges(obstacles);
-}
-
-void ClothCandidates::find_triangles(bool obstacles)
-{
-  disc_grid.build(discs, cutoff);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    if (edges.is_obstacle(s) ? obstacles : !obstacles && !rules.cloth_meets_cloth) continue;
-    disc_grid.within(mesh.start[s], cutoff, [&](int n) {
-      const int t = triangles_there[n];
-      const auto &[a, b, c] = mesh.triangles[t];
-      if (s == a || s == b || s == c) return;
-      add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
+  for (int p = 0; p < patches.size(); p++) boxes.push_back(patches.box(p));
+  grid.build(boxes);
+  for (int p = 0; p < patches.size(); p++) {
+    const std::size_t first = near.size();
+    Box around = boxes[p];
+    around.min().array() -= range;
+    around.max().array() += range;
+    grid.query(around, [&](int q) {
+      if (q < p || !meet(p, q) || !boxes[q].intersects(around)) return;
+      PatchPair both;
+      both.patches = {p, q};
+      near.push_back(both);
     });
+    std::sort(near.begin() + static_cast<std::ptrdiff_t>(first), near.end());
   }
 }
 
-void ClothCandidates::find_edges(bool obstacles)
+// do cloth and obstacles of two patches meet at all?
+
+bool ClothCandidates::meet(int p, int q) const
 {
-  box_grid.build(boxes);
-  for (int e = 0; e < static_cast<int>(edges.edges.size()); e++) {
-    const auto &[p, q] = edges.edges[e];
-    if (edges.is_obstacle(p) || mesh.halo.is_ghost(edges.vertex_of_lowest(e))) continue;
-    Box near(mesh.start[p]);
-    near.extend(mesh.start[q]);
-    near.min().array() -= cutoff;
-    near.max().array() += cutoff;
-    box_grid.query(near, [&](int n) {
-      const int other = edges_there[n];
+  const bool first = edges.is_obstacle(patches.members[patches.first_member[p]]),
+             second = edges.is_obstacle(patches.members[patches.first_member[q]]);
+  return first != second || (!first && rules.cloth_meets_cloth);
+}
+
+// A list of before, or none where both patches are far enough from one another.
+
+bool ClothCandidates::keep(PatchPair &both)
+{
+  const auto &[p, q] = both.patches;
+  const double in_step = std::min(limit, patches.approach_in_step(p, q)), room = 2.0 * margin();
+  const double apart = boxes[p].exteriorDistance(boxes[q]);
+  both.approach = in_step;
+  both.covered = apart;
+  if (apart > max_reach() + std::max(room, in_step)) return true;
+  const auto before = std::lower_bound(near_before.begin(), near_before.end(), both);
+  if (before == near_before.end() || before->patches != both.patches) return false;
+  both.carried = before->carried;
+  both.covered = before->covered;
+  both.approach = both.carried + in_step;
+  both.nearest = before->nearest;
+  if (both.carried > USED * room || !holds(both)) return false;
+  both.begin = static_cast<int>(pairs.size());
+  pairs.insert(pairs.end(), pairs_before.begin() + before->begin,
+               pairs_before.begin() + before->end);
+  both.end = static_cast<int>(pairs.size());
+  return true;
+}
+
+void ClothCandidates::find(PatchPair &both)
+{
+  const auto &[p, q] = both.patches;
+  both.carried = 0.0;
+  both.approach = std::min(limit, patches.approach_in_step(p, q));
+  both.covered = cutoff = max_reach() + std::max(2.0 * margin(), both.approach);
+  both.begin = static_cast<int>(pairs.size());
+  find_triangles(p, q);
+  if (p != q) find_triangles(q, p);
+  find_edges(p, q);
+  both.end = static_cast<int>(pairs.size());
+  both.nearest = std::numeric_limits<double>::infinity();
+  for (int n = both.begin; n < both.end; n++)
+    both.nearest = std::min(both.nearest, pairs[n].distance);
+}
+
+// of patches
+
+void ClothCandidates::sort_members()
+{
+  sort_into_buckets(
+      patches.size(),
+      [this](auto add) {
+        for (std::size_t t = 0; t < triangles.size(); t++)
+          add(patches.patch_of(triangles[t][0]), static_cast<int>(t));
+      },
+      first_triangle, triangles_of);
+  sort_into_buckets(
+      patches.size(),
+      [this](auto add) {
+        for (std::size_t e = 0; e < edges.edges.size(); e++)
+          add(patches.patch_of(edges.edges[e][0]), static_cast<int>(e));
+      },
+      first_edge, edges_of);
+}
+
+void ClothCandidates::measure_balls()
+{
+  triangle_balls.resize(triangles_of.size());
+  for (std::size_t n = 0; n < triangles_of.size(); n++) {
+    const auto &[i, j, k] = triangles[triangles_of[n]];
+    const Vec3 &a = mesh.start[i], &b = mesh.start[j], &c = mesh.start[k];
+    const Vec3 center = (a + b + c) / 3.0;
+    const double radius_sq = std::max(
+        {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()});
+    triangle_balls.set(static_cast<int>(n), center, std::sqrt(radius_sq));
+  }
+  edge_balls.resize(edges_of.size());
+  for (std::size_t n = 0; n < edges_of.size(); n++) {
+    const Vec3 &a = mesh.start[edges.edges[edges_of[n]][0]],
+               &b = mesh.start[edges.edges[edges_of[n]][1]];
+    edge_balls.set(static_cast<int>(n), 0.5 * (a + b), 0.5 * (b - a).norm());
+  }
+}
+
+// vertices of a patch with triangles of this or another one
+
+void ClothCandidates::find_triangles(int p, int q)
+{
+  const double cutoff_sq = cutoff * cutoff;
+  for (int m = patches.first_member[p]; m < patches.first_member[p + 1]; m++) {
+    const int s = patches.members[m];
+    if (mesh.halo.is_ghost(s) || boxes[q].squaredExteriorDistance(mesh.start[s]) > cutoff_sq)
+      continue;
+    triangle_balls.within(first_triangle[q], first_triangle[q + 1], mesh.start[s], cutoff,
+                          [&](int n) {
+                            const int t = triangles_of[n];
+                            const auto &[a, b, c] = triangles[t];
+                            if (s == a || s == b || s == c) return;
+                            add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
+                          });
+  }
+}
+
+void ClothCandidates::find_edges(int p, int q)
+{
+  for (int m = first_edge[p]; m < first_edge[p + 1]; m++) {
+    const Vec3 center = edge_balls.center(m);
+    const double reach = edge_balls.radius(m) + cutoff;
+    if (boxes[q].squaredExteriorDistance(center) > reach * reach) continue;
+    const int begin = p == q ? m + 1 : first_edge[q];
+    edge_balls.within(begin, first_edge[q + 1], center, reach, [&](int n) {
+      int e = edges_of[m], other = edges_of[n];
+      if (!orient(e, other)) return;
+      const auto &[i, j] = edges.edges[e];
       const auto &[a, b] = edges.edges[other];
-      if (!obstacles && edges.lowest[other] < edges.lowest[e]) return;
-      if (p == a || p == b || q == a || q == b || !boxes[n].intersects(near)) return;
-      add(PairKind::EDGE_EDGE, {p, q, a, b}, {e, other});
+      if (i == a || i == b || j == a || j == b) return;
+      add(PairKind::EDGE_EDGE, {i, j, a, b}, {e, other});
     });
   }
+}
+
+// First the edge of cloth, or the one with the lowest ID.  False: another rank looks after them.
+
+bool ClothCandidates::orient(int &e, int &other) const
+{
+  const bool first = edges.is_obstacle(edges.edges[e][0]),
+             second = edges.is_obstacle(edges.edges[other][0]);
+  if (first != second ? first : edges.lowest[other] < edges.lowest[e]) std::swap(e, other);
+  return !mesh.halo.is_ghost(edges.vertex_of_lowest(e));
 }
 
 void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
@@ -142,12 +258,6 @@ void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
   const bool with_obstacle = edges.is_obstacle(i) != edges.is_obstacle(l);
   pairs.push_back({kind, slots, members, with_obstacle,
                    distance < rules.cloth.thickness && are_joined(kind, slots), distance});
-  const std::array<int, 2> both{patches.patch_of(i), patches.patch_of(l)};
-  if (both != last_patches) {
-    last_patches = both;
-    last_pair = patches.pair_of(i, l);
-  }
-  patches_of.push_back(last_pair);
 }
 
 bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots) const
@@ -160,22 +270,9 @@ bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots)
   return false;
 }
 
-void ClothCandidates::sort()
-{
-  sort_into_buckets(
-      patches.size(),
-      [this](auto add) {
-        for (std::size_t n = 0; n < pairs.size(); n++) add(patches_of[n], static_cast<int>(n));
-      },
-      first, order);
-  nearest.assign(patches.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t n = 0; n < pairs.size(); n++)
-    nearest[patches_of[n]] = std::min(nearest[patches_of[n]], pairs[n].distance);
-}
-
 double ClothCandidates::memory_usage() const
 {
-  return disc_grid.bytes() + box_grid.bytes() + patches.bytes() +
-      bytes_of(pairs, tags, triangles, first, order, patches_of, nearest, triangles_there,
-               edges_there, discs, boxes);
+  return patches.bytes() + grid.bytes() + triangle_balls.bytes() + edge_balls.bytes() +
+      bytes_of(pairs, pairs_before, near, near_before, tags, triangles, boxes, first_triangle,
+               triangles_of, first_edge, edges_of);
 }

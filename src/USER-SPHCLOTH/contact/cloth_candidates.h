@@ -3,18 +3,19 @@
 // a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex
 // of both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
 //
-// The list is made with a margin.  It holds while patches of vertices stay within that, but for
-// what they move as a whole, also over list builds of LAMMPS that leave vertices where they were.
-// Which pairs are visited does not depend on when it was made.
+// Lists are by pairs of patches of vertices.  Each is made with a margin and holds while its two
+// patches stay within that, also over list builds of LAMMPS that leave vertices where they were.
+// Which pairs are visited, and in which order, does not depend on when a list was made.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
 #define SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
 
 #include "contact/mesh_edges.h"
 #include "contact/moving_triangles.h"
-#include "contact/patch_pairs.h"
 #include "core/contact/closest_points.h"
-#include "core/geometry/disc_grid.h"
+#include "core/contact/mesh_patches.h"
+#include "core/geometry/ball_columns.h"
+#include "core/geometry/box_grid.h"
 
 #include <algorithm>
 #include <array>
@@ -50,15 +51,14 @@ class ClothCandidates : protected Pointers {
   // at most `max_approach` in this step.
   void update(double max_approach = std::numeric_limits<double>::infinity());
 
-  // Pairs that may come as near as `reach`, at most max_reach(), in this step, in an order of their
-  // own: visit(pair, closest points at the start of the step).
+  // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest points at the start of the step).
   template <class Visit> void for_near(double reach, Visit visit) const
   {
-    for (int k = 0; k < patches.size(); k++) {
-      const double reach_then = reach + patches.approach(k);
-      if (nearest[k] > reach_then) continue;
-      for (int n = first[k]; n < first[k + 1]; n++) {
-        const ClothPair &pair = pairs[order[n]];
+    for (const PatchPair &both : near) {
+      const double reach_then = reach + both.approach;
+      if (both.nearest > reach_then) continue;
+      for (int n = both.begin; n < both.end; n++) {
+        const ClothPair &pair = pairs[n];
         if (pair.distance > reach_then) continue;
         const std::array<int, 4> &s = pair.slots;
         const sphcloth::ClosestPoints at = closest_points(
@@ -76,25 +76,32 @@ class ClothCandidates : protected Pointers {
  private:
   const MovingTriangles &mesh;
   const MeshEdges &edges;
-  std::vector<ClothPair> pairs;
-  // by pairs of patches: pairs[order[first[k]]] to pairs[order[first[k + 1] - 1]], and the nearest
-  PatchPairs patches;
-  std::vector<int> first, order, patches_of;
-  std::vector<double> nearest;
-  std::array<int, 2> last_patches{};    // of the last pair that was found, and their number
-  int last_pair = 0;
+  struct PatchPair {
+    std::array<int, 2> patches;    // ascending
+    // By which both may have come nearer since the list was made: until the patches started anew,
+    // and until the end of this step.
+    double carried = 0.0, approach = 0.0;
+    double covered = 0.0;    // all pairs nearer than this are in the list
+    int begin = 0, end = 0;    // of pairs
+    double nearest = std::numeric_limits<double>::infinity();
+
+    bool operator<(const PatchPair &other) const { return patches < other.patches; }
+  };
+
+  sphcloth::MeshPatches patches;
+  std::vector<ClothPair> pairs, pairs_before;
+  std::vector<PatchPair> near, near_before;
+  double range = 0.0;    // to which patches are near, when they started anew
+  double limit = 0.0;    // of an approach
   bool known = false;
-  // of the list
+  // of the lists
   std::vector<tagint> tags;
   std::vector<std::array<int, 3>> triangles;
-  double cutoff = 0.0, patch_range = 0.0;    // of pairs, and of patches
-  double limit = 0.0;    // of an approach
-  // of a search: triangles and edges of cloth, or of obstacles
-  std::vector<int> triangles_there, edges_there;
-  std::vector<sphcloth::Disc> discs;
-  sphcloth::DiscGrid disc_grid;
+  // of a search: boxes of patches, and their triangles and edges with balls around these
+  sphcloth::BoxGrid grid;
   std::vector<sphcloth::Box> boxes;
-  sphcloth::BoxGrid box_grid;
+  std::vector<int> first_triangle, triangles_of, first_edge, edges_of;
+  sphcloth::BallColumns triangle_balls, edge_balls;
 
   // how much nearer to one another both sides may come in this step
   double longest_approach(const ClothPair &pair) const
@@ -109,14 +116,22 @@ class ClothCandidates : protected Pointers {
   }
   Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }
   double margin() const;
-  bool holds() const;
-  void find();
-  void find_among(bool obstacles);
-  void find_triangles(bool obstacles);
-  void find_edges(bool obstacles);
+  void measure();
+  bool holds(const PatchPair &) const;
+  bool all_hold() const;
+  void start_anew();
+  void find_near();
+  void sort_members();
+  void measure_balls();
+  bool meet(int patch, int other) const;
+  bool keep(PatchPair &);
+  void find(PatchPair &);
+  void find_triangles(int patch_of_vertices, int patch);
+  void find_edges(int patch, int other);
+  bool orient(int &edge, int &other) const;
   bool are_joined(sphcloth::PairKind, const std::array<int, 4> &slots) const;
-  void sort();
   void add(sphcloth::PairKind, const std::array<int, 4> &slots, const std::array<int, 2> &members);
+  double cutoff = 0.0;    // of the list that is made
 };
 
 }    // namespace LAMMPS_NS

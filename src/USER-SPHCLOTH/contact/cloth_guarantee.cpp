@@ -87,23 +87,15 @@ void ClothGuarantee::find_collisions()
   masses.begin(mesh.halo.n_slots());
   candidates.update();
   candidates.for_near(0.0, [&](const ClothPair &pair, const ClosestPoints &at) {
-    const ContactRules &rules = candidates.rules.of(pair.with_obstacle);
-    const double thickness = rules.thickness, apart = std::min(thickness, at.vector.norm());
+    const double thickness = candidates.rules.of(pair.with_obstacle).thickness,
+                 apart = std::min(thickness, at.vector.norm());
     const PairMotion motion = motion_of(pair, mesh);
     const double keep = std::max(KEEP * apart, std::min(KEEP_CLOSE * apart, CLOSE * thickness));
     if (stays_apart(motion, at.vector, keep)) return;
     const SafeTime safe = safe_time(motion, keep);
-    ContactRow row{};
-    row.kind = pair.kind;
-    row.slots = pair.slots;
-    row.members = pair.members;
-    row.rules = &rules;
-    row.weight = closest_points(pair.kind, motion.at(safe.time)).weight;
-    row.normal = safe.vector.normalized();
-    row.gap = std::max(GIVEN * apart, keep);
-    rows.push_back(row);
+    rows.emplace_back(pair, closest_points(pair.kind, motion.at(safe.time)).weight,
+                      safe.vector.normalized(), std::max(GIVEN * apart, keep));
   });
-  std::sort(rows.begin(), rows.end());    // whatever the order of candidates
   for (const ContactRow &row : rows) masses.count(row);
 }
 
@@ -142,13 +134,13 @@ void ClothGuarantee::solve_velocities()
   mesh.halo.forward_velocities(0, velocity.data());
   masses.clear_impulses();
   for (const ContactRow &row : pushed) {
+    const ContactRules &rules = candidates.rules.of(row.with_obstacle);
     const Vec3 relative = row.relative(velocity);
     const double speed = relative.dot(row.normal);
     if (speed >= 0.0) continue;
-    const double mass = masses.of(row, mesh.w),
-                 step = -(1.0 + row.rules->restitution) * speed * mass;
+    const double mass = masses.of(row, mesh.w), step = -(1.0 + rules.restitution) * speed * mass;
     const Vec3 sliding = mass * (relative - speed * row.normal);
-    masses.apply(row, step * row.normal - clamp_length(sliding, row.rules->friction * step));
+    masses.apply(row, step * row.normal - clamp_length(sliding, rules.friction * step));
   }
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {

@@ -22,11 +22,17 @@ using namespace sphcloth;
 // too near gets back in one
 static constexpr double MAX_APPROACH = 1.0, RECOVERY = 0.1;
 
-// A pass moves loads from layer to layer.  Where so much of a thickness is missing at the start of
-// a step, its projections take more than one.
-static constexpr double MISSING = 0.2;
-static constexpr int MORE_PASSES = 5;
+// A pass moves loads from layer to layer.  Projections take more than one where more of a thickness
+// is missing at the start of a step, or would be at its end without contact, than `MISSING`, and
+// the most of them where it is all of it.
+static constexpr double MISSING = 0.1;
+static constexpr int MAX_PASSES = 40;
 static constexpr double NONE = -1.0;
+
+// Of the thickness: by which the two sides of a row may move past one another before their closest
+// points are found anew.  Until then its distance is that along its normal, to second order.  At
+// edges and vertices the normal leans, and turns; rows that lean too far do not count.
+static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.02, MAX_SLIDE_ASIDE = 0.05;
 
 void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
@@ -46,8 +52,8 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
-  passes = all < MISSING ? 1 : MORE_PASSES;
-  masses.share(mesh.halo);
+  passes = all < MISSING ? 1 : std::max(1, static_cast<int>(MAX_PASSES * std::min(all, 1.0)));
+  start_rows();
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
@@ -60,31 +66,59 @@ double ClothRows::find_rows()
 {
   double missing = 0.0;
   rows.clear();
+  details.clear();
   active.clear();
-  masses.begin(mesh.halo.n_slots());
   candidates.for_near(candidates.max_reach(), [&](const ClothPair &pair, const ClosestPoints &at) {
     const double distance = at.vector.norm();
     if (distance == 0.0) return;
-    ContactRow row{};
-    row.kind = pair.kind;
-    row.slots = pair.slots;
-    row.members = pair.members;
-    row.rules = &candidates.rules.of(pair.with_obstacle);
-    row.weight = at.weight;
-    row.normal = at.vector / distance;
-    const double thickness = row.rules->thickness;
-    row.gap = std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness);
-    row.awake_from = distance - row.gap;
-    if (!pair.joined) missing = std::max(missing, 1.0 - distance / thickness);
+    const double thickness = candidates.rules.of(pair.with_obstacle).thickness;
+    rows.emplace_back(
+        pair, at.weight, at.vector / distance,
+        std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness));
+    details.push_back({pair.members});
+    ContactRow &row = rows.back();
+    row.distance = distance;
+    const double ahead = std::min(distance, row.relative(mesh.end).dot(row.normal));
+    if (!pair.joined) missing = std::max(missing, 1.0 - ahead / thickness);
     if (!pair.with_obstacle && !pair.joined)
       mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
-    rows.push_back(row);
   });
-  std::sort(rows.begin(), rows.end());    // whatever the order of candidates
-  mesh.end = mesh.start;
-  for (const ContactRow &row : rows)
-    masses.count(row, share(row, {row.weight, row.relative(mesh.start)}));
   return missing;
+}
+
+// where vertices are at the start of the step, with masses as they are shared in it
+
+void ClothRows::start_rows()
+{
+  mesh.end = mesh.start;
+  masses.begin(mesh.halo.n_slots());
+  for (int k = 0; k < static_cast<int>(rows.size()); k++) {
+    ContactRow &row = rows[k];
+    row.share = share(k, {row.weight, row.distance * row.normal});
+    masses.count(row);
+  }
+  masses.share(mesh.halo);
+  awake_from.resize(rows.size());
+  for (std::size_t k = 0; k < rows.size(); k++) {
+    rows[k].mass = masses.of(rows[k], mesh.w_solver);
+    awake_from[k] = asleep(rows[k], rows[k].distance, 0.0);
+  }
+}
+
+double ClothRows::max_slide(const ContactRow &row) const
+{
+  const double share = row.share == 1.0 ? MAX_SLIDE
+      : row.share > 0.0                 ? MAX_SLIDE_LEANING
+                                        : MAX_SLIDE_ASIDE;
+  return share * rules_of(row).thickness;
+}
+
+// How far both sides may move before the row may push, or its closest points are found anew.
+
+double ClothRows::asleep(const ContactRow &row, double distance, double slid) const
+{
+  const double room = max_slide(row) - slid;
+  return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
 }
 
 void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
@@ -94,12 +128,8 @@ void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt
   substep_start = vertices;
   const double before = remaining;
   remaining -= dt;
-  for (const int k : active) {
-    rows[k].active = false;
-    rows[k].normal_correction = 0.0;
-    rows[k].friction_correction.setZero();
-  }
   active.clear();
+  masses.clear_loads();
   if (candidates.rules.cloth.restitution > 0.0) load_velocities(v);
   if (std::max(candidates.rules.cloth.friction, candidates.rules.obstacle.friction) == 0.0) return;
   from.resize(mesh.halo.n_slots());
@@ -118,11 +148,13 @@ void ClothRows::project_once(Vertex *displacement)
 {
   load_positions(displacement);
   masses.clear_impulses();
-  for (int k = 0; k < static_cast<int>(rows.size()); k++) {
-    if (rows[k].awake_from > 2.0 * path) continue;
+  awake.clear();
+  for (int k = 0; k < static_cast<int>(rows.size()); k++)
+    if (awake_from[k] <= 2.0 * path) awake.push_back(k);
+  for_ahead(awake, [this](int k) {
     project_normal(k);
-    if (rows[k].active && rows[k].rules->friction > 0.0) project_friction(rows[k]);
-  }
+    if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
+  });
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vec3 &impulse = masses.impulse[s];
@@ -150,49 +182,69 @@ void ClothRows::load_positions(const Vertex *displacement)
   path += std::sqrt(max_sq);
 }
 
-// From substep to substep the closest points turn little: where their direction turns round inside
-// both, one side has passed the other.
+// A row that sleeps would not push, and would keep its closest points: the answer does not depend
+// on what wakes it.
 
 void ClothRows::project_normal(int k)
+{
+  ContactRow &row = rows[k];
+  Vec3 vector = row.relative(mesh.end);
+  double slid = (vector - row.distance * row.normal).norm();
+  if (slid > max_slide(row)) {
+    vector = find_closest_points(k);
+    slid = 0.0;
+  }
+  const double distance = vector.dot(row.normal);
+  if (row.normal_correction == 0.0 && (distance >= row.gap || row.share == 0.0)) {
+    awake_from[k] = 2.0 * path + asleep(row, distance, slid);
+    return;
+  }
+  if (!row.active) {
+    if (rules_of(row).restitution > 0.0)
+      details[k].speed_before = row.relative(velocity).dot(row.normal);
+    row.active = true;
+    active.push_back(k);
+  }
+  mesh.counts.cloth_contacts++;
+  const double step = std::max((row.gap - distance) * row.mass, -row.normal_correction);
+  row.normal_correction += step;
+  masses.apply(row, step * row.normal);
+  masses.add_load(row, step);
+}
+
+// They turn little: where their direction turns round inside both, one side has passed the other.
+
+ClothRows::Vec3 ClothRows::find_closest_points(int k)
 {
   ContactRow &row = rows[k];
   const ClosestPoints at = closest_points(row.kind, row.of_slots(mesh.end));
   const double length = at.vector.norm();
   const bool passed = at.vector.dot(row.normal) < 0.0 && inside_both(row.kind, at);
-  const double distance = passed ? -length : length;
-  if (length > 0.0) row.normal = at.vector / distance;
-  if (row.normal_correction == 0.0 && distance >= row.gap) {
-    row.awake_from = 2.0 * path + distance - row.gap;
-    return;
-  }
-  const double counts = passed ? 1.0 : share(row, at);
-  if (counts == 0.0 && row.normal_correction == 0.0) return;
+  row.distance = passed ? -length : length;
+  if (length > 0.0) row.normal = at.vector / row.distance;
+  masses.add_load(row, -row.normal_correction);
   row.weight = at.weight;
-  if (!row.active) {
-    if (row.rules->restitution > 0.0) row.speed_before = row.relative(velocity).dot(row.normal);
-    row.active = true;
-    active.push_back(k);
-  }
-  mesh.counts.cloth_contacts++;
-  const double step = std::max((row.gap - distance) * masses.of(row, mesh.w_solver, counts),
-                               -row.normal_correction);
-  row.normal_correction += step;
-  masses.apply(row, step * row.normal);
+  masses.add_load(row, row.normal_correction);
+  row.share = passed ? 1.0 : share(k, at);
+  row.mass = masses.of(row, mesh.w_solver);
+  return at.vector;
 }
 
 // How much it counts: not where another pair of the same surfaces is nearer, continuously.  What
 // the two sides have in common does not count: where a cloth is folded it is always nearer.
 
-double ClothRows::share(const ContactRow &row, const ClosestPoints &at) const
+double ClothRows::share(int k, const ClosestPoints &at) const
 {
+  const ContactRow &row = rows[k];
+  const std::array<int, 2> &members = details[k].members;
   const auto &[p, q, a, b] = row.slots;
   if (row.kind == PairKind::POINT_TRIANGLE)
     return share_of_leaning(mesh.leaning_into_others(
-        row.members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, p));
+        members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, p));
   const double of_edges = share_of_edges(row.of_slots(mesh.end), at);
   if (of_edges == 0.0) return 0.0;
-  return of_edges * share_of_leaning(leaning_beside(row.members[0], -at.vector, {a, b})) *
-      share_of_leaning(leaning_beside(row.members[1], at.vector, {p, q}));
+  return of_edges * share_of_leaning(leaning_beside(members[0], -at.vector, {a, b})) *
+      share_of_leaning(leaning_beside(members[1], at.vector, {p, q}));
 }
 
 // into a triangle at an edge whose third vertex is none of the other side
@@ -215,24 +267,25 @@ double ClothRows::leaning_beside(int e, const Vec3 &from_nearest,
 
 // Coulomb friction against the sliding of this substep
 
-void ClothRows::project_friction(ContactRow &row)
+void ClothRows::project_friction(int k)
 {
+  const ContactRow &row = rows[k];
+  Vec3 &correction = details[k].friction_correction;
   Vec3 slip = row.relative(mesh.end) - row.relative(from);
   slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target = clamp_length(row.friction_correction - masses.of(row, mesh.w_solver) * slip,
-                                   row.rules->friction * row.normal_correction);
-  masses.apply(row, target - row.friction_correction);
-  row.friction_correction = target;
+  const Vec3 target =
+      clamp_length(correction - row.mass * slip, rules_of(row).friction * row.normal_correction);
+  masses.apply(row, target - correction);
+  correction = target;
 }
 
 void ClothRows::end_substep(Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
-  masses.share_by_load(mesh.halo, rows, active);
+  masses.share_loads(mesh.halo);
   load_velocities(v);
   masses.clear_impulses();
-  for (const int k : active)
-    if (rows[k].normal_correction > 0.0) solve_velocity(rows[k], dt);
+  for_ahead(active, [&](int k) { solve_velocity(k, dt); });
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vec3 &impulse = masses.impulse[s];
@@ -243,12 +296,23 @@ void ClothRows::end_substep(Vertex *v, double dt)
   }
 }
 
-void ClothRows::solve_velocity(const ContactRow &row, double dt)
+// and the row starts anew
+
+void ClothRows::solve_velocity(int k, double dt)
 {
-  const ContactMotion motion{row.relative(velocity), row.normal, row.speed_before,
-                             masses.by_load(row, mesh.w_solver)};
-  const ExchangedImpulse so_far{row.normal_correction / dt, row.friction_correction / dt};
-  masses.apply(row, contact_impulse(motion, so_far, row.rules->restitution, row.rules->friction));
+  ContactRow &row = rows[k];
+  const ContactRules &rules = rules_of(row);
+  if (row.normal_correction > 0.0) {
+    ContactMotion motion{row.relative(velocity), row.normal, 0.0,
+                         masses.by_load(row, mesh.w_solver)};
+    ExchangedImpulse so_far{row.normal_correction / dt};
+    if (rules.restitution > 0.0) motion.speed_before = details[k].speed_before;
+    if (rules.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
+    masses.apply(row, contact_impulse(motion, so_far, rules.restitution, rules.friction));
+  }
+  row.active = false;
+  row.normal_correction = 0.0;
+  if (rules.friction > 0.0) details[k].friction_correction.setZero();
 }
 
 void ClothRows::load_velocities(const Vertex *v)
@@ -270,5 +334,6 @@ void ClothRows::end_step()
 
 double ClothRows::memory_usage() const
 {
-  return masses.bytes() + bytes_of(rows, active, from, end_before, velocity, received);
+  return masses.bytes() +
+      bytes_of(rows, details, awake_from, awake, active, from, end_before, velocity, received);
 }

@@ -9,6 +9,7 @@
 #include "cloth/solver_coupling.h"
 #include "contact/cloth_candidates.h"
 #include "contact/contact_row.h"
+#include "core/util/simd.h"
 
 #include <vector>
 
@@ -39,8 +40,16 @@ class ClothRows : public SolverCoupling, protected Pointers {
   MovingTriangles &mesh;
   const MeshEdges &edges;
   ClothCandidates &candidates;
+  struct Detail {    // of a row
+    std::array<int, 2> members;    // see ClothPair
+    double speed_before = 0.0;    // along the normal
+    Vec3 friction_correction = Vec3::Zero();    // of this substep, mass times length
+  };
+
   std::vector<ContactRow> rows;
-  std::vector<int> active;    // rows in contact in this substep
+  std::vector<Detail> details;
+  std::vector<double> awake_from;    // of rows: path of vertices before which there is no contact
+  std::vector<int> awake, active;    // rows in this pass, and those in contact in this substep
   SplitMasses masses;
   std::vector<Vec3> from, end_before, velocity;    // vertices at the start of the substep
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
@@ -49,16 +58,33 @@ class ClothRows : public SolverCoupling, protected Pointers {
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
 
+  const ContactRules &rules_of(const ContactRow &row) const
+  {
+    return candidates.rules.of(row.with_obstacle);
+  }
   double find_rows();
+  void start_rows();
+  double max_slide(const ContactRow &) const;
+  double asleep(const ContactRow &, double distance, double slid) const;
   void project_once(sphcloth::Vertex *displacement);
   void load_positions(const sphcloth::Vertex *displacement);
   void load_velocities(const sphcloth::Vertex *v);
-  double share(const ContactRow &, const sphcloth::ClosestPoints &) const;
+  // rows are fetched from memory some ahead
+  template <class Visit> void for_ahead(const std::vector<int> &some, Visit visit) const
+  {
+    constexpr std::size_t AHEAD = 8;
+    for (std::size_t n = 0; n < some.size(); n++) {
+      if (n + AHEAD < some.size()) sphcloth::prefetch(rows[some[n + AHEAD]]);
+      visit(some[n]);
+    }
+  }
+  void project_normal(int row);
+  void project_friction(int row);
+  Vec3 find_closest_points(int row);
+  double share(int row, const sphcloth::ClosestPoints &) const;
   double leaning_beside(int edge, const Vec3 &from_nearest,
                         const std::array<int, 2> &other_side) const;
-  void project_normal(int row);
-  void project_friction(ContactRow &);
-  void solve_velocity(const ContactRow &, double dt);
+  void solve_velocity(int row, double dt);
 };
 
 }    // namespace LAMMPS_NS

@@ -15,25 +15,28 @@
 
 namespace LAMMPS_NS {
 
-struct ContactRow {
+// two cache lines of what is read in each pass; what is rarely read is kept elsewhere
+
+struct alignas(64) ContactRow {
   using Vec3 = Eigen::Vector3d;
 
-  sphcloth::PairKind kind;
   std::array<int, 4> slots;    // see ClothPair
-  std::array<int, 2> members;
-  const ContactRules *rules;
   std::array<double, 4> weight;
   Vec3 normal;    // from the second side to the first
+  double distance = 0.0;    // along it where weights were found
   double gap = 0.0;    // to be kept
-  double awake_from = 0.0;    // path of vertices before which there is no contact
-  bool active = false;    // in this substep
+  double share = 1.0;    // how much the row counts
+  double mass = 0.0;    // effective
   double normal_correction = 0.0;    // of this substep, mass times length
-  Vec3 friction_correction = Vec3::Zero();    // the same across the normal
-  double speed_before = 0.0;    // along the normal
+  sphcloth::PairKind kind;
+  bool with_obstacle = false;
+  bool active = false;    // in this substep
 
-  bool operator<(const ContactRow &other) const
+  ContactRow(const ClothPair &pair, const std::array<double, 4> &weight_, const Vec3 &normal_,
+             double gap_) :
+      slots(pair.slots), weight(weight_), normal(normal_), gap(gap_), kind(pair.kind),
+      with_obstacle(pair.with_obstacle)
   {
-    return kind != other.kind ? kind < other.kind : slots < other.slots;
   }
   // of the first side relative to the second
   Vec3 relative(const std::vector<Vec3> &of) const
@@ -57,9 +60,9 @@ class SplitMasses {
 
   void begin(int n_slots) { shares.assign(n_slots, Vec3::Zero()); }
   // the share of a row in a mass grows with its weight there, and with how much it counts at all
-  void count(const ContactRow &row, double counts = 1.0)
+  void count(const ContactRow &row)
   {
-    for (int k = 0; k < 4; k++) shares[row.slots[k]][0] += counts * std::fabs(row.weight[k]);
+    for (int k = 0; k < 4; k++) shares[row.slots[k]][0] += row.share * std::fabs(row.weight[k]);
   }
   // behind begin(); collective: rows of all ranks
   void share(VertexHalo &halo)
@@ -69,26 +72,26 @@ class SplitMasses {
   }
 
   // 0 if nothing can move; a row that was not counted counts itself
-  double of(const ContactRow &row, const std::vector<double> &inverse_mass,
-            double counts = 1.0) const
+  double of(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
     double inverse = 0.0;
     for (int k = 0; k < 4; k++) {
       const int s = row.slots[k];
       const double weight = std::fabs(row.weight[k]);
-      inverse += inverse_mass[s] * weight * std::max(counts * weight, shares[s][0]);
+      inverse += inverse_mass[s] * weight * std::max(row.share * weight, shares[s][0]);
     }
-    return inverse > 0.0 ? counts / inverse : 0.0;
+    return inverse > 0.0 ? row.share / inverse : 0.0;
   }
 
-  // The same by load, so that a row that hardly pushes hardly counts.  Collective.
-  void share_by_load(VertexHalo &halo, const std::vector<ContactRow> &rows,
-                     const std::vector<int> &active)
+  // The same by load, so that a row that hardly pushes hardly counts: what rows push more in a
+  // substep is added.  Sharing is collective.
+  void clear_loads() { loads.assign(shares.size(), Vec3::Zero()); }
+  void add_load(const ContactRow &row, double load)
   {
-    loads.assign(shares.size(), Vec3::Zero());
-    for (const int n : active)
-      for (int k = 0; k < 4; k++)
-        loads[rows[n].slots[k]][0] += rows[n].normal_correction * std::fabs(rows[n].weight[k]);
+    for (int k = 0; k < 4; k++) loads[row.slots[k]][0] += load * std::fabs(row.weight[k]);
+  }
+  void share_loads(VertexHalo &halo)
+  {
     halo.reverse_add(0, loads.data());
     halo.forward(0, loads.data());
   }

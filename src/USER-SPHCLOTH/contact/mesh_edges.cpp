@@ -13,6 +13,7 @@ using namespace LAMMPS_NS;
 void MeshEdges::rebuild()
 {
   const ClothTopology &cloth = mesh.mesh->topology();
+  const std::vector<tagint> tags_before = tags;
   tags.resize(mesh.halo.n_slots());
   index.resize(tags.size());
   obstacle.resize(tags.size());
@@ -22,6 +23,9 @@ void MeshEdges::rebuild()
     obstacle[s] = (atom->mask[i] & obstacle_bits) != 0;
     index[s] = cloth.index_of(tags[s]);
   }
+
+  if (triangles == mesh.triangles && tags == tags_before) return;
+  triangles = mesh.triangles;
 
   std::vector<std::array<int, 3>> sides;    // both ends, and the vertex opposite to them
   sides.reserve(3 * mesh.triangles.size());
@@ -71,5 +75,5 @@ bool MeshEdges::joined(int slot, int other) const
 
 double MeshEdges::memory_usage() const
 {
-  return sphcloth::bytes_of(edges, first, opposite, lowest, tags, obstacle, index);
+  return sphcloth::bytes_of(triangles, edges, first, opposite, lowest, tags, obstacle, index);
 }

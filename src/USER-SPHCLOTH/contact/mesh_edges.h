@@ -48,6 +48,7 @@ class MeshEdges : protected Pointers {
  private:
   const TriangleSet &mesh;
   const int obstacle_bits;
+  std::vector<std::array<int, 3>> triangles;    // that edges are of
   std::vector<tagint> tags;    // of slots
   std::vector<char> obstacle;
   std::vector<int> index;    // of slots, in the topology

@@ -53,6 +53,18 @@ template <class T> struct CacheLineAllocator {
 
 template <class T> using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
+// all lines of a record, which is read soon
+
+template <class Record> void prefetch(const Record &record)
+{
+#if defined(__GNUC__)
+  const char *const at = reinterpret_cast<const char *>(&record);
+  for (std::size_t k = 0; k < sizeof(Record); k += 64) __builtin_prefetch(at + k);
+#else
+  (void) record;
+#endif
+}
+
 template <class Vector> void give_back(Vector &v) { Vector().swap(v); }
 
 // Loops run over whole groups; what lies past the end must be readable and is ignored.

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Cuts a mesh into patches, and bounds their motion.
+
+#include "core/contact/mesh_patches.h"
+
+#include "core/geometry/buckets.h"
+#include "core/util/bytes.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace sphcloth;
+
+// vertices of a patch; what is left with fewer than the least joins another one
+static constexpr int SIZE = 32, LEAST = 8;
+
+template <class Visit> void MeshPatches::for_vertices(int p, Visit visit) const
+{
+  for (int n = first_member[p]; n < first_member[p + 1]; n++) visit(members[n]);
+  for (int n = first_foreign[p]; n < first_foreign[p + 1]; n++) visit(foreign[n]);
+}
+
+void MeshPatches::build(const Triangles &triangles, const std::vector<Vec3> &positions)
+{
+  assign(triangles, static_cast<int>(positions.size()));
+  find_foreign(triangles);
+  choose_anchors(positions);
+  start_from(positions);
+}
+
+// Patches grow vertex by vertex along triangles, each from beside the one before: Farhat, Computers
+// & Structures 28 (1988) 579.
+
+void MeshPatches::assign(const Triangles &triangles, int n_vertices)
+{
+  std::vector<int> first, at;    // triangles of a vertex
+  sort_into_buckets(
+      n_vertices,
+      [&](auto add) {
+        for (std::size_t t = 0; t < triangles.size(); t++)
+          for (const int s : triangles[t]) add(s, static_cast<int>(t));
+      },
+      first, at);
+  patch.assign(n_vertices, -1);
+  std::vector<int> grown, border;    // of this patch; and of all before, beside them
+  int n = 0;
+  for (int next = 0; next < n_vertices;) {
+    int seed = -1;
+    while (seed < 0 && !border.empty()) {
+      if (patch[border.back()] < 0) seed = border.back();
+      border.pop_back();
+    }
+    if (seed < 0) {
+      if (patch[next] >= 0) {
+        next++;
+        continue;
+      }
+      seed = next;
+    }
+    int beside = -1;    // a patch that this one borders on
+    grown = {seed};
+    patch[seed] = n;
+    for (std::size_t k = 0; k < grown.size(); k++)
+      for (int m = first[grown[k]]; m < first[grown[k] + 1]; m++)
+        for (const int s : triangles[at[m]]) {
+          if (patch[s] >= 0 && patch[s] < n) beside = patch[s];
+          if (patch[s] >= 0) continue;
+          if (grown.size() < SIZE) {
+            grown.push_back(s);
+            patch[s] = n;
+          } else
+            border.push_back(s);
+        }
+    if (beside >= 0 && grown.size() < LEAST)
+      for (const int s : grown) patch[s] = beside;
+    else
+      n++;
+  }
+  boxes.resize(n);
+  sort_into_buckets(
+      n,
+      [this](auto add) {
+        for (std::size_t s = 0; s < patch.size(); s++) add(patch[s], static_cast<int>(s));
+      },
+      first_member, members);
+}
+
+void MeshPatches::find_foreign(const Triangles &triangles)
+{
+  sort_into_buckets(
+      boxes.size(),
+      [&](auto add) {
+        for (const std::array<int, 3> &t : triangles)
+          for (const int s : t)
+            for (const int other : t)
+              if (patch[other] != patch[s]) add(patch[s], other);
+      },
+      first_foreign, foreign);
+}
+
+// far from one another, and not in a row
+
+void MeshPatches::choose_anchors(const std::vector<Vec3> &positions)
+{
+  anchors.resize(size());
+  for (int p = 0; p < size(); p++) {
+    std::array<int, 3> &at = anchors[p];
+    at.fill(members[first_member[p]]);
+    double farthest = 0.0, highest = 0.0;
+    for_vertices(p, [&](int s) {
+      const double distance = (positions[s] - positions[at[0]]).squaredNorm();
+      if (distance > farthest) at[1] = s;
+      farthest = std::max(farthest, distance);
+    });
+    const Vec3 line = positions[at[1]] - positions[at[0]];
+    for_vertices(p, [&](int s) {
+      const double height = line.cross(positions[s] - positions[at[0]]).squaredNorm();
+      if (height > highest) at[2] = s;
+      highest = std::max(highest, height);
+    });
+  }
+}
+
+// any axes that turn with the patch
+
+MeshPatches::Pose MeshPatches::pose_of(int p, const std::vector<Vec3> &positions) const
+{
+  Pose pose;
+  for (int n = first_member[p]; n < first_member[p + 1]; n++) pose.center += positions[members[n]];
+  pose.center /= static_cast<double>(first_member[p + 1] - first_member[p]);
+  const auto &[a, b, c] = anchors[p];
+  const Vec3 along = positions[b] - positions[a], up = along.cross(positions[c] - positions[a]);
+  const double length = along.norm(), height = up.norm();
+  if (!(height > 0.0)) return pose;
+  pose.axes.col(0) = along / length;
+  pose.axes.col(1) = up / height;
+  pose.axes.col(2) = pose.axes.col(0).cross(pose.axes.col(1));
+  return pose;
+}
+
+void MeshPatches::start_from(const std::vector<Vec3> &positions)
+{
+  then = positions;
+  poses_then.resize(size());
+  extent_then.resize(size());
+  for (int p = 0; p < size(); p++) {
+    poses_then[p] = pose_of(p, then);
+    boxes[p].setEmpty();
+    double extent_sq = 0.0;
+    for_vertices(p, [&](int s) {
+      boxes[p].extend(then[s]);
+      extent_sq = std::max(extent_sq, (then[s] - poses_then[p].center).squaredNorm());
+    });
+    extent_then[p] = std::sqrt(extent_sq);
+  }
+}
+
+void MeshPatches::measure(const std::vector<Vec3> &start, const std::vector<Vec3> &end)
+{
+  turned.resize(size());
+  moves.resize(size());
+  for (int p = 0; p < size(); p++) {
+    Turned &now = turned[p];
+    now.pose = pose_of(p, start);
+    now.turn = now.pose.axes * poses_then[p].axes.transpose();
+    const Vec3 shift = now.pose.center - now.turn * poses_then[p].center;
+    Motion &move = moves[p];
+    move.mean.setZero();
+    for (int n = first_member[p]; n < first_member[p + 1]; n++)
+      move.mean += end[members[n]] - start[members[n]];
+    move.mean /= static_cast<double>(first_member[p + 1] - first_member[p]);
+    double before_sq = 0.0, move_sq = 0.0;
+    for_vertices(p, [&](int s) {
+      before_sq = std::max(before_sq, (start[s] - now.turn * then[s] - shift).squaredNorm());
+      move_sq = std::max(move_sq, (end[s] - start[s] - move.mean).squaredNorm());
+    });
+    now.radius = std::sqrt(before_sq);
+    move.radius = std::sqrt(move_sq);
+  }
+}
+
+// Of the distance that both would have if they had moved with p as one body.  Where q has turned by
+// another angle a, its vertices depart by 2 sin(a/2) of their distance from its center, and the
+// Frobenius norm of the difference of both rotations is 2 sqrt(2) sin(a/2).
+
+double MeshPatches::approach_before(int p, int q) const
+{
+  const Turned &a = turned[p], &b = turned[q];
+  if (p == q) return 2.0 * a.radius;
+  const Vec3 apart = a.pose.center - b.pose.center,
+             apart_then = poses_then[p].center - poses_then[q].center;
+  return (apart - a.turn * apart_then).norm() + a.radius + b.radius +
+      (a.turn - b.turn).norm() * std::sqrt(0.5) * extent_then[q];
+}
+
+double MeshPatches::approach_of_any(double limit) const
+{
+  Vec3 mean_before = Vec3::Zero(), mean_move = Vec3::Zero();
+  for (int p = 0; p < size(); p++) {
+    mean_before += (turned[p].pose.center - poses_then[p].center) / size();
+    mean_move += moves[p].mean / size();
+  }
+  double longest = 0.0;
+  for (int p = 0; p < size(); p++) {
+    const Vec3 before = turned[p].pose.center - poses_then[p].center - mean_before;
+    const double turning =
+        (turned[p].turn - Eigen::Matrix3d::Identity()).norm() * std::sqrt(0.5) * extent_then[p];
+    const double stride = std::min((moves[p].mean - mean_move).norm() + moves[p].radius, limit);
+    longest = std::max(longest, before.norm() + turning + turned[p].radius + stride);
+  }
+  return 2.0 * longest;
+}
+
+double MeshPatches::bytes() const
+{
+  return bytes_of(first_member, members, patch, first_foreign, foreign, anchors, boxes, then,
+                  poses_then, extent_then, turned, moves);
+}

@@ -51,7 +51,8 @@ class ClothCandidates : protected Pointers {
   // at most `max_approach` in this step.
   void update(double max_approach = std::numeric_limits<double>::infinity());
 
-  // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest points at the start of the step).
+  // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest
+  // points at the start of the step).
   template <class Visit> void for_near(double reach, Visit visit) const
   {
     for (const PatchPair &both : near) {

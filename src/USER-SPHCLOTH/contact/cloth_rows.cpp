@@ -30,9 +30,9 @@ static constexpr int MAX_PASSES = 40;
 static constexpr double NONE = -1.0;
 
 // Of the thickness: by which the two sides of a row may move past one another before their closest
-// points are found anew.  Until then its distance is that along its normal, to second order.  At
-// edges and vertices the normal leans, and turns; rows that lean too far do not count.
-static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.02, MAX_SLIDE_ASIDE = 0.05;
+// points are found anew.  Until then its distance is that along its normal, to second order.  Where
+// these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not count.
+static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05;
 
 void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
@@ -107,9 +107,9 @@ void ClothRows::start_rows()
 
 double ClothRows::max_slide(const ContactRow &row) const
 {
-  const double share = row.share == 1.0 ? MAX_SLIDE
-      : row.share > 0.0                 ? MAX_SLIDE_LEANING
-                                        : MAX_SLIDE_ASIDE;
+  const double share = row.share == 0.0 ? MAX_SLIDE_ASIDE
+      : row.is_inside_both()            ? MAX_SLIDE
+                                        : MAX_SLIDE_LEANING;
   return share * rules_of(row).thickness;
 }
 

@@ -21,7 +21,10 @@ from sphcloth.log import ThermoTable
 EXAMPLES = Path(__file__).parents[1] / "examples"
 TINY = {
     name: ("tiny", ["--size", "tiny"])
-    for name in ("cloth_on_water", "curtain", "hammock", "pour", "shower", "two_resolutions")
+    for name in (
+        *("chair", "cloth_on_water", "curtain", "hammock", "pour", "shower", "stack", "towel"),
+        "two_resolutions",
+    )
 }
 RUNS = {**TINY, "banner": ("", ["--set", "t_end=1.0", "--set", "frames=10"])}
 PLACE = "Loaded 1 plugins from"  # a folder of this machine

@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -112,16 +113,66 @@ def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):
     assert summary["compressed"] == pytest.approx(dense)
 
 
-def test_the_shirt_is_what_the_commands_of_its_page_make(tmp_path):
-    folder = EXAMPLES / "shower"
-    page = (folder / "README.md").read_text()
-    commands = re.search(r"^```sh\n(python make_shirt.*?)^```$", page, re.MULTILINE | re.DOTALL)[1]
-    shutil.copy(folder / "make_shirt.py", tmp_path)
+def layers(example: str, out: Path) -> tuple[dict, ThermoTable]:
+    """Run an example of cloth that meets cloth; what no such example may lack."""
+    summary, log = run(example, out)
+    assert summary["layers"]
+    assert summary["crossed"] == 0
+    if find_spec("ipctk"):
+        assert summary["intersections"] == 0
+    assert log["v_contacts"][-1] > 0
+    assert log["v_cloth_contacts"][-1] > 0
+    return summary, log
+
+
+def test_a_towel_is_wrung(tmp_path):
+    summary, log = layers("towel", tmp_path)
+    assert summary["poured"] == 50
+    # water stays in it until it is wrung, and leaves it then
+    before, after = log["Time"] < 0.6, log["Time"] > 0.6
+    assert log["v_drained"][before].max() < 25
+    assert log["v_drained"][after].max() > log["v_drained"][before].max()
+
+
+def test_a_shirt_falls_on_a_chair_under_a_shower(tmp_path):
+    summary, _ = layers("chair", tmp_path)
+    assert summary["poured"] == 90
+    frames = Trajectory(tmp_path / "chair.lammpstrj", tmp_path / "log.lammps")
+    shirt, last = frames[0].types == 1, frames[-1]
+    # the seat holds it
+    assert last.positions[last.types == 1].min(axis=0)[2] > 0.2
+    assert shirt.sum() == (last.types == 1).sum()
+
+
+def test_a_stack_of_sheets_catches_a_jet(tmp_path):
+    summary, _ = layers("stack", tmp_path)
+    assert summary["poured"] == 100
+    frames = Trajectory(tmp_path / "stack.lammpstrj", tmp_path / "log.lammps")
+    sheets = ClothMesh.read(tmp_path / "stack.data")
+    last = sheets.positions(frames[-1])
+    heights = [last[sheets.pieces == piece, 2].mean() for piece in range(3)]
+    assert heights == sorted(heights, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("example", "mesh", "scripts"),
+    [
+        ("shower", "shirt", ["shower/make_shirt.py"]),
+        ("chair", "chair", ["shower/make_shirt.py", "chair/make_chair.py"]),
+    ],
+)
+def test_the_mesh_is_what_the_commands_of_its_page_make(tmp_path, example, mesh, scripts):
+    kept_in, folder = EXAMPLES / example, tmp_path / example
+    page = (kept_in / "README.md").read_text()
+    commands = re.search(r"^```sh\n(python [^\n]*make.*?)^```$", page, re.MULTILINE | re.DOTALL)[1]
+    for script in scripts:
+        (tmp_path / script).parent.mkdir(exist_ok=True)
+        shutil.copy(EXAMPLES / script, tmp_path / script)
     for line in commands.splitlines():
         program, *words = shlex.split(line)
-        subprocess.run([SPHCLOTH.with_name(program), *words], cwd=tmp_path, check=True)
-    assert (tmp_path / "shirt.groups").read_text() == (folder / "shirt.groups").read_text()
-    made, kept = (numbers((place / "shirt.data").read_text()) for place in (tmp_path, folder))
+        subprocess.run([SPHCLOTH.with_name(program), *words], cwd=folder, check=True)
+    assert (folder / f"{mesh}.groups").read_text() == (kept_in / f"{mesh}.groups").read_text()
+    made, kept = (numbers((place / f"{mesh}.data").read_text()) for place in (folder, kept_in))
     assert np.allclose(made, kept, rtol=0, atol=2e-5)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from sphcloth import metrics, plots
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.log import ThermoTable
+from sphcloth.metrics.intersections import REMEDY, most_met
 from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
 from sphcloth.rendering.movie import write_pictures
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
@@ -21,6 +23,7 @@ from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame, Trajectory
 
 SHEET_PICTURES = 6
+CONTACT = "cloth/contact"
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,9 @@ class Summary:
         crossed: particles that went through the sheet, from the dump alone; None of a dump with a
             single frame.
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
+        layers: whether cloth meets cloth (``cloth yes``).
+        intersections: pairs of an edge and a triangle, of cloth and cloth or of cloth and obstacle,
+            that meet in the frame with most of them; None without ipctk, or without layers.
         mass_defect: largest abs(poured - drained - present) at any time.
         deviation: largest abs(rho - rho0) / rho0 under pressure.
         compressed: share of the water, of all frames, that is denser than at rest by more than 1 %.
@@ -55,6 +61,8 @@ class Summary:
     spilled: int | None
     crossed: int | None
     crossing_steps: list[int]
+    layers: bool
+    intersections: int | None
     mass_defect: int | None
     deviation: float | None
     compressed: float | None
@@ -68,10 +76,12 @@ class Summary:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing crossed the sheet and no particle is unaccounted for.
+        """Whether nothing crossed the sheet, no cloth meets cloth, and no particle is missing.
 
-        A scene of cloth alone has neither to show.
+        A scene of cloth alone has no particles to show.
         """
+        if self.intersections:
+            return False
         return self.on_sheet is None or (self.crossed == 0 and self.mass_defect == 0)
 
     def write(self, path: Path) -> None:
@@ -99,6 +109,11 @@ class Summary:
             ("particle updates", text(self.particle_updates, "{:.3e}")),
             ("particle updates per second", text(self.updates_per_second, "{:.3e}")),
         ]
+        if self.layers:
+            met = "edges of cloth through triangles"
+            without = f"not looked for: {REMEDY}"
+            seen = without if self.intersections is None else _must_be_zero(self.intersections)
+            rows.insert(5, (met, seen))
         if self.on_sheet is None:
             # a scene of cloth alone: what is not there says nothing
             rows = [row for row in rows if "n/a" not in row[1]]
@@ -130,6 +145,8 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     poured = _last_count(table, "v_poured")
     can_count = "v_updates" in table or "v_fluid" in table
     updates = metrics.particle_updates(table) if can_count else None
+    evidence = Evidence.of_log(folder / "log.lammps")
+    layers = any(fix.value("cloth", "no") == "yes" for fix in evidence.commands.styled(CONTACT))
     return Summary(
         time=float(table["Time"][-1]),
         steps=int(table["Step"][-1] - table["Step"][0]),
@@ -138,6 +155,8 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         spilled=None if None in (poured, water.on_sheet) else poured - water.on_sheet,
         crossed=water.crossed,
         crossing_steps=water.crossing_steps,
+        layers=layers,
+        intersections=_intersections(scene_roles, trajectory) if layers else None,
         mass_defect=metrics.mass_balance(table) if can_balance else None,
         deviation=_largest(table, "v_deviation"),
         compressed=water.compressed,
@@ -147,7 +166,7 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
         pictures=[] if frames is None else draw(trajectory, scene_roles, table, folder, frames),
         versions=versions(),
-        unused=unused(Evidence.of_log(folder / "log.lammps")),
+        unused=unused(evidence),
     )
 
 
@@ -249,6 +268,13 @@ def draw(
     plots.contact_sheet([pictures[place] for place in shown], captions, sheet)
     plots.plot_history(table, history)
     return [str(path) for path in (sheet, history, *pictures)]
+
+
+def _intersections(scene_roles: SceneRoles, trajectory: Trajectory) -> int | None:
+    """Return the most edges through triangles in a frame; None without ipctk, which finds them."""
+    if scene_roles.mesh is None or find_spec("ipctk") is None:
+        return None
+    return most_met(scene_roles.mesh, scene_roles.cloth, trajectory)
 
 
 def _last_count(table: ThermoTable, column: str) -> int | None:

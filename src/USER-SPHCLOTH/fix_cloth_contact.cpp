@@ -63,7 +63,7 @@ FixClothContact::~FixClothContact()
 int FixClothContact::setmask()
 {
   return PRE_EXCHANGE | POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
-      (impulses.empty() ? 0 : PRE_REVERSE);
+      (impulses.empty() ? 0 : PRE_REVERSE) | (options.untangle ? PRE_NEIGHBOR : 0);
 }
 
 void FixClothContact::init()
@@ -110,15 +110,15 @@ void FixClothContact::init()
   ghosts.require(needed, wanted);
 }
 
-// Without water the group is that of the cloth.
+// Without water the group is that of the cloth.  An empty one is that of water to come.
 
 void FixClothContact::check_group(const std::vector<FixPBDCloth *> &cloths)
 {
-  int mine = 0, any = 0;
+  int mine[2] = {0, 0}, any[2];    // vertices, and other atoms
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !(atom->mask[i] & vertex_bits)) mine = 1;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  particle_bits = options.cloth_meets_cloth && !any ? 0 : groupbit;
+    if (atom->mask[i] & groupbit) mine[atom->mask[i] & vertex_bits ? 0 : 1] = 1;
+  MPI_Allreduce(mine, any, 2, MPI_INT, MPI_MAX, world);
+  particle_bits = options.cloth_meets_cloth && any[0] && !any[1] ? 0 : groupbit;
   for (FixPBDCloth *cloth : cloths)
     if (particle_bits && share_atoms(atom, groupbit, cloth->groupbit, world))
       error->all(FLERR,
@@ -227,7 +227,7 @@ void FixClothContact::setup_post_neighbor()
   if (rules.sides) find_sheets();
   post_neighbor();
   for_all_surfaces([](ContactSurface &surface) { surface.stabilization.warn_of_too_near(); });
-  if (cloth_with_cloth) cloth_with_cloth->check_start();
+  if (cloth_with_cloth) cloth_with_cloth->check_start(options.untangle);
 }
 
 void FixClothContact::find_sheets()

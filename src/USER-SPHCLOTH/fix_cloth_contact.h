@@ -39,6 +39,10 @@ class FixClothContact : public Fix, public SideSource {
   void init() override;
   void initial_integrate(int) override;
   void pre_exchange() override;
+  void setup_pre_neighbor() override
+  {
+    if (options.untangle && cloth_with_cloth) cloth_with_cloth->untangle();
+  }
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void post_integrate() override;

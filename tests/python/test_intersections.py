@@ -12,7 +12,7 @@ from conftest import make_frame, square_sheet
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import intersections
-from sphcloth.metrics.intersections import Intersections, inspect
+from sphcloth.metrics.intersections import Intersections, inspect, most_met
 from sphcloth.trajectory import Frame
 
 pytest.importorskip("ipctk", reason="pip install 'sphcloth[oracle]'")
@@ -156,3 +156,20 @@ def test_without_the_toolkit_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(intersections, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"pip install 'sphcloth\[oracle\]'"):
         Intersections(TWO, 6)
+
+
+def test_the_frame_with_most_edges_through_triangles_counts() -> None:
+    """Obstacles, which may come first, do not meet one another."""
+    mesh = ClothMesh(np.arange(1, 10), np.arange(9).reshape(3, 3))
+    # two obstacles that meet, and cloth that leaves the first of them
+    frames = [
+        open_frame(n, np.concatenate([FLAT, UPRIGHT, moved(0.05, 0.05, height)]))
+        for n, height in enumerate([0.9, 0.2, -0.9])
+    ]
+    cloth = np.array([False, False, True])
+    oracle = Intersections(np.arange(9).reshape(3, 3), 9)
+    counts = [oracle.count(frame.positions) for frame in frames]
+    assert counts[0] == counts[2] == 2
+    assert counts[1] > 2
+    assert most_met(mesh, cloth, frames) == counts[1] - 2
+    assert most_met(mesh, cloth, frames[::2]) == 0

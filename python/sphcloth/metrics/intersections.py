@@ -215,6 +215,25 @@ def inspect(
     )
 
 
+def most_met(mesh: ClothMesh, cloth: NDArray[np.bool_], frames: Iterable[Frame]) -> int:
+    """Return the number of edges and triangles that meet in the frame with most of such pairs.
+
+    Args:
+        mesh: of cloth and obstacles.
+        cloth: which of its triangles are cloth, shape (T,); others do not meet one another.
+        frames: of a run.
+
+    Raises:
+        UserError: ipctk is not installed.
+    """
+    moving, resting = np.unique(mesh.triangles[cloth]), np.unique(mesh.triangles[~cloth])
+    order = np.concatenate([moving, np.setdiff1d(resting, moving)])
+    place = np.empty(len(mesh.ids), np.int64)
+    place[order] = np.arange(len(order))
+    oracle = Intersections(place[mesh.triangles], len(order), len(moving))
+    return max((oracle.count(unwrapped(mesh, frame)[order]) for frame in frames), default=0)
+
+
 def unwrapped(mesh: ClothMesh, frame: Frame) -> NDArray[np.float64]:
     """Return the vertices' positions without periodic wraps, shape (V, 3).
 

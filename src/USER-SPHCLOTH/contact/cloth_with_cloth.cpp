@@ -6,6 +6,8 @@
 #include "atom.h"
 #include "comm.h"
 #include "contact/tangles.h"
+#include "contact/untangle.h"
+#include "domain.h"
 #include "error.h"
 
 #include <algorithm>
@@ -49,11 +51,42 @@ void ClothWithCloth::rebuild()
   if (coupling) coupling->rebuild();
 }
 
-void ClothWithCloth::check_start()
+// Vertices that move far bring new ghosts, and these may bring new tangles.
+
+void ClothWithCloth::untangle()
+{
+  constexpr int MAX_ROUNDS = 3;
+  for (int round = 0; round < MAX_ROUNDS; round++) {
+    triangles.rebuild(candidates.rules.max_thickness());
+    edges.rebuild();
+    if (!LAMMPS_NS::untangle(lmp, triangles, edges, candidates.rules.cloth_meets_cloth,
+                             0.5 * candidates.rules.max_thickness()))
+      return;
+    move_to_owners();
+  }
+}
+
+// as before a list build
+
+void ClothWithCloth::move_to_owners() const
+{
+  if (domain->triclinic) domain->x2lamda(atom->nlocal);
+  domain->pbc();
+  comm->exchange();
+  comm->borders();
+  if (domain->triclinic) domain->lamda2x(atom->nlocal + atom->nghost);
+}
+
+void ClothWithCloth::check_start(bool untangled)
 {
   triangles.load_positions();
   if (candidates.rules.cloth_meets_cloth) check_heights();
-  check_tangles(lmp, triangles, edges, candidates.rules.cloth_meets_cloth);
+  check_tangles(lmp, triangles, edges, candidates.rules.cloth_meets_cloth,
+                untangled
+                    ? fmt::format("'untangle yes' has not parted them in {} passes: place the "
+                                  "cloths and obstacles apart",
+                                  MAX_PASSES_OF_UNTANGLING)
+                    : "place the cloths and obstacles apart, or add 'untangle yes'");
   candidates.update();
   warn_of_too_near();
 }

@@ -35,9 +35,12 @@ class ClothWithCloth : protected Pointers {
   const std::vector<SolverCoupling *> &couplings() const { return parts; }
 
   void rebuild();    // after each list build
-  // At the start of a run, behind it, collective.  Errors: a thickness above the height of
-  // a triangle; edges that pass through triangles.
-  void check_start();
+  // Before the first list build of a run, collective: moves vertices until no edge passes through a
+  // triangle, and then atoms to their ranks.
+  void untangle();
+  // At the start of a run, behind the list build, collective.  Errors: a thickness above the height
+  // of a triangle; edges that pass through triangles.
+  void check_start(bool untangled);
 
   bool resolve_collisions() { return guarantee.resolve_collisions(); }
 
@@ -53,6 +56,7 @@ class ClothWithCloth : protected Pointers {
   std::unique_ptr<JoinedCoupling> coupling;    // the same
   std::vector<SolverCoupling *> parts;
 
+  void move_to_owners() const;
   void check_heights() const;
   void warn_of_too_near() const;
 };

@@ -30,7 +30,7 @@ void ContactOptions::read(ArgReader &args)
     else if (!read_of_cloth(args, keyword))
       args.unknown(keyword,
                    "friction, restitution, sides, wall, obstacle, cloth, cloth/thickness, "
-                   "cloth/friction");
+                   "cloth/friction, untangle");
   }
   complete_rules();
 }
@@ -43,6 +43,8 @@ bool ContactOptions::read_of_cloth(ArgReader &args, const std::string &keyword)
     cloth_rules.thickness = args.positive(keyword);
   else if (keyword == "cloth/friction")
     cloth_rules.friction = args.at_least(keyword, 0.0);
+  else if (keyword == "untangle")
+    untangle = args.choice(keyword, {"no", "yes"});
   else
     return false;
   return true;
@@ -64,6 +66,10 @@ void ContactOptions::complete_rules()
   if (given && !cloth_meets_cloth)
     error->all(FLERR,
                "{}: cloth/thickness and cloth/friction have no effect without 'cloth yes': add it",
+               owner);
+  if (untangle && !cloth_meets_cloth && obstacle_groups.empty())
+    error->all(FLERR,
+               "{}: 'untangle yes' has no effect without 'cloth yes' or an obstacle: add one",
                owner);
   if (cloth_rules.thickness == NOT_GIVEN) cloth_rules.thickness = rules.thickness;
   if (cloth_rules.friction == NOT_GIVEN) cloth_rules.friction = rules.friction;

@@ -18,6 +18,7 @@ class ContactOptions : protected Pointers {
  public:
   ContactRules rules, cloth_rules;    // of particles and obstacles, and of cloth with cloth
   bool cloth_meets_cloth = false;
+  bool untangle = false;    // what passes through cloth at the start of a run
   bool walls = false;    // meshes complete the kernel of the fluid
   std::vector<int> obstacle_groups;
 

@@ -4,11 +4,8 @@
 #include "contact/tangles.h"
 
 #include "comm.h"
-#include "core/contact/edge_through_triangle.h"
-#include "core/geometry/box_grid.h"
 #include "error.h"
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -40,38 +37,24 @@ struct Tangles {
 
 Tangles find_tangles(const MovingTriangles &mesh, const MeshEdges &edges, bool cloth_meets_cloth)
 {
-  std::vector<Box> boxes(mesh.triangles.size());
-  for (std::size_t t = 0; t < boxes.size(); t++)
-    for (const int s : mesh.triangles[t]) boxes[t].extend(mesh.start[s]);
-  BoxGrid grid;
-  grid.build(boxes);
   Tangles found;
-  for (std::size_t e = 0; e < edges.edges.size(); e++) {
-    if (mesh.halo.is_ghost(edges.vertex_of_lowest(static_cast<int>(e)))) continue;
+  for_each_tangle(mesh, edges, cloth_meets_cloth, [&](int e, int t) {
     const auto &[p, q] = edges.edges[e];
-    Box box(mesh.start[p]);
-    box.extend(mesh.start[q]);
-    grid.query(box, [&](int t) {
-      const auto &[a, b, c] = mesh.triangles[t];
-      if (edges.is_obstacle(p) ? edges.is_obstacle(a) : !edges.is_obstacle(a) && !cloth_meets_cloth)
-        return;
-      if (p == a || p == b || p == c || q == a || q == b || q == c) return;
-      const std::vector<Vec3> &x = mesh.start;
-      if (!passes_through(x[p], x[q], x[a], x[b], x[c])) return;
-      const Vec3 point = point_of_passing(x[p], x[q], x[a], x[b], x[c]);
-      Tangle one{{}, {point[0], point[1], point[2]}};
-      const int slots[5] = {p, q, a, b, c};
-      for (int k = 0; k < 5; k++) one.ids[k] = static_cast<double>(edges.tag(slots[k]));
-      found.add(one);
-    });
-  }
+    const auto &[a, b, c] = mesh.triangles[t];
+    const std::vector<Vec3> &x = mesh.start;
+    const Vec3 point = point_of_passing(x[p], x[q], x[a], x[b], x[c]);
+    Tangle one{{}, {point[0], point[1], point[2]}};
+    const int slots[5] = {p, q, a, b, c};
+    for (int k = 0; k < 5; k++) one.ids[k] = static_cast<double>(edges.tag(slots[k]));
+    found.add(one);
+  });
   return found;
 }
 
 }    // namespace
 
 void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const MeshEdges &edges,
-                              bool cloth_meets_cloth)
+                              bool cloth_meets_cloth, const std::string &remedy)
 {
   const Tangles mine = find_tangles(mesh, edges, cloth_meets_cloth);
   constexpr int SIZE = sizeof(Tangles) / sizeof(double);
@@ -93,7 +76,6 @@ void LAMMPS_NS::check_tangles(LAMMPS *lmp, const MovingTriangles &mesh, const Me
   }
   if (count > 0.0)
     lmp->error->all(FLERR,
-                    "{}: cloth starts tangled, {:.0f} edges pass through triangles: {}; place the "
-                    "cloths and obstacles apart",
-                    mesh.label, count, examples);
+                    "{}: cloth starts tangled, {:.0f} edges pass through triangles: {}; {}",
+                    mesh.label, count, examples, remedy);
 }

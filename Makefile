@@ -140,10 +140,11 @@ docs: $(VENV)/installed
 	rm -rf build/reference
 	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/docs
 
-# LAMMPS of its sources, with SPHCLOTH as a plugin and as a package: half an hour on two cores.
-# LAMMPS_SOURCE=DIR names a tree; otherwise apt-get brings one
+# LAMMPS of its sources, with SPHCLOTH as a plugin and as a package.  LAMMPS_SOURCE=DIR names a tree;
+# otherwise apt-get brings one.  ROUTES=plugin,openmpi,package,make is all that there is
+ROUTES ?= plugin,package
 source-check: $(VENV)/installed
-	$(BIN)/python tests/source_check.py --jobs $(WORKERS)
+	$(BIN)/python tests/source_check.py --jobs $(WORKERS) --routes $(ROUTES)
 
 # the tests of core/ and a plugin for aarch64, compiled here and run under emulation
 arm-check: $(VENV)/installed

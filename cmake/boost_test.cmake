@@ -16,7 +16,7 @@ function(add_cases program prefix)
   set(_tests "${CMAKE_CURRENT_BINARY_DIR}/${program}_cases.cmake")
   add_custom_command(TARGET ${program} POST_BUILD
     COMMAND "${CMAKE_COMMAND}" "-DPROGRAM=$<TARGET_FILE:${program}>" "-DPREFIX=${prefix}"
-      "-DTESTS=${_tests}" -P "${SPHCLOTH_ROOT}/cmake/list_cases.cmake"
+      "-DEMULATOR=${CMAKE_CROSSCOMPILING_EMULATOR}" "-DTESTS=${_tests}" -P "${SPHCLOTH_ROOT}/cmake/list_cases.cmake"
     VERBATIM)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${_tests}")
 endfunction()

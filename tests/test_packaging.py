@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import rattler_build
 import yaml
 
 from sphcloth.plugin import WHEELS
@@ -16,7 +17,8 @@ from sphcloth.plugin import WHEELS
 ROOT = Path(__file__).parents[1]
 SPACK = ROOT / "packaging/spack/packages/sphcloth/package.py"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-CONDA = yaml.safe_load((ROOT / "packaging/conda/recipe.yaml").read_text())
+RECIPE = ROOT / "packaging/conda/recipe.yaml"
+CONDA = yaml.safe_load(RECIPE.read_text())
 CMAKE = "\n".join(
     path.read_text() for path in [ROOT / "CMakeLists.txt", *(ROOT / "cmake").glob("*.cmake")]
 )
@@ -47,6 +49,18 @@ def test_conda_installs_what_pip_does():
     assert names(CONDA["requirements"]["run"]) == names(PROJECT["project"]["dependencies"])
     assert CONDA["context"]["version"] == PROJECT["project"]["version"]
     assert int(CONDA["context"]["release"]) in WHEELS
+
+
+def test_the_builder_of_conda_packages_understands_the_recipe():
+    """It fills in the names of the recipe and finds no field that it does not know."""
+    recipe = rattler_build.Stage0Recipe.from_file(str(RECIPE))
+    chosen = rattler_build.VariantConfig({"cxx_compiler": ["gxx"], "python": ["3.12"]})
+    (variant,) = recipe.render(chosen)
+    filled = variant.recipe.to_dict()
+    assert filled["package"] == {"name": "sphcloth", "version": PROJECT["project"]["version"]}
+    assert "gxx_linux-64" in filled["requirements"]["build"]
+    assert "lammps ==2024.8.29" in filled["requirements"]["run"]
+    assert "${{" not in str(filled)
 
 
 def test_options_of_recipes_are_those_of_cmake():

@@ -83,9 +83,36 @@ def stubs(folder: Path, release: int) -> None:
             template <class... Args> struct format_string { format_string(const char *) {} };
             template <class F, class... Args> std::string format(F, Args &&...) { return {}; }
             }""",
+        "force.h": """#pragma once
+            #include <map>
+            #include <string>
+            namespace LAMMPS_NS {
+            struct LAMMPS; struct Pair; struct Bond; struct Dihedral;
+            template <class Style> using Creators = std::map<std::string, Style *(*)(LAMMPS *)>;
+            struct Force {
+              Creators<Pair> *pair_map; Creators<Bond> *bond_map; Creators<Dihedral> *dihedral_map;
+            };
+            }""",
+        "modify.h": """#pragma once
+            #include <map>
+            #include <string>
+            namespace LAMMPS_NS {
+            struct LAMMPS; struct Fix; struct Compute;
+            template <class Style>
+            using CreatorsWithArgs = std::map<std::string, Style *(*)(LAMMPS *, int, char **)>;
+            struct Modify {
+              CreatorsWithArgs<Fix> *fix_map; CreatorsWithArgs<Compute> *compute_map;
+            };
+            }""",
+        "input.h": """#pragma once
+            #include "force.h"
+            namespace LAMMPS_NS {
+            struct Command; struct Input { Creators<Command> *command_map; };
+            }""",
         "pair.h": "#pragma once\nnamespace LAMMPS_NS { struct Pair { int comm_forward; }; }",
         "lammps.h": "#pragma once\n"
-        "namespace LAMMPS_NS { struct Update; struct LAMMPS { Update *update; }; }",
+        "namespace LAMMPS_NS { struct Update; struct Force; struct Modify; struct Input;\n"
+        "struct LAMMPS { Update *update; Force *force; Modify *modify; Input *input; }; }",
         "update.h": """#pragma once
             #include <map>
             #include <string>
@@ -104,8 +131,13 @@ def stubs(folder: Path, release: int) -> None:
             #include "lammps_util/lammps_version.h"
             using namespace LAMMPS_NS;
             struct Style {{ {REINITFLAG[release]} }};
-            void use(Domain *domain, double *d, Comm *comm, Pair *pair, Style *style)
+            struct Plugin {{
+              const char *style, *name;
+              struct {{ void *(*v1)(void *); void *(*v2)(void *, int, char **); }} creator;
+            }};
+            void use(Domain *domain, double *d, Comm *comm, Pair *pair, Style *style, LAMMPS *lmp)
             {{
+              release::add_to_each_instance(lmp, Plugin{{"pair", "name", {{}}}});
               release::minimum_image(domain, d);
               release::forward_comm(comm, pair, 2);
               release::not_for_fix_adapt(style);

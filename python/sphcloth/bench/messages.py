@@ -106,10 +106,11 @@ class Counter:
         """Return what a rank sent in a whole run, and how many ghosts it had in the end."""
         for old in self.folder.glob("sent.*"):
             old.unlink()
-        launcher, *rest = lammps_on(ranks)
+        command = lammps_on(ranks)
+        options = command.index("-n")
         counted = ["-genv", "LD_PRELOAD", str(self.library)]
         counted += ["-genv", "SPHCLOTH_MESSAGES", str(self.folder / "sent")]
-        log = self.script.run([launcher, *counted, *rest], variables)
+        log = self.script.run([*command[:options], *counted, *command[options:]], variables)
         files = sorted(self.folder.glob("sent.*"))
         if len(files) != ranks:
             raise UserError(

@@ -7,13 +7,17 @@
 
 #include "comm.h"
 #include "domain.h"
+#include "force.h"
+#include "input.h"
 #include "lammps.h"
+#include "modify.h"
 #include "pair.h"
 #include "pointers.h"
 #include "update.h"
 
 #include <cstdio>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #ifndef SPHCLOTH_LAMMPS_VERSION
@@ -78,6 +82,25 @@ template <class RunStyle> void add_run_style(LAMMPS *lmp, const char *name)
   (*lmp->update->integrate_map)[name] = [](LAMMPS *lammps, int narg, char **arg) -> Integrate * {
     return new RunStyle(lammps, narg, arg);
   };
+}
+
+// Before 22 Jul 2025 LAMMPS registers the styles of a plugin in the first instance that loads it,
+// not in others of the same process, but each instance creates those that it finds in its maps.
+
+template <class Plugin> void add_to_each_instance(LAMMPS *lmp, const Plugin &plugin)
+{
+  if (VERSION >= 20250722) return;
+  const std::string style = plugin.style, name = plugin.name;
+  const auto add = [&name](auto *map, auto create) {
+    using Creator = typename std::remove_pointer_t<decltype(map)>::mapped_type;
+    (*map)[name] = reinterpret_cast<Creator>(create);
+  };
+  if (style == "pair") add(lmp->force->pair_map, plugin.creator.v1);
+  if (style == "bond") add(lmp->force->bond_map, plugin.creator.v1);
+  if (style == "dihedral") add(lmp->force->dihedral_map, plugin.creator.v1);
+  if (style == "fix") add(lmp->modify->fix_map, plugin.creator.v2);
+  if (style == "compute") add(lmp->modify->compute_map, plugin.creator.v2);
+  if (style == "command") add(lmp->input->command_map, plugin.creator.v1);
 }
 
 }    // namespace LAMMPS_NS::release

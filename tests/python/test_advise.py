@@ -120,6 +120,16 @@ def topics(advice: Advice) -> dict[str, str]:
     return {each.topic: each.line for each in [*advice.needs, *advice.unused] if each.line}
 
 
+def test_what_a_fix_says_is_no_command(tmp_path: Path) -> None:
+    log = tmp_path / "log.lammps"
+    log.write_text(
+        "fix touch water cloth/contact 0.01 cloth yes\n"
+        "fix touch cloth/contact: ghost cutoff raised from 0.2 to 0.4\n"
+    )
+    (found,) = Commands.read(log).styled("cloth/contact")
+    assert (found.id, found.group, found.value("cloth", "no")) == ("touch", "water", "yes")
+
+
 def test_a_scene_that_is_set_up_well_gets_no_advice(tmp_path: Path) -> None:
     before = write(tmp_path, WATER, COLUMN)
     text = before.read_text()

@@ -130,7 +130,8 @@ class Commands:
         def by_type(command: str) -> dict[str, tuple[str, ...]]:
             return {words[0]: tuple(words[1:]) for words in given.get(command, []) if words}
 
-        fixes = [words for words in given.get("fix", []) if len(words) > 2]
+        # a fix begins what it says with "fix ID style:"
+        fixes = [w for w in given.get("fix", []) if len(w) > 2 and not w[1].endswith(":")]
         style = last("pair_style")
         support = float(style[1]) if style[:1] == ("sph/tait",) else math.nan
         coefficients = [words for words in given.get("pair_coeff", []) if words[2:3] == ["fluid"]]

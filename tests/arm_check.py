@@ -18,7 +18,7 @@ import zipfile
 from pathlib import Path
 
 from reference_logs import compare
-from source_check import BIN, DEBIAN, ROOT, apt_get, call
+from source_check import BIN, DEBIAN, ROOT, apt_get, call, compiler_cache
 
 sys.path.insert(0, str(ROOT / "packaging"))
 
@@ -49,9 +49,8 @@ def core(folder: Path, jobs: int) -> None:
 
 def cross() -> list[str]:
     """Return the options of CMake that choose the compiler."""
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     return [
-        *("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_SYSTEM_NAME=Linux", *launcher),
+        *("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_SYSTEM_NAME=Linux", *compiler_cache()),
         *(f"-DCMAKE_SYSTEM_PROCESSOR={MACHINE}", f"-DCMAKE_CXX_COMPILER={COMPILER}"),
     ]
 

@@ -177,13 +177,17 @@ def eigen() -> str:
     return subprocess.check_output(command, text=True).strip()
 
 
+def compiler_cache() -> list[str]:
+    """Return CMake's option for ccache, where it is installed."""
+    return ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+
+
 def quick(tools: Tools) -> list[str]:
     """Return CMake's options for the MPI of these tools, and for a build that takes minutes."""
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     found = [f"-DCMAKE_PREFIX_PATH={eigen()}", f"-DPython_EXECUTABLE={sys.executable}"]
     for lang, name in (("C", "mpicc"), ("CXX", "mpicxx")):
         found.append(f"-DMPI_{lang}_COMPILER={tools.bin / name}")
-    return [*FAST, *found, *launcher]
+    return [*FAST, *found, *compiler_cache()]
 
 
 def run_block(

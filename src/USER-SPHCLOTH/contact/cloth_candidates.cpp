@@ -3,6 +3,7 @@
 
 #include "contact/cloth_candidates.h"
 
+#include "core/geometry/disc_grid.h"
 #include "core/util/bytes.h"
 #include "neighbor.h"
 
@@ -20,11 +21,6 @@ static constexpr double PATCH_MARGIN = 10.0;
 // of the margin: a list that has used more of it than this is made anew with others
 static constexpr double USED = 0.5;
 
-void ClothCandidates::rebuild()
-{
-  if (tags != edges.all_tags() || triangles != mesh.triangles) known = false;
-}
-
 double ClothCandidates::max_reach() const { return MAX_REACH * rules.max_thickness(); }
 
 double ClothCandidates::margin() const
@@ -36,18 +32,22 @@ double ClothCandidates::margin() const
 void ClothCandidates::update(double max_approach)
 {
   limit = max_approach;
+  const bool known = revision == edges.revision();
   if (known) measure();
-  if (!known || !all_hold()) start_anew();
+  if (!known || !all_hold()) start_anew(known);
+}
+
+double ClothCandidates::approach_in_step(const PatchPair &both) const
+{
+  return std::min(limit, patches.approach_in_step(both.patches[0], both.patches[1]));
 }
 
 void ClothCandidates::measure()
 {
   patches.measure(mesh.start, mesh.end);
-  for (PatchPair &both : near) {
-    const auto &[p, q] = both.patches;
-    both.approach = both.carried + patches.approach_before(p, q) +
-        std::min(limit, patches.approach_in_step(p, q));
-  }
+  for (PatchPair &both : near)
+    both.approach = both.carried + patches.approach_before(both.patches[0], both.patches[1]) +
+        approach_in_step(both);
 }
 
 // Pairs that are not in a list were farther apart than what it covers.
@@ -65,7 +65,7 @@ bool ClothCandidates::all_hold() const
 
 // Patches start from where they are.  Lists that will hold for long are kept.
 
-void ClothCandidates::start_anew()
+void ClothCandidates::start_anew(bool known)
 {
   pairs_before.clear();
   near_before.clear();
@@ -76,19 +76,19 @@ void ClothCandidates::start_anew()
     std::swap(pairs, pairs_before);
     patches.start_from(mesh.start);
   } else {
-    tags = edges.all_tags();
-    triangles = mesh.triangles;
+    revision = edges.revision();
     patches.build(mesh.triangles, mesh.start);
     sort_members();
-    known = true;
   }
   patches.measure(mesh.start, mesh.end);
   range = max_reach() + std::max(PATCH_MARGIN * margin(), patches.approach_of_any(limit));
   find_near();
   pairs.clear();
   measure_balls();
-  for (PatchPair &both : near)
-    if (!keep(both)) find(both);
+  for (PatchPair &both : near) {
+    const double in_step = approach_in_step(both);
+    if (!keep(both, in_step)) find(both, in_step);
+  }
 }
 
 void ClothCandidates::find_near()
@@ -123,40 +123,38 @@ bool ClothCandidates::meet(int p, int q) const
 
 // A list of before, or none where both patches are far enough from one another.
 
-bool ClothCandidates::keep(PatchPair &both)
+bool ClothCandidates::keep(PatchPair &both, double in_step)
 {
-  const auto &[p, q] = both.patches;
-  const double in_step = std::min(limit, patches.approach_in_step(p, q)), room = 2.0 * margin();
-  const double apart = boxes[p].exteriorDistance(boxes[q]);
-  both.approach = in_step;
-  both.covered = apart;
-  if (apart > max_reach() + std::max(room, in_step)) return true;
+  const double room = 2.0 * margin(),
+               apart = boxes[both.patches[0]].exteriorDistance(boxes[both.patches[1]]);
+  if (apart > max_reach() + std::max(room, in_step)) {
+    both.approach = in_step;
+    both.covered = apart;
+    return true;
+  }
   const auto before = std::lower_bound(near_before.begin(), near_before.end(), both);
   if (before == near_before.end() || before->patches != both.patches) return false;
-  both.carried = before->carried;
-  both.covered = before->covered;
-  both.approach = both.carried + in_step;
-  both.nearest = before->nearest;
-  if (both.carried > USED * room || !holds(both)) return false;
-  both.begin = static_cast<int>(pairs.size());
+  PatchPair kept = *before;
+  kept.approach = kept.carried + in_step;
+  if (kept.carried > USED * room || !holds(kept)) return false;
+  kept.begin = static_cast<int>(pairs.size());
   pairs.insert(pairs.end(), pairs_before.begin() + before->begin,
                pairs_before.begin() + before->end);
-  both.end = static_cast<int>(pairs.size());
+  kept.end = static_cast<int>(pairs.size());
+  both = kept;
   return true;
 }
 
-void ClothCandidates::find(PatchPair &both)
+void ClothCandidates::find(PatchPair &both, double in_step)
 {
   const auto &[p, q] = both.patches;
-  both.carried = 0.0;
-  both.approach = std::min(limit, patches.approach_in_step(p, q));
-  both.covered = cutoff = max_reach() + std::max(2.0 * margin(), both.approach);
+  both.approach = in_step;
+  both.covered = cutoff = max_reach() + std::max(2.0 * margin(), in_step);
   both.begin = static_cast<int>(pairs.size());
   find_triangles(p, q);
   if (p != q) find_triangles(q, p);
   find_edges(p, q);
   both.end = static_cast<int>(pairs.size());
-  both.nearest = std::numeric_limits<double>::infinity();
   for (int n = both.begin; n < both.end; n++)
     both.nearest = std::min(both.nearest, pairs[n].distance);
 }
@@ -168,8 +166,8 @@ void ClothCandidates::sort_members()
   sort_into_buckets(
       patches.size(),
       [this](auto add) {
-        for (std::size_t t = 0; t < triangles.size(); t++)
-          add(patches.patch_of(triangles[t][0]), static_cast<int>(t));
+        for (std::size_t t = 0; t < mesh.triangles.size(); t++)
+          add(patches.patch_of(mesh.triangles[t][0]), static_cast<int>(t));
       },
       first_triangle, triangles_of);
   sort_into_buckets(
@@ -185,12 +183,9 @@ void ClothCandidates::measure_balls()
 {
   triangle_balls.resize(triangles_of.size());
   for (std::size_t n = 0; n < triangles_of.size(); n++) {
-    const auto &[i, j, k] = triangles[triangles_of[n]];
-    const Vec3 &a = mesh.start[i], &b = mesh.start[j], &c = mesh.start[k];
-    const Vec3 center = (a + b + c) / 3.0;
-    const double radius_sq = std::max(
-        {(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()});
-    triangle_balls.set(static_cast<int>(n), center, std::sqrt(radius_sq));
+    const auto &[a, b, c] = mesh.triangles[triangles_of[n]];
+    const Disc disc = disc_around(mesh.start[a], mesh.start[b], mesh.start[c]);
+    triangle_balls.set(static_cast<int>(n), disc.center, disc.radius);
   }
   edge_balls.resize(edges_of.size());
   for (std::size_t n = 0; n < edges_of.size(); n++) {
@@ -212,7 +207,7 @@ void ClothCandidates::find_triangles(int p, int q)
     triangle_balls.within(first_triangle[q], first_triangle[q + 1], mesh.start[s], cutoff,
                           [&](int n) {
                             const int t = triangles_of[n];
-                            const auto &[a, b, c] = triangles[t];
+                            const auto &[a, b, c] = mesh.triangles[t];
                             if (s == a || s == b || s == c) return;
                             add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
                           });
@@ -273,6 +268,6 @@ bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots)
 double ClothCandidates::memory_usage() const
 {
   return patches.bytes() + grid.bytes() + triangle_balls.bytes() + edge_balls.bytes() +
-      bytes_of(pairs, pairs_before, near, near_before, tags, triangles, boxes, first_triangle,
-               triangles_of, first_edge, edges_of);
+      bytes_of(pairs, pairs_before, near, near_before, boxes, first_triangle, triangles_of,
+               first_edge, edges_of);
 }

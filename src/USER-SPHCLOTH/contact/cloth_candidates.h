@@ -44,8 +44,7 @@ class ClothCandidates : protected Pointers {
   {
   }
 
-  // After each list build of LAMMPS: pairs of the same vertices and triangles are kept.
-  void rebuild();
+  // Behind each list build of LAMMPS pairs of the same vertices and triangles are kept.
 
   // After each change of the sweeps of vertices.  The two sides of a pair are taken to approach by
   // at most `max_approach` in this step.
@@ -94,10 +93,7 @@ class ClothCandidates : protected Pointers {
   std::vector<PatchPair> near, near_before;
   double range = 0.0;    // to which patches are near, when they started anew
   double limit = 0.0;    // of an approach
-  bool known = false;
-  // of the lists
-  std::vector<tagint> tags;
-  std::vector<std::array<int, 3>> triangles;
+  int revision = 0;    // of the edges that lists are of; 0: there are none
   // of a search: boxes of patches, and their triangles and edges with balls around these
   sphcloth::BoxGrid grid;
   std::vector<sphcloth::Box> boxes;
@@ -117,16 +113,17 @@ class ClothCandidates : protected Pointers {
   }
   Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }
   double margin() const;
+  double approach_in_step(const PatchPair &) const;
   void measure();
   bool holds(const PatchPair &) const;
   bool all_hold() const;
-  void start_anew();
+  void start_anew(bool known);
   void find_near();
   void sort_members();
   void measure_balls();
   bool meet(int patch, int other) const;
-  bool keep(PatchPair &);
-  void find(PatchPair &);
+  bool keep(PatchPair &, double in_step);
+  void find(PatchPair &, double in_step);
   void find_triangles(int patch_of_vertices, int patch);
   void find_edges(int patch, int other);
   bool orient(int &edge, int &other) const;

@@ -52,7 +52,7 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
-  passes = all < MISSING ? 1 : std::max(1, static_cast<int>(MAX_PASSES * std::min(all, 1.0)));
+  passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
   start_rows();
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
@@ -107,10 +107,10 @@ void ClothRows::start_rows()
 
 double ClothRows::max_slide(const ContactRow &row) const
 {
-  const double share = row.share == 0.0 ? MAX_SLIDE_ASIDE
-      : row.is_inside_both()            ? MAX_SLIDE
-                                        : MAX_SLIDE_LEANING;
-  return share * rules_of(row).thickness;
+  const double of_thickness = row.share == 0.0 ? MAX_SLIDE_ASIDE
+      : row.is_inside_both()                   ? MAX_SLIDE
+                                               : MAX_SLIDE_LEANING;
+  return of_thickness * rules_of(row).thickness;
 }
 
 // How far both sides may move before the row may push, or its closest points are found anew.

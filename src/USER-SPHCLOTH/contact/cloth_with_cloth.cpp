@@ -45,7 +45,6 @@ void ClothWithCloth::rebuild()
 {
   triangles.rebuild(candidates.rules.max_thickness());
   edges.rebuild();
-  candidates.rebuild();
   rows.rebuild();
   guarantee.rebuild();
   if (coupling) coupling->rebuild();

@@ -26,6 +26,7 @@ void MeshEdges::rebuild()
 
   if (triangles == mesh.triangles && tags == tags_before) return;
   triangles = mesh.triangles;
+  n_changes++;
 
   std::vector<std::array<int, 3>> sides;    // both ends, and the vertex opposite to them
   sides.reserve(3 * mesh.triangles.size());

@@ -34,7 +34,7 @@ class MeshEdges : protected Pointers {
     return tags[a] < tags[b] ? a : b;
   }
   tagint tag(int slot) const { return tags[slot]; }
-  const std::vector<tagint> &all_tags() const { return tags; }
+  int revision() const { return n_changes; }    // another one: slots or triangles are others
   bool is_obstacle(int slot) const { return obstacle[slot]; }
 
   // the longest edges of cloth and of obstacles that are here, at the last list build
@@ -52,6 +52,7 @@ class MeshEdges : protected Pointers {
   std::vector<tagint> tags;    // of slots
   std::vector<char> obstacle;
   std::vector<int> index;    // of slots, in the topology
+  int n_changes = 0;
 };
 
 }    // namespace LAMMPS_NS

@@ -10,6 +10,7 @@
 #include "comm.h"
 #include "contact/tangles.h"
 #include "core/contact/intersection_contour.h"
+#include "lammps_util/atom_tools.h"
 
 #include <algorithm>
 #include <array>
@@ -78,14 +79,7 @@ std::vector<Passing> all_passings(LAMMPS *lmp, const MovingTriangles &mesh, cons
   std::vector<Passing> mine;
   for_each_tangle(mesh, edges, cloth_meets_cloth,
                   [&](int e, int t) { mine.push_back(passing_of(mesh, edges, e, t)); });
-  constexpr int SIZE = sizeof(Passing) / sizeof(double);
-  const int n = SIZE * static_cast<int>(mine.size());
-  std::vector<int> counts(lmp->comm->nprocs), first(lmp->comm->nprocs, 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, lmp->world);
-  for (std::size_t r = 1; r < counts.size(); r++) first[r] = first[r - 1] + counts[r - 1];
-  std::vector<Passing> all((first.back() + counts.back()) / SIZE);
-  MPI_Allgatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), first.data(), MPI_DOUBLE,
-                 lmp->world);
+  std::vector<Passing> all = allgather(mine, lmp->comm->nprocs, lmp->world);
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -176,8 +170,7 @@ std::map<int, Vec3> displacements(const std::vector<Passing> &passings, double s
   constexpr double LEAST = 0.25;    // share of the mass of a vertex that has little weight
   std::map<int, double> split;
   for (const Passing &one : passings)
-    for (int k = 0; k < 5; k++)
-      split[static_cast<int>(one.vertex[k])] += std::fabs(one.weight[k]);
+    for (int k = 0; k < 5; k++) split[static_cast<int>(one.vertex[k])] += std::fabs(one.weight[k]);
   std::map<int, Vec3> found;
   for (const Passing &one : passings) {
     const Vec3 shorter(one.shorter[0], one.shorter[1], one.shorter[2]);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -65,15 +66,18 @@ inline tagint largest_id(const Atom *atom, MPI_Comm world)
 
 // collective: every rank's list behind one another
 
-inline std::vector<tagint> allgather(const std::vector<tagint> &mine, int nprocs, MPI_Comm world)
+template <class Record>
+std::vector<Record> allgather(const std::vector<Record> &mine, int nprocs, MPI_Comm world)
 {
-  int n = static_cast<int>(mine.size());
+  static_assert(std::is_trivially_copyable_v<Record>);
+  constexpr int SIZE = sizeof(Record);
+  int n = SIZE * static_cast<int>(mine.size());
   std::vector<int> counts(nprocs), displs(nprocs, 0);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-  std::vector<tagint> all(displs.back() + counts.back());
-  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), counts.data(), displs.data(),
-                 MPI_LMP_TAGINT, world);
+  std::vector<Record> all((displs.back() + counts.back()) / SIZE);
+  MPI_Allgatherv(mine.data(), n, MPI_BYTE, all.data(), counts.data(), displs.data(), MPI_BYTE,
+                 world);
   return all;
 }
 

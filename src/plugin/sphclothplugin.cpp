@@ -31,6 +31,10 @@
 #include <cstdio>
 #include <string>
 
+#if defined(SPHCLOTH_CXX11_ABI) && SPHCLOTH_CXX11_ABI != _GLIBCXX_USE_CXX11_ABI
+#error "this compiler cannot make the strings of LAMMPS (_GLIBCXX_USE_CXX11_ABI): use LAMMPS's compiler"
+#endif
+
 using namespace LAMMPS_NS;
 
 #define SPHCLOTH_EXPORT extern "C" __attribute__((visibility("default")))

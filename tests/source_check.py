@@ -254,7 +254,7 @@ def check_styles(tools: Tools, environment: dict[str, str], tests: Sequence[str]
 
 def check_examples(tools: Tools, environment: dict[str, str], *examples: str) -> None:
     """Run the examples at their tiny size, all if none is named."""
-    command = ("tests/reference_logs.py", "--alike", "--ranks", "1,2", *examples)
+    command = ("tests/reference_logs.py", "--alike", "--runs", "1,2", *examples)
     call(tools.python, *command, cwd=ROOT, env=environment)
 
 

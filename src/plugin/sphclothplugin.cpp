@@ -32,7 +32,7 @@
 #include <string>
 
 #if defined(SPHCLOTH_CXX11_ABI) && SPHCLOTH_CXX11_ABI != _GLIBCXX_USE_CXX11_ABI
-#error "this compiler cannot make the strings of LAMMPS (_GLIBCXX_USE_CXX11_ABI): use LAMMPS's compiler"
+#error "this compiler has no strings of LAMMPS's ABI (_GLIBCXX_USE_CXX11_ABI): use LAMMPS's"
 #endif
 
 using namespace LAMMPS_NS;

@@ -5,7 +5,8 @@
                                    [EXAMPLE ...]
 
 An example has three logs: of a run on 1 rank, on 4 ranks, and of a *nudged* run, on 1 rank with all
-particles and vertices displaced at the start by ``NUDGE`` of the box at most, at random.
+particles and vertices displaced at the start by up to ``NUDGE`` of their distance from the middle
+of the box, at random.
 
 ``--check`` compares every digit. On another processor, with another compiler or another release of
 LAMMPS the last digits differ, and what is chaotic differs with them: ``--alike`` allows ``TIMES``
@@ -38,7 +39,7 @@ TINY = {
 RUNS = {**TINY, "banner": ("small", {"t_end": "1.0", "frames": "10"})}
 NUDGED = "nudged"
 LOGS = ("1", "4", NUDGED)  # the first is what is compared with
-NUDGE = 1e-13  # of the box: what round-off may come to in thousands of steps
+NUDGE = 1e-13  # what round-off may come to in thousands of steps
 PLACE = "Loaded 1 plugins from"  # a folder of this machine
 MEASURED = {"v_contact_share"}  # a share of time
 TIMES = 10  # of the spread of the logs
@@ -85,10 +86,16 @@ def run_nudged(example: str, folder: Path) -> Path:
 
 
 def nudged(script: str) -> str:
-    """Return a script that displaces all that there is before its first run."""
-    sizes = " ".join(f"$({NUDGE}*l{axis})" for axis in "xyz")
-    command = f"displace_atoms all random {sizes} 1 units box\n"
-    text, times = re.subn(r"^(?=run\s)", command, script, count=1, flags=re.MULTILINE)
+    """Return a script that displaces all that there is before its first run.
+
+    Towards the middle of the box, as a particle on its face would be lost outside of it.
+    """
+    nudge = "".join(
+        f"variable nudge_{x} atom {NUDGE}*random(0,1,{seed})*(0.5*({x}lo+{x}hi)-{x})\n"
+        for seed, x in enumerate("xyz", 1)
+    )
+    nudge += "displace_atoms all move v_nudge_x v_nudge_y v_nudge_z units box\n"
+    text, times = re.subn(r"^(?=run\s)", nudge, script, count=1, flags=re.MULTILINE)
     if not times:
         raise ValueError("no line of the script begins with 'run'")
     return text

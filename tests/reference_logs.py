@@ -121,25 +121,46 @@ def apart(log: Path, example: str) -> tuple[float, str]:
     if abs(len(ours["Step"]) - counts[0]) > TIMES * (max(counts) - min(counts)):
         return np.inf, f"rows: {len(ours['Step'])}, not {counts[0]}"
     rows = min(len(ours["Step"]), *counts)
+    beside = rows_beside(
+        *(np.array([table[x][:rows] for table in known]) for x in ("Step", "Time"))
+    )
     worst = (0.0, "")
     for name in known[0]:  # a column that the example has since is in no log
         tables = [table[name][:rows] for table in known if name in table]
-        share = off(np.array(ours[name][:rows]), np.array(tables))
+        share = off(np.array(ours[name][:rows]), np.array(tables), beside)
         row = int(np.argmax(share))
         worst = max(worst, (float(share[row]), f"{name}, row {row} of {rows}"))
     return worst
 
 
-def off(column: np.ndarray, known: np.ndarray) -> np.ndarray:
+def rows_beside(steps: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return for each row how many before and after it may have what it has.
+
+    Rows are a number of steps apart. Where steps adapt and chaos moves them by a step or more, what
+    happens at a time, as the end of pouring, is in another row.
+    """
+    moved = drift(times)
+    between = np.maximum(np.gradient(times[0]), 1e-300)
+    step = between / np.maximum(np.gradient(steps[0]), 1.0)
+    return np.where(moved >= step, np.ceil(moved / between), 0).astype(int)
+
+
+def off(column: np.ndarray, known: np.ndarray, beside: np.ndarray) -> np.ndarray:
     """Return by how much a column is off the first that is known, in units of what is allowed."""
     reference = known[0]
-    scale = max(np.nanmax(np.abs(reference)), 1e-300)
-    drift = np.maximum.accumulate(np.nan_to_num(np.ptp(known, axis=0)))
-    drift = np.append(drift[1:], drift[-1])
-    difference = np.nan_to_num(np.abs(column - reference), nan=np.inf)
+    near = [reference[max(row - n, 0) : row + n + 1] for row, n in enumerate(beside)]
+    low, high = ([extreme(values) for values in near] for extreme in (np.min, np.max))
+    difference = np.nan_to_num(np.maximum(low - column, column - high), nan=np.inf)
     difference[np.isnan(reference) & np.isnan(column)] = 0.0
+    scale = max(np.nanmax(np.abs(reference)), 1e-300)
     early = np.arange(len(column)) < len(column) // 4
-    return difference / (np.where(early, *ALIKE) * scale + TIMES * drift)
+    return difference / (np.where(early, *ALIKE) * scale + TIMES * drift(known))
+
+
+def drift(known: np.ndarray) -> np.ndarray:
+    """Return by how much columns differ from the start to each row, with a row to spare."""
+    so_far = np.maximum.accumulate(np.nan_to_num(np.ptp(known, axis=0)))
+    return np.append(so_far[1:], so_far[-1])
 
 
 def compare(log: Path, example: str, which: str, alike: bool) -> bool:

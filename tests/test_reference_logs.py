@@ -7,7 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import reference_logs
-from reference_logs import LOGS, NUDGED, RUNS, TIMES, apart, columns, compare, log_of, nudged
+from reference_logs import (
+    LOGS,
+    NUDGED,
+    RUNS,
+    TIMES,
+    apart,
+    columns,
+    compare,
+    log_of,
+    nudged,
+    off,
+    rows_beside,
+)
 
 from sphcloth.examples import find_example
 
@@ -102,6 +114,25 @@ def test_where_a_nudge_changes_the_number_of_rows_it_may_differ(tmp_path):
         shorter(short, short)
     assert apart(short, EXAMPLE)[0] <= 1.0
     assert apart(shorter(short, short), EXAMPLE)[0] == np.inf
+
+
+def test_where_steps_move_by_one_a_row_has_what_the_next_has():
+    """Rows are ten steps of 0.1 apart; from the fourth row on a nudge moves them by a share."""
+    steps = np.array([10.0 * np.arange(8)] * 2)
+    times = 0.1 * steps
+    beside = {}
+    for share in (0.9, 1.1, 25.0):
+        times[1, 4:] = times[0, 4:] + 0.1 * share
+        beside[share] = rows_beside(steps, times)
+    assert beside[0.9].tolist() == [0] * 8
+    assert beside[1.1].tolist() == [0, 0, 0, 1, 1, 1, 1, 1]  # with a row to spare
+    assert beside[25.0].tolist() == [0, 0, 0, 3, 3, 3, 3, 3]
+    poured = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 9.0, 9.0, 9.0])
+    known = np.array([poured, poured])
+    for later, allowed in ((-1, True), (1, True), (-2, False), (2, False)):
+        ours = np.interp(np.arange(8) - later, np.arange(8), poured)
+        assert (off(ours, known, beside[1.1]).max() <= 1.0) == allowed
+    assert off(np.roll(poured, -1), known, beside[0.9]).max() > 1.0
 
 
 @pytest.mark.parametrize("example", RUNS)

@@ -149,7 +149,7 @@ def off(column: np.ndarray, known: np.ndarray, beside: np.ndarray) -> np.ndarray
     """Return by how much a column is off the first that is known, in units of what is allowed."""
     reference = known[0]
     near = [reference[max(row - n, 0) : row + n + 1] for row, n in enumerate(beside)]
-    low, high = ([extreme(values) for values in near] for extreme in (np.min, np.max))
+    low, high = ([extreme.reduce(values) for values in near] for extreme in (np.fmin, np.fmax))
     difference = np.nan_to_num(np.maximum(low - column, column - high), nan=np.inf)
     difference[np.isnan(reference) & np.isnan(column)] = 0.0
     scale = max(np.nanmax(np.abs(reference)), 1e-300)

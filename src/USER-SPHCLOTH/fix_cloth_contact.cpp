@@ -24,7 +24,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-// over all surfaces behind the solver: what one of them puts back may penetrate another
+// over all meshes behind the solver: what one of them puts back may penetrate another
 static constexpr int MAX_ROUNDS = 10;
 
 /* ----------------------------------------------------------------------
@@ -68,8 +68,10 @@ int FixClothContact::setmask()
 
 void FixClothContact::init()
 {
+  contacts.clear();
+  separate.clear();
+  joined.reset();
   surfaces.clear();
-  cloth_with_cloth.reset();
   obstacles.clear();
   obstacle_surfaces.clear();
   sheets.clear();
@@ -92,9 +94,7 @@ void FixClothContact::init()
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
   for (int obstacle : options.obstacle_groups) add_obstacle(obstacle, cloths);
-  for (std::size_t k = 0; k < cloths.size(); k++)
-    cloths[k]->register_coupling(&surfaces[k]->solver);
-  if (!cloths.empty() && (options.cloth_meets_cloth || !obstacles.empty())) couple_cloths(cloths);
+  make_contacts(cloths);
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
@@ -127,21 +127,36 @@ void FixClothContact::check_group(const std::vector<FixPBDCloth *> &cloths)
                  label, group->names[igroup], cloth->id);
 }
 
-// behind water: the last coupling of each cloth
-
-void FixClothContact::couple_cloths(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::make_contacts(const std::vector<FixPBDCloth *> &cloths)
 {
-  ClothWithCloth::Meshes meshes{{cloths.begin(), cloths.end()}, {}, vertex_bits, 0};
+  const std::size_t n = surfaces.size() + obstacle_surfaces.size();
+  if (n > 1 && !cloths.empty() && (options.cloth_meets_cloth || !obstacles.empty())) {
+    join(cloths);
+    return;
+  }
+  for_all_surfaces([&](ContactSurface &surface) {
+    separate.push_back(std::make_unique<MeshContact>(
+        lmp, surface.triangles,
+        MeshContact::Concerns{particle_bits != 0, !cloths.empty() && options.cloth_meets_cloth, 0},
+        meeting_rules()));
+    contacts.push_back(separate.back().get());
+  });
+  for (std::size_t k = 0; k < cloths.size(); k++)
+    cloths[k]->register_coupling(&contacts[k]->rows());
+}
+
+void FixClothContact::join(const std::vector<FixPBDCloth *> &cloths)
+{
+  JoinedContact::Meshes meshes{{cloths.begin(), cloths.end()}, {}, vertex_bits, 0};
   for (const auto &obstacle : obstacles) {
     meshes.obstacles.push_back(obstacle.get());
     meshes.obstacle_bits |= obstacle->groupbit;
   }
-  cloth_with_cloth = std::make_unique<ClothWithCloth>(
-      lmp, meshes, label, ClothRules{options.cloth_rules, rules, options.cloth_meets_cloth}, counts,
-      last_positions);
+  joined = std::make_unique<JoinedContact>(lmp, meshes, label, particle_bits, meeting_rules(),
+                                           counts, last_positions);
+  contacts.push_back(&joined->contact);
   FixPBDCloth::solve_together(cloths);
-  for (std::size_t k = 0; k < cloths.size(); k++)
-    cloths[k]->register_coupling(cloth_with_cloth->couplings()[k]);
+  for (std::size_t k = 0; k < cloths.size(); k++) cloths[k]->register_coupling(joined->parts[k]);
 }
 
 void FixClothContact::pre_exchange()
@@ -173,13 +188,13 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
                                        std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
   double needed = longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
          wanted = longest + rules.thickness + neighbor->skin + displacement;
-  if (cloth_with_cloth) {
+  if (meets_cloth()) {
     double of_cloth = 0.0, of_obstacles = 0.0;
     for (const auto &surface : surfaces)
       of_cloth = std::max(of_cloth, surface->triangles.mesh->topology().longest_edge());
     for (const auto &obstacle : obstacles)
       of_obstacles = std::max(of_obstacles, obstacle->topology().longest_edge());
-    const double reach = ClothGuarantee::reach(
+    const double reach = ContactGuarantee::reach(
         of_cloth, of_obstacles, std::max(rules.thickness, options.cloth_rules.thickness));
     needed = std::max(needed, reach);
     wanted = std::max(wanted, reach + neighbor->skin + displacement);
@@ -226,8 +241,7 @@ void FixClothContact::setup_post_neighbor()
   store_positions();
   if (rules.sides) find_sheets();
   post_neighbor();
-  for_all_surfaces([](ContactSurface &surface) { surface.stabilization.warn_of_too_near(); });
-  if (cloth_with_cloth) cloth_with_cloth->check_start(options.untangle);
+  for (MeshContact *contact : contacts) contact->check_start(options.untangle);
 }
 
 void FixClothContact::find_sheets()
@@ -247,8 +261,10 @@ void FixClothContact::post_neighbor()
 {
   wrap_last_positions();
   const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
-  for_all_surfaces([distance](ContactSurface &surface) { surface.rebuild(distance); });
-  if (cloth_with_cloth) cloth_with_cloth->rebuild();
+  for_all_surfaces([distance](ContactSurface &s) { s.triangles.rebuild(distance); });
+  if (joined) joined->triangles.rebuild(std::max(distance, options.cloth_rules.thickness));
+  for (MeshContact *contact : contacts) contact->rebuild();
+  if (joined) joined->coupling.rebuild();
   if (walls) walls->update_candidates();
   if (rules.sides) find_sides();
 }
@@ -266,30 +282,24 @@ void FixClothContact::find_sides()
 
 void FixClothContact::initial_integrate(int)
 {
-  for_all_surfaces([](ContactSurface &surface) { surface.triangles.moved.clear(); });
+  for (MeshContact *contact : contacts) contact->mesh().moved.clear();
   impulses.clear();
   counts.cloth_gap = options.cloth_rules.thickness;
 }
 
-// The cloths have been solved, with their contacts: see SolverContact and ClothRows.
+// The cloths have been solved, with their contacts: see ContactRows.
 
 void FixClothContact::post_integrate()
 {
-  const std::size_t n = surfaces.size() + (cloth_with_cloth ? 1 : 0) + obstacle_surfaces.size();
+  const auto resolve = [this] {
+    bool any = false;
+    for (MeshContact *contact : contacts) any = contact->resolve() || any;
+    return any;
+  };
   for (int round = 0; round < MAX_ROUNDS; round++)
-    if (!resolve_penetrations() || n == 1) break;
+    if (!resolve() || contacts.size() == 1) break;
   if (!excess_velocities.empty()) subtract_excess_velocities();
   store_positions();
-}
-
-bool FixClothContact::resolve_penetrations()
-{
-  bool any = false;
-  if (cloth_with_cloth) any = cloth_with_cloth->resolve_collisions();
-  for_all_surfaces([&any](ContactSurface &surface) {
-    any = surface.stabilization.resolve_penetrations() || any;
-  });
-  return any;
 }
 
 // Vertices, and particles in contact, end a step with the velocity of its last substep, which is
@@ -306,9 +316,8 @@ void FixClothContact::subtract_excess_velocities()
       v[d] -= excess;
     }
   };
-  for_all_surfaces([&](const ContactSurface &surface) {
-    for (int i : surface.triangles.moved) subtract(i);
-  });
+  for (MeshContact *contact : contacts)
+    for (const int i : contact->mesh().moved) subtract(i);
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & vertex_bits) subtract(i);
 }
@@ -437,6 +446,7 @@ double FixClothContact::memory_usage()
   double bytes = 0.0;
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
-  if (cloth_with_cloth) bytes += cloth_with_cloth->memory_usage();
+  for (const MeshContact *contact : contacts) bytes += contact->memory_usage();
+  if (joined) bytes += joined->triangles.memory_usage() + joined->coupling.memory_usage();
   return bytes;
 }

@@ -13,9 +13,9 @@ FixStyle(cloth/contact,FixClothContact);
 #include "fix.h"
 
 #include "atom.h"
-#include "contact/cloth_with_cloth.h"
 #include "contact/contact_options.h"
 #include "contact/contact_surface.h"
+#include "contact/joined_contact.h"
 #include "contact/obstacle.h"
 #include "fluid/mesh_boundary.h"
 #include "fluid/side_source.h"
@@ -41,7 +41,7 @@ class FixClothContact : public Fix, public SideSource {
   void pre_exchange() override;
   void setup_pre_neighbor() override
   {
-    if (options.untangle && cloth_with_cloth) cloth_with_cloth->untangle();
+    for (MeshContact *contact : contacts) contact->untangle();
   }
   void setup_post_neighbor() override;
   void post_neighbor() override;
@@ -94,9 +94,12 @@ class FixClothContact : public Fix, public SideSource {
   // densities follow displacements
   ParticleColumns last_positions, impulses, excess_velocities;
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
-  std::unique_ptr<ClothWithCloth> cloth_with_cloth;    // or obstacles, if any do
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
+  // with each of them, or with all as one mesh, if several meet
+  std::vector<std::unique_ptr<MeshContact>> separate;
+  std::unique_ptr<JoinedContact> joined;
+  std::vector<MeshContact *> contacts;    // one or the other
   std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
@@ -117,8 +120,13 @@ class FixClothContact : public Fix, public SideSource {
   void find_sheets();
   void find_sides();
   void check_group(const std::vector<FixPBDCloth *> &cloths);
-  void couple_cloths(const std::vector<FixPBDCloth *> &cloths);
-  bool resolve_penetrations();
+  void make_contacts(const std::vector<FixPBDCloth *> &cloths);
+  void join(const std::vector<FixPBDCloth *> &cloths);
+  MeetingRules meeting_rules() const
+  {
+    return {options.cloth_rules, rules, options.cloth_meets_cloth};
+  }
+  bool meets_cloth() const { return joined || (options.cloth_meets_cloth && !surfaces.empty()); }
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *mesh)
   {
     return std::make_unique<ContactSurface>(lmp, mesh, label, particle_bits, rules, counts,

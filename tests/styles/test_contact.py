@@ -189,7 +189,10 @@ def test_friction_slows_what_slides(mu):
 @pytest.mark.parametrize("speed", [3, 30])
 @pytest.mark.parametrize("solver", ["gs", "substeps"])
 def test_a_flat_table_has_no_inner_edges(solver, speed):
-    """What falls on it straight down gets no speed along it, wherever it lands."""
+    """What falls on it straight down gets no speed along it, wherever it lands.
+
+    The solver stops it, also where it would pass the table in a sweep: few are left to be put back.
+    """
     drops = "create_atoms 1 random 400 4711 drops overlap 0.002\n"
     region = "region drops block -1.3 1.3 -1.3 1.3 0.02 0.08\n"
     lmp = instance()
@@ -202,6 +205,7 @@ def test_a_flat_table_has_no_inner_edges(solver, speed):
     v = by_id(lmp, "v")[by_id(lmp, "type") == 1]
     assert np.count_nonzero(v[:, 2] > 0) >= 400
     assert np.abs(v[:, :2]).max() < 1e-12 * speed
+    assert lmp.extract_fix("contact", 0, 1, 1) < 100
 
 
 def test_what_holds_a_pinned_table_carries_the_weight_on_it():
@@ -293,7 +297,8 @@ def test_a_particle_and_a_sheet_that_approach_each_other_keep_their_gap(rests):
         lmp.command("run 2 pre no post no")
         z = by_id(lmp, "x")[:, 2]
         assert z[1] - z[2:].max() > 0.0099
-    assert lmp.extract_fix("contact", 0, 1, 1) == 1
+    contacts, stops = (lmp.extract_fix("contact", 0, 1, n) for n in (0, 1))
+    assert contacts >= 1 and stops == 0
 
 
 PRESS = (
@@ -319,7 +324,7 @@ fix contact water cloth/contact 0.01
 @pytest.mark.parametrize(
     ("rate", "steps", "words"),
     [
-        (10, 85, "or its neighbors move apart from others and crush what is between them, pa"),
+        (10, 85, "or its neighbors move apart from others and crush what is between them, atom"),
         (150, 5, r"moves 0.01\d* away from others in one step and crushes what is between them"),
     ],
 )

@@ -36,7 +36,7 @@ double CandidatePairs::max_reach() const { return MAX_REACH * mesh.rules.thickne
 
 void CandidatePairs::measure_strides(double max_stride)
 {
-  stride.resize(mesh.start.size());
+  stride.resize(static_cast<std::size_t>(mesh.halo.n_slots()));
   for (std::size_t s = 0; s < stride.size(); s++)
     stride[s] = std::min((mesh.end[s] - mesh.start[s]).norm(), max_stride);
 }
@@ -65,7 +65,7 @@ void CandidatePairs::find()
     const auto &[a, b, c] = mesh.triangles[t];
     return std::max({stride[a], stride[b], stride[c]});
   });
-  vertices_then = mesh.start;
+  vertices_then.assign(mesh.start.begin(), mesh.start.begin() + mesh.halo.n_slots());
   for (int d = 0; d < 3; d++) {
     const double *last = mesh.last_positions[d];
     positions_then[d].assign(last, last + atom->nlocal);
@@ -75,7 +75,7 @@ void CandidatePairs::find()
     const Sweep particle = mesh.sweep_of(i);
     const std::size_t first = candidates.size();
     discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
-      candidates.push_back({i, t, mesh.contact_start(particle.start, t).distance});
+      candidates.push_back({i, t, mesh.closest_at_start(particle.start, t).vector.norm()});
     });
     std::sort(candidates.begin() + first, candidates.end(),    // whatever the order of cells
               [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });
@@ -87,7 +87,7 @@ void CandidatePairs::find()
 bool CandidatePairs::still_holds(double max_stride) const
 {
   if (positions_then[0].size() != static_cast<std::size_t>(atom->nlocal) ||
-      vertices_then.size() != mesh.start.size())
+      vertices_then.size() != static_cast<std::size_t>(mesh.halo.n_slots()))
     return false;
   return std::max(longest_path_of_vertices(max_stride), longest_path()) <= margin();
 }

@@ -31,7 +31,7 @@ class CandidatePairs : protected Pointers {
   void update(double max_stride = std::numeric_limits<double>::infinity());
 
   // Those that may come as near as `reach`, at most max_reach(), in this step: visit(particle,
-  // triangle, sweep of the particle, start of the step), all triangles of a particle in one row.  A
+  // triangle, closest points at the start of the step), all triangles of a particle in one row.  A
   // distance changes by no more than both of its ends move.
   template <class Visit> void for_near(double reach, Visit visit) const
   {
@@ -47,9 +47,9 @@ class CandidatePairs : protected Pointers {
       }
       const auto &[i, j, k] = mesh.triangles[c.triangle];
       if (c.distance > reach_then + std::max({path[i], path[j], path[k]})) continue;
-      const sphcloth::ContactStart start = mesh.contact_start(sweep.start, c.triangle);
-      if (start.distance <= reach_at_start + std::max({stride[i], stride[j], stride[k]}))
-        visit(last, c.triangle, sweep, start);
+      const sphcloth::ClosestPoints at = mesh.closest_at_start(sweep.start, c.triangle);
+      if (at.vector.norm() <= reach_at_start + std::max({stride[i], stride[j], stride[k]}))
+        visit(last, c.triangle, at);
     }
   }
   double max_reach() const;

@@ -3,7 +3,6 @@
 
 #include "contact/cloth_candidates.h"
 
-#include "core/geometry/disc_grid.h"
 #include "core/util/bytes.h"
 #include "neighbor.h"
 
@@ -84,7 +83,7 @@ void ClothCandidates::start_anew(bool known)
   range = max_reach() + std::max(PATCH_MARGIN * margin(), patches.approach_of_any(limit));
   find_near();
   pairs.clear();
-  measure_balls();
+  fill_columns();
   for (PatchPair &both : near) {
     const double in_step = approach_in_step(both);
     if (!keep(both, in_step)) find(both, in_step);
@@ -179,19 +178,18 @@ void ClothCandidates::sort_members()
       first_edge, edges_of);
 }
 
-void ClothCandidates::measure_balls()
+void ClothCandidates::fill_columns()
 {
-  triangle_balls.resize(triangles_of.size());
+  triangle_columns.resize(triangles_of.size());
   for (std::size_t n = 0; n < triangles_of.size(); n++) {
     const auto &[a, b, c] = mesh.triangles[triangles_of[n]];
-    const Disc disc = disc_around(mesh.start[a], mesh.start[b], mesh.start[c]);
-    triangle_balls.set(static_cast<int>(n), disc.center, disc.radius);
+    triangle_columns.set(static_cast<int>(n), mesh.start[a], mesh.start[b], mesh.start[c]);
   }
-  edge_balls.resize(edges_of.size());
+  edge_columns.resize(edges_of.size());
   for (std::size_t n = 0; n < edges_of.size(); n++) {
     const Vec3 &a = mesh.start[edges.edges[edges_of[n]][0]],
                &b = mesh.start[edges.edges[edges_of[n]][1]];
-    edge_balls.set(static_cast<int>(n), 0.5 * (a + b), 0.5 * (b - a).norm());
+    edge_columns.set(static_cast<int>(n), a, b);
   }
 }
 
@@ -204,24 +202,23 @@ void ClothCandidates::find_triangles(int p, int q)
     const int s = patches.members[m];
     if (mesh.halo.is_ghost(s) || boxes[q].squaredExteriorDistance(mesh.start[s]) > cutoff_sq)
       continue;
-    triangle_balls.within(first_triangle[q], first_triangle[q + 1], mesh.start[s], cutoff,
-                          [&](int n) {
-                            const int t = triangles_of[n];
-                            const auto &[a, b, c] = mesh.triangles[t];
-                            if (s == a || s == b || s == c) return;
-                            add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
-                          });
+    triangle_columns.within(first_triangle[q], first_triangle[q + 1], mesh.start[s], cutoff,
+                            [&](int n) {
+                              const int t = triangles_of[n];
+                              const auto &[a, b, c] = mesh.triangles[t];
+                              if (s == a || s == b || s == c) return;
+                              add(PairKind::POINT_TRIANGLE, {s, a, b, c}, {-1, t});
+                            });
   }
 }
 
 void ClothCandidates::find_edges(int p, int q)
 {
   for (int m = first_edge[p]; m < first_edge[p + 1]; m++) {
-    const Vec3 center = edge_balls.center(m);
-    const double reach = edge_balls.radius(m) + cutoff;
-    if (boxes[q].squaredExteriorDistance(center) > reach * reach) continue;
+    const double reach = edge_columns.radius(m) + cutoff;
+    if (boxes[q].squaredExteriorDistance(edge_columns.center(m)) > reach * reach) continue;
     const int begin = p == q ? m + 1 : first_edge[q];
-    edge_balls.within(begin, first_edge[q + 1], center, reach, [&](int n) {
+    edge_columns.within(begin, first_edge[q + 1], m, cutoff, [&](int n) {
       int e = edges_of[m], other = edges_of[n];
       if (!orient(e, other)) return;
       const auto &[i, j] = edges.edges[e];
@@ -250,8 +247,9 @@ void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
       closest_points(kind, {mesh.start[i], mesh.start[j], mesh.start[k], mesh.start[l]})
           .vector.norm();
   if (distance > cutoff) return;
-  const bool with_obstacle = edges.is_obstacle(i) != edges.is_obstacle(l);
-  pairs.push_back({kind, slots, members, with_obstacle,
+  const Meeting meeting = edges.is_obstacle(i) == edges.is_obstacle(l) ? Meeting::CLOTH_CLOTH
+                                                                       : Meeting::CLOTH_OBSTACLE;
+  pairs.push_back({kind, slots, members, meeting,
                    distance < rules.cloth.thickness && are_joined(kind, slots), distance});
 }
 
@@ -267,7 +265,7 @@ bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots)
 
 double ClothCandidates::memory_usage() const
 {
-  return patches.bytes() + grid.bytes() + triangle_balls.bytes() + edge_balls.bytes() +
+  return patches.bytes() + grid.bytes() + triangle_columns.bytes() + edge_columns.bytes() +
       bytes_of(pairs, pairs_before, near, near_before, boxes, first_triangle, triangles_of,
                first_edge, edges_of);
 }

@@ -10,12 +10,12 @@
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
 #define SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
 
+#include "contact/contact_pair.h"
 #include "contact/mesh_edges.h"
 #include "contact/moving_triangles.h"
-#include "core/contact/closest_points.h"
 #include "core/contact/mesh_patches.h"
-#include "core/geometry/ball_columns.h"
 #include "core/geometry/box_grid.h"
+#include "core/geometry/hull_columns.h"
 
 #include <algorithm>
 #include <array>
@@ -25,21 +25,12 @@
 
 namespace LAMMPS_NS {
 
-struct ClothPair {
-  sphcloth::PairKind kind;
-  std::array<int, 4> slots;    // vertex and triangle, or two edges
-  std::array<int, 2> members;    // triangle: the second; edges: both
-  bool with_obstacle;
-  bool joined;    // by a bond that is shorter than the thickness: a seam
-  double distance;    // when the list was made
-};
-
 class ClothCandidates : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
   ClothCandidates(LAMMPS *lmp_, const MovingTriangles &mesh_, const MeshEdges &edges_,
-                  const ClothRules &rules_) :
+                  const MeetingRules &rules_) :
       Pointers(lmp_), rules(rules_), mesh(mesh_), edges(edges_)
   {
   }
@@ -58,7 +49,7 @@ class ClothCandidates : protected Pointers {
       const double reach_then = reach + both.approach;
       if (both.nearest > reach_then) continue;
       for (int n = both.begin; n < both.end; n++) {
-        const ClothPair &pair = pairs[n];
+        const ContactPair &pair = pairs[n];
         if (pair.distance > reach_then) continue;
         const std::array<int, 4> &s = pair.slots;
         const sphcloth::ClosestPoints at = closest_points(
@@ -69,7 +60,7 @@ class ClothCandidates : protected Pointers {
     }
   }
   double max_reach() const;
-  const ClothRules rules;
+  const MeetingRules rules;
 
   double memory_usage() const;
 
@@ -89,19 +80,20 @@ class ClothCandidates : protected Pointers {
   };
 
   sphcloth::MeshPatches patches;
-  std::vector<ClothPair> pairs, pairs_before;
+  std::vector<ContactPair> pairs, pairs_before;
   std::vector<PatchPair> near, near_before;
   double range = 0.0;    // to which patches are near, when they started anew
   double limit = 0.0;    // of an approach
   int revision = 0;    // of the edges that lists are of; 0: there are none
-  // of a search: boxes of patches, and their triangles and edges with balls around these
+  // of a search: boxes of patches, and their triangles and edges
   sphcloth::BoxGrid grid;
   std::vector<sphcloth::Box> boxes;
   std::vector<int> first_triangle, triangles_of, first_edge, edges_of;
-  sphcloth::BallColumns triangle_balls, edge_balls;
+  sphcloth::TriangleColumns triangle_columns;
+  sphcloth::EdgeColumns edge_columns;
 
   // how much nearer to one another both sides may come in this step
-  double longest_approach(const ClothPair &pair) const
+  double longest_approach(const ContactPair &pair) const
   {
     const int n = sphcloth::first_side(pair.kind);
     double longest_sq = 0.0;
@@ -120,7 +112,7 @@ class ClothCandidates : protected Pointers {
   void start_anew(bool known);
   void find_near();
   void sort_members();
-  void measure_balls();
+  void fill_columns();
   bool meet(int patch, int other) const;
   bool keep(PatchPair &, double in_step);
   void find(PatchPair &, double in_step);

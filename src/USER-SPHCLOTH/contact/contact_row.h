@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A contact between vertices: signed weights of four of them and a normal, by which it pushes all
-// four, equal and opposite.  Rows are solved at once, with the mass of a vertex split over its
-// rows, evenly or as these push, which keeps momentum and always converges: Tonge, Benevolenski &
-// Voroshilov, ACM Trans. Graph. 31 (2012) 105.
+// A contact between vertices, or a particle and vertices: signed weights of four of them and a
+// normal, by which it pushes all four, equal and opposite.  Rows are solved at once, with the mass
+// of a vertex split over its rows, evenly or as these push, which keeps momentum and always
+// converges: Tonge, Benevolenski & Voroshilov, ACM Trans. Graph. 31 (2012) 105.
 
 #ifndef SPHCLOTH_CONTACT_CONTACT_ROW_H
 #define SPHCLOTH_CONTACT_CONTACT_ROW_H
 
 #include "cloth/vertex_halo.h"
-#include "contact/cloth_candidates.h"
+#include "contact/contact_pair.h"
+#include "core/util/bytes.h"
 
 #include <array>
 #include <vector>
@@ -20,7 +21,7 @@ namespace LAMMPS_NS {
 struct alignas(64) ContactRow {
   using Vec3 = Eigen::Vector3d;
 
-  std::array<int, 4> slots;    // see ClothPair
+  std::array<int, 4> slots;    // see ContactPair
   std::array<double, 4> weight;
   Vec3 normal;    // from the second side to the first
   double distance = 0.0;    // along it where weights were found
@@ -29,13 +30,13 @@ struct alignas(64) ContactRow {
   double mass = 0.0;    // effective
   double normal_correction = 0.0;    // of this substep, mass times length
   sphcloth::PairKind kind;
-  bool with_obstacle = false;
+  Meeting meeting;
   bool active = false;    // in this substep
 
-  ContactRow(const ClothPair &pair, const std::array<double, 4> &weight_, const Vec3 &normal_,
+  ContactRow(const ContactPair &pair, const std::array<double, 4> &weight_, const Vec3 &normal_,
              double gap_) :
       slots(pair.slots), weight(weight_), normal(normal_), gap(gap_), kind(pair.kind),
-      with_obstacle(pair.with_obstacle)
+      meeting(pair.meeting)
   {
   }
   // of the first side relative to the second
@@ -59,11 +60,12 @@ class SplitMasses {
 
   std::vector<Vec3> impulse;    // by slot
 
-  void begin(int n_slots) { shares.assign(n_slots, Vec3::Zero()); }
+  void begin(std::size_t n_slots) { shares.assign(n_slots, Vec3::Zero()); }
   // the share of a row in a mass grows with its weight there, and with how much it counts at all
-  void count(const ContactRow &row)
+  void count(const ContactRow &row) { count(row, row.share); }
+  void count(const ContactRow &row, double share)
   {
-    for (int k = 0; k < 4; k++) shares[row.slots[k]][0] += row.share * std::fabs(row.weight[k]);
+    for (int k = 0; k < 4; k++) shares[row.slots[k]][0] += share * std::fabs(row.weight[k]);
   }
   // behind begin(); collective: rows of all ranks
   void share(VertexHalo &halo)

@@ -17,17 +17,23 @@ struct ContactRules {
   bool sides = true;           // fluids above and below a sheet do not interact
 };
 
-// of cloth with cloth, and with obstacles
+// what meets a triangle or an edge
 
-struct ClothRules {
-  const ContactRules &cloth, &obstacle;
+enum class Meeting : char { CLOTH_CLOTH, CLOTH_OBSTACLE, PARTICLE };
+
+struct MeetingRules {
+  const ContactRules &cloth, &others;    // of cloth with cloth; of obstacles and particles
   const bool &cloth_meets_cloth;
 
-  const ContactRules &of(bool with_obstacle) const { return with_obstacle ? obstacle : cloth; }
+  const ContactRules &of(Meeting meeting) const
+  {
+    return meeting == Meeting::CLOTH_CLOTH ? cloth : others;
+  }
   double max_thickness() const
   {
-    return cloth_meets_cloth ? std::max(cloth.thickness, obstacle.thickness) : obstacle.thickness;
+    return cloth_meets_cloth ? std::max(cloth.thickness, others.thickness) : others.thickness;
   }
+  double max_friction() const { return std::max(cloth.friction, others.friction); }
 };
 
 struct ContactCounts {

@@ -24,7 +24,7 @@ void MeshEdges::rebuild()
     index[s] = cloth.index_of(tags[s]);
   }
 
-  if (triangles == mesh.triangles && tags == tags_before) return;
+  if (!needed || (triangles == mesh.triangles && tags == tags_before)) return;
   triangles = mesh.triangles;
   n_changes++;
 

@@ -13,9 +13,9 @@ namespace LAMMPS_NS {
 
 class MeshEdges : protected Pointers {
  public:
-  // obstacle_bits: groups of vertices that are of obstacles
-  MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_, int obstacle_bits_) :
-      Pointers(lmp_), mesh(mesh_), obstacle_bits(obstacle_bits_)
+  // obstacle_bits: groups of vertices that are of obstacles; needed: or there are no edges
+  MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_, int obstacle_bits_, bool needed_) :
+      Pointers(lmp_), mesh(mesh_), obstacle_bits(obstacle_bits_), needed(needed_)
   {
   }
 
@@ -48,6 +48,7 @@ class MeshEdges : protected Pointers {
  private:
   const TriangleSet &mesh;
   const int obstacle_bits;
+  const bool needed;
   std::vector<std::array<int, 3>> triangles;    // that edges are of
   std::vector<tagint> tags;    // of slots
   std::vector<char> obstacle;

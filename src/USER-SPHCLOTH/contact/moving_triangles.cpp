@@ -6,6 +6,7 @@
 #include "atom.h"
 #include "core/util/bytes.h"
 #include "force.h"
+#include "lammps_util/atom_tools.h"
 #include "update.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, const std::st
 
 void MovingTriangles::rebuild(double max_distance)
 {
+  forget_particles();
   TriangleSet::rebuild(max_distance);
   w.assign(halo.n_slots(), 0.0);
   w_solver = w;
@@ -39,6 +41,7 @@ void MovingTriangles::rebuild(double max_distance)
 
 void MovingTriangles::load_step()
 {
+  forget_particles();
   for (int s = 0; s < halo.n_owned(); s++) {
     const Sweep sweep = sweep_of(halo.atom_of(s));
     start[s] = sweep.start;
@@ -50,6 +53,7 @@ void MovingTriangles::load_step()
 
 void MovingTriangles::load_positions()
 {
+  forget_particles();
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
 }
 
@@ -62,37 +66,27 @@ Sweep MovingTriangles::sweep_of(int i) const
   return {Vec3(last[0][i], last[1][i], last[2][i]), Vec3(x[0], x[1], x[2])};
 }
 
-std::array<Sweep, 3> MovingTriangles::sweep_of_triangle(int t) const
+int MovingTriangles::slot_of_particle(int i)
 {
-  std::array<Sweep, 3> sweep;
-  for (int q = 0; q < 3; q++) sweep[q] = {start[triangles[t][q]], end[triangles[t][q]]};
-  return sweep;
+  if (entry[i] >= 0) return entry[i];
+  entry[i] = static_cast<int>(start.size());
+  particles.push_back(i);
+  const Sweep sweep = sweep_of(i);
+  start.push_back(sweep.start);
+  end.push_back(sweep.end);
+  w.push_back(1.0 / atom_mass(atom, i));
+  w_solver.push_back(w.back());
+  return entry[i];
 }
 
-ContactResult MovingTriangles::contact(const Sweep &p, int t, double slack) const
+void MovingTriangles::forget_particles()
 {
-  return of_nearest(point_triangle_contact(p, sweep_of_triangle(t), rules.thickness, slack), p.end,
-                    t);
-}
-
-ContactResult MovingTriangles::contact_since(const ContactStart &begin, const Sweep &p, int t) const
-{
-  const auto &[i, j, k] = triangles[t];
-  const PointAndTriangle now{p.end, end[i], end[j], end[k]};
-  const ContactResult found = begin.side * now.height > 0.0
-      ? point_triangle_nearness(now, begin.side, begin.gap(rules.thickness), 0.0)
-      : point_triangle_contact(p, sweep_of_triangle(t), rules.thickness, 0.0);
-  return of_nearest(found, p.end, t);
-}
-
-// None if the point is nearer to another triangle, unless it passes through
-
-ContactResult MovingTriangles::of_nearest(const ContactResult &found, const Vec3 &p, int t) const
-{
-  if (!found.hit || found.through) return found;
-  Vec3 from_nearest = p;
-  for (int q = 0; q < 3; q++) from_nearest -= found.weight[q] * end[triangles[t][q]];
-  return is_nearer_to_another(t, found.weight, from_nearest) ? ContactResult() : found;
+  for (const int i : particles) entry[i] = -1;
+  particles.clear();
+  entry.resize(atom->nlocal, -1);
+  const auto n = static_cast<std::size_t>(halo.n_slots());
+  for (std::vector<Vec3> *each : {&start, &end}) each->resize(n);
+  for (std::vector<double> *each : {&w, &w_solver}) each->resize(n);
 }
 
 // At an edge: inwards in the other triangle.  At a vertex: along all edges that end there, of which
@@ -123,14 +117,6 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
   return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
-bool MovingTriangles::is_deeper(const ContactResult &a, int triangle_a, const ContactResult &b,
-                                int triangle_b) const
-{
-  if (!(a.depth > 0.0)) return false;
-  if (triangle_b < 0 || a.depth > b.depth * (1.0 + SEAM)) return true;
-  return a.depth >= b.depth * (1.0 - SEAM) && element[triangle_a] < element[triangle_b];
-}
-
 void MovingTriangles::push_held(int i, const Vec3 &impulse)
 {
   mesh->push_held(i, impulse);
@@ -139,5 +125,6 @@ void MovingTriangles::push_held(int i, const Vec3 &impulse)
 
 double MovingTriangles::memory_usage() const
 {
-  return halo.memory_usage() + bytes_of(first, incident, start, end, w, w_solver, moved);
+  return halo.memory_usage() +
+      bytes_of(first, incident, start, end, w, w_solver, moved, particles, entry);
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Contact of cloth with cloth and with obstacles while it is solved: after each sweep over its
-// constraints vertices and triangles, and edges, that are nearer than the thickness are pushed
-// apart.
+// Contact of cloth with particles, with cloth and with obstacles while it is solved: after each
+// sweep over its constraints particles or vertices and triangles, and edges, that are nearer than
+// the thickness are pushed apart.
 
-#ifndef SPHCLOTH_CONTACT_CLOTH_ROWS_H
-#define SPHCLOTH_CONTACT_CLOTH_ROWS_H
+#ifndef SPHCLOTH_CONTACT_CONTACT_ROWS_H
+#define SPHCLOTH_CONTACT_CONTACT_ROWS_H
 
 #include "cloth/solver_coupling.h"
+#include "contact/candidate_pairs.h"
 #include "contact/cloth_candidates.h"
+#include "contact/contact_points.h"
 #include "contact/contact_row.h"
 #include "core/util/simd.h"
 
@@ -15,13 +17,16 @@
 
 namespace LAMMPS_NS {
 
-class ClothRows : public SolverCoupling, protected Pointers {
+class ContactRows : public SolverCoupling, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  ClothRows(LAMMPS *lmp_, MovingTriangles &mesh_, const MeshEdges &edges_,
-            ClothCandidates &candidates_) :
-      Pointers(lmp_), mesh(mesh_), edges(edges_), candidates(candidates_)
+  // no candidates of a kind: it is of no concern
+  ContactRows(LAMMPS *lmp_, MovingTriangles &mesh_, const MeshEdges &edges_,
+              CandidatePairs *of_particles_, ClothCandidates *of_cloth_,
+              const MeetingRules &rules_) :
+      Pointers(lmp_), mesh(mesh_), edges(edges_), of_particles(of_particles_), of_cloth(of_cloth_),
+      rules(rules_), points(mesh_)
   {
   }
 
@@ -39,30 +44,43 @@ class ClothRows : public SolverCoupling, protected Pointers {
  private:
   MovingTriangles &mesh;
   const MeshEdges &edges;
-  ClothCandidates &candidates;
+  CandidatePairs *const of_particles;
+  ClothCandidates *const of_cloth;
+  const MeetingRules rules;
   struct Detail {    // of a row
-    std::array<int, 2> members;    // see ClothPair
+    std::array<int, 2> members;    // see ContactPair
+    bool joined;
     double speed_before = 0.0;    // along the normal
     Vec3 friction_correction = Vec3::Zero();    // of this substep, mass times length
   };
 
-  std::vector<ContactRow> rows;
+  std::vector<ContactRow> rows;    // those of particles behind all others
+  std::size_t n_rows_of_cloth = 0;
+  std::vector<int> slot_of_particle;    // of those of particles
   std::vector<Detail> details;
-  std::vector<double> awake_from;    // of rows: path of vertices before which there is no contact
+  ContactPoints points;    // near particles
+  std::vector<double> awake_from;    // of rows: path of both sides before which there is no contact
   std::vector<int> awake, active;    // rows in this pass, and those in contact in this substep
   SplitMasses masses;
   std::vector<Vec3> from, end_before, velocity;    // vertices at the start of the substep
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
   const sphcloth::Vertex *substep_start = nullptr;
   int passes = 1;    // of a projection, in this step
+  bool too_near = false;    // is some cloth to cloth, on any rank?
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
 
-  const ContactRules &rules_of(const ContactRow &row) const
+  const ContactRules &rules_of(const ContactRow &row) const { return rules.of(row.meeting); }
+  // of both sides of a row, in this step
+  double path_of(std::size_t row) const
   {
-    return candidates.rules.of(row.with_obstacle);
+    return row < n_rows_of_cloth ? 2.0 * path
+                                 : path + points.path(slot_of_particle[row - n_rows_of_cloth]);
   }
-  double find_rows();
+  bool recovers_in_solver() const { return !of_particles; }
+  double find_rows_of_cloth();
+  void find_rows_of_particles();
+  void add_row(const ContactPair &, const sphcloth::ClosestPoints &at_start, double gap);
   void start_rows();
   double max_slide(const ContactRow &) const;
   double asleep(const ContactRow &, double distance, double slid) const;
@@ -81,10 +99,15 @@ class ClothRows : public SolverCoupling, protected Pointers {
   void project_normal(int row);
   void project_friction(int row);
   Vec3 find_closest_points(int row);
+  Vec3 normal_of(const ContactRow &, const sphcloth::ClosestPoints &) const;
   double share(int row, const sphcloth::ClosestPoints &) const;
+  double leaning_of(int row, const sphcloth::ClosestPoints &) const;
   double leaning_beside(int edge, const Vec3 &from_nearest,
                         const std::array<int, 2> &other_side) const;
   void solve_velocity(int row, double dt);
+  void push_held() const;
+  void recover_gaps();
+  void find_missing_gaps();
 };
 
 }    // namespace LAMMPS_NS

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Finds parts of a cloth that would pass others, and keeps them apart.
+// Finds what would pass cloth or an obstacle, and keeps it apart.
 
-#include "contact/cloth_guarantee.h"
+#include "contact/contact_guarantee.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "contact/rigid_zones.h"
 #include "core/contact/additive_ccd.h"
-#include "core/contact/contact_impulse.h"
 #include "error.h"
 #include "lammps_util/atom_tools.h"
 #include "update.h"
@@ -27,20 +26,18 @@ static constexpr double CLOSE = 0.02, KEEP_CLOSE = 0.9;
 
 static constexpr int MAX_PASSES = 20;
 
-void ClothGuarantee::rebuild()
+void ContactGuarantee::rebuild()
 {
-  if (!ghosts.matters()) return;
+  if (!of_cloth || !ghosts.matters()) return;
   vertices_then.resize(mesh.halo.n_owned());
   for (int s = 0; s < mesh.halo.n_owned(); s++) vertices_then[s] = mesh.position(s);
   const std::array<double, 2> here = edges.longest_here();
   MPI_Allreduce(here.data(), longest.data(), 2, MPI_DOUBLE, MPI_MAX, world);
 }
 
-bool ClothGuarantee::resolve_collisions()
+bool ContactGuarantee::resolve_collisions()
 {
-  const WallTimer clock(mesh.counts.seconds);
-  mesh.load_step();
-  pushed.clear();
+  velocities.clear();
   bool any = false;
   for (int pass = 0; pass <= MAX_PASSES; pass++) {
     find_collisions();
@@ -54,24 +51,24 @@ bool ClothGuarantee::resolve_collisions()
     if (all[0] == 0.0) break;
     any = true;
     if (all[1] == 0.0 || pass == MAX_PASSES) {
-      solve_velocities();
+      velocities.solve();
       freeze_zones();
       return true;
     }
     push_apart();
   }
-  if (any) solve_velocities();
+  if (any) velocities.solve();
   return any;
 }
 
 // of the gap at the end of the step
 
-double ClothGuarantee::missing(const ContactRow &row) const
+double ContactGuarantee::missing(const ContactRow &row) const
 {
   return row.gap - row.relative(mesh.end).dot(row.normal);
 }
 
-static PairMotion motion_of(const ClothPair &pair, const MovingTriangles &mesh)
+static PairMotion motion_of(const ContactPair &pair, const MovingTriangles &mesh)
 {
   PairMotion motion{pair.kind, {}, {}};
   for (int k = 0; k < 4; k++) {
@@ -81,105 +78,111 @@ static PairMotion motion_of(const ClothPair &pair, const MovingTriangles &mesh)
   return motion;
 }
 
-void ClothGuarantee::find_collisions()
+void ContactGuarantee::find_collisions()
 {
   rows.clear();
-  masses.begin(mesh.halo.n_slots());
-  candidates.update();
-  candidates.for_near(0.0, [&](const ClothPair &pair, const ClosestPoints &at) {
-    const double thickness = candidates.rules.of(pair.with_obstacle).thickness,
-                 apart = std::min(thickness, at.vector.norm());
-    const PairMotion motion = motion_of(pair, mesh);
-    const double keep = std::max(KEEP * apart, std::min(KEEP_CLOSE * apart, CLOSE * thickness));
-    if (stays_apart(motion, at.vector, keep)) return;
-    const SafeTime safe = safe_time(motion, keep);
-    rows.emplace_back(pair, closest_points(pair.kind, motion.at(safe.time)).weight,
-                      safe.vector.normalized(), std::max(GIVEN * apart, keep));
-  });
+  if (of_cloth) {
+    of_cloth->update();
+    of_cloth->for_near(
+        0.0, [this](const ContactPair &pair, const ClosestPoints &at) { follow(pair, at); });
+  }
+  if (of_particles) find_collisions_of_particles();
+  masses.begin(mesh.end.size());
   for (const ContactRow &row : rows) masses.count(row);
 }
 
-void ClothGuarantee::push_apart()
+// Of the triangles that a particle would meet, those count that are nearest then: their directions
+// lean the least into others.
+
+void ContactGuarantee::find_collisions_of_particles()
+{
+  of_particles->update();
+  std::size_t first = rows.size();
+  double smallest = 0.0;
+  int particle = -1;
+  of_particles->for_near(0.0, [&](int i, int t, const ClosestPoints &at) {
+    if (i != particle) first = rows.size();
+    particle = i;
+    if (at.vector.isZero(0.0) || !follow(mesh.pair_of(i, t), at)) return;
+    const ContactRow row = rows.back();
+    rows.pop_back();
+    const double leaning = std::max(SEAM, leaning_of(row, t));
+    if (rows.size() > first && leaning > smallest * (1.0 + SEAM)) return;
+    if (rows.size() > first && leaning < smallest * (1.0 - SEAM)) rows.resize(first, row);
+    rows.push_back(row);
+    smallest = leaning;
+  });
+}
+
+double ContactGuarantee::leaning_of(const ContactRow &row, int t) const
+{
+  return mesh.leaning_into_others(t, {-row.weight[1], -row.weight[2], -row.weight[3]}, row.normal);
+}
+
+// A row if both sides do not stay apart
+
+bool ContactGuarantee::follow(const ContactPair &pair, const ClosestPoints &at)
+{
+  const double thickness = rules.of(pair.meeting).thickness,
+               apart = std::min(thickness, at.vector.norm()),
+               keep = std::max(KEEP * apart, std::min(KEEP_CLOSE * apart, CLOSE * thickness));
+  const PairMotion motion = motion_of(pair, mesh);
+  if (stays_apart(motion, at.vector, keep)) return false;
+  const SafeTime safe = safe_time(motion, keep);
+  rows.emplace_back(pair, closest_points(pair.kind, motion.at(safe.time)).weight,
+                    safe.vector.normalized(), std::max(GIVEN * apart, keep));
+  return true;
+}
+
+void ContactGuarantee::push_apart()
 {
   masses.share(mesh.halo);
   masses.clear_impulses();
   for (const ContactRow &row : rows) {
     const double depth = missing(row);
     if (depth > 0.0) masses.apply(row, depth * masses.of(row, mesh.w) * row.normal);
-    mesh.counts.cloth_stops++;
-    pushed.push_back(row);
+    (row.meeting == Meeting::PARTICLE ? mesh.counts.stops : mesh.counts.cloth_stops)++;
+    velocities.add(row);
   }
   mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    if (masses.impulse[s].isZero(0.0)) continue;
+  for (int s = 0; s < static_cast<int>(mesh.end.size()); s++) {
+    if (masses.impulse[s].isZero(0.0) || (mesh.halo.is_ghost(s) && !mesh.is_particle(s))) continue;
     mesh.end[s] += mesh.w[s] * masses.impulse[s];
-    double *x = atom->x[mesh.halo.atom_of(s)];
-    for (int d = 0; d < 3; d++) x[d] = mesh.end[s][d];
+    const int i = mesh.atom_of(s);
+    for (int d = 0; d < 3; d++) atom->x[i][d] = mesh.end[s][d];
+    if (mesh.is_particle(s)) mesh.moved.push_back(i);
   }
   mesh.halo.forward_positions(0, mesh.end.data());
-}
-
-// both sides of what was pushed lose their approach, and get what restitution gives back
-
-void ClothGuarantee::solve_velocities()
-{
-  masses.begin(mesh.halo.n_slots());
-  for (const ContactRow &row : pushed) masses.count(row);
-  masses.share(mesh.halo);
-  velocity.resize(mesh.halo.n_slots());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const double *v = atom->v[mesh.halo.atom_of(s)];
-    velocity[s] = Vec3(v[0], v[1], v[2]);
-  }
-  mesh.halo.forward_velocities(0, velocity.data());
-  masses.clear_impulses();
-  for (const ContactRow &row : pushed) {
-    const ContactRules &rules = candidates.rules.of(row.with_obstacle);
-    const Vec3 relative = row.relative(velocity);
-    const double speed = relative.dot(row.normal);
-    if (speed >= 0.0) continue;
-    const double mass = masses.of(row, mesh.w), step = -(1.0 + rules.restitution) * speed * mass;
-    const Vec3 sliding = mass * (relative - speed * row.normal);
-    masses.apply(row, step * row.normal - clamp_length(sliding, rules.friction * step));
-  }
-  mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const Vec3 &impulse = masses.impulse[s];
-    if (impulse.isZero(0.0)) continue;
-    const int i = mesh.halo.atom_of(s);
-    for (int d = 0; d < 3; d++) atom->v[i][d] += mesh.w[s] * impulse[d];
-    if (mesh.w[s] == 0.0) mesh.push_held(i, impulse);
-  }
 }
 
 // Both sides of a collision, and all that shares a vertex with them, form a zone.  Zones grow until
 // nothing collides.
 
-void ClothGuarantee::freeze_zones()
+void ContactGuarantee::freeze_zones()
 {
   ImpactZones zones;
   for (;;) {
     std::vector<tagint> caught;
     find_collisions();
     for (const ContactRow &row : rows) {
-      mesh.counts.cloth_frozen++;
-      for (const int s : row.slots) caught.push_back(atom->tag[mesh.halo.atom_of(s)]);
+      (row.meeting == Meeting::PARTICLE ? mesh.counts.frozen : mesh.counts.cloth_frozen)++;
+      for (const int s : row.slots) caught.push_back(atom->tag[mesh.atom_of(s)]);
     }
     const std::vector<tagint> groups = allgather(caught, comm->nprocs, world);
     if (groups.empty()) return;
     if (!zones.join(groups))    // a zone keeps its shape, unless it holds vertices that do not
       error->all(FLERR,
-                 "{}: held vertices push cloth through cloth at vertices {} and {}: move pins "
-                 "slower or lower the time step",
-                 mesh.label, groups[0], groups[3]);
+                 "{}: held vertex {} or its neighbors move apart from others and crush what is "
+                 "between them, atom {}: move pins slower or lower the time step",
+                 mesh.label, groups[1], groups[0]);
     move_rigid_zones(lmp, mesh, zones);
     mesh.load_step();
   }
 }
 
-double ClothGuarantee::max_displacement() const
+double ContactGuarantee::max_displacement() const
 {
-  if (!ghosts.matters()) return 0.0;
+  if (!of_cloth || !ghosts.matters()) return 0.0;
   double max_sq = 0.0;
   for (int s = 0; s < mesh.halo.n_owned(); s++)
     max_sq = std::max({max_sq, (mesh.start[s] - vertices_then[s]).squaredNorm(),
@@ -189,11 +192,10 @@ double ClothGuarantee::max_displacement() const
 
 // Both sides of a pair may have come from so far since the list build.
 
-void ClothGuarantee::check_reach(double displacement) const
+void ContactGuarantee::check_reach(double displacement) const
 {
-  if (!ghosts.matters() || !mesh.has_triangles()) return;
-  const double needed = reach(longest[0], longest[1], candidates.rules.max_thickness()) +
-      2.0 * displacement,
+  if (!of_cloth || !ghosts.matters() || !mesh.has_triangles()) return;
+  const double needed = reach(longest[0], longest[1], rules.max_thickness()) + 2.0 * displacement,
                has = ghosts.reach();
   if (needed > has)
     error->all(FLERR,

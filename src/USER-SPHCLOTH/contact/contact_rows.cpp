@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Projects the contacts of cloth with cloth and with obstacles.
+// Projects contacts after each sweep: the constraint of no penetration in lines 24 to 28 of
+// Algorithm 1.
 //
 // Which of many near pairs push: only the nearest of a place, whose direction does not lean into
 // what borders on it, as in Chen et al., Offset geometric contact, ACM Trans. Graph. 44(4)
 // (2025): flat layers push each other along their normals.
 
-#include "contact/cloth_rows.h"
+#include "contact/contact_rows.h"
 
 #include "atom.h"
 #include "core/contact/contact_impulse.h"
@@ -18,9 +19,16 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-// of the thickness: by which two sides are expected to approach in a step, and what a pair that is
-// too near gets back in one
-static constexpr double MAX_APPROACH = 1.0, RECOVERY = 0.1;
+// of the thickness: by which two sides of cloth are expected to approach in a step, and vertices to
+// move towards a particle.  Without their constraints they may go anywhere.
+static constexpr double MAX_APPROACH = 1.0, MAX_STRIDE = 0.25;
+
+// of the thickness: what cloth that is too near to cloth gets back in a step.  Among particles this
+// comes behind the solver, where it is no velocity that heavy water would take up.
+static constexpr double RECOVERY = 0.1;
+
+// of the thickness: a vector that is shorter has no direction
+static constexpr double ROUND_OFF = 1e-6;
 
 // A pass moves loads from layer to layer.  Projections take more than one where more of a thickness
 // is missing at the start of a step, or would be at its end without contact, than `MISSING`, and
@@ -34,11 +42,12 @@ static constexpr double NONE = -1.0;
 // these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not push.
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05;
 
-void ClothRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
+void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
-bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
+bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
+  mesh.forget_particles();
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     mesh.start[s] = Vec3(step_start[s].x, step_start[s].y, step_start[s].z);
     mesh.end[s] = Vec3(step_end[s].x, step_end[s].y, step_end[s].z);
@@ -46,13 +55,19 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
   remaining = dt;
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
   mesh.halo.forward_positions(0, mesh.end.data());
-  candidates.update(MAX_APPROACH * candidates.rules.max_thickness());
-  const double missing = find_rows();
+  rows.clear();
+  details.clear();
+  active.clear();
+  const double missing = of_cloth ? find_rows_of_cloth() : 0.0;
+  n_rows_of_cloth = rows.size();
+  if (of_particles) find_rows_of_particles();
   const double mine = rows.empty() ? NONE : missing;
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
   passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
+  too_near = all > 0.0;
+  points.begin_step(dt);
   start_rows();
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
@@ -62,40 +77,64 @@ bool ClothRows::begin_step(const Vertex *step_start, const Vertex *step_end, dou
 // With room for what the constraints of the cloth add to the motion.  What is missing of a
 // thickness anywhere, as a share of it.
 
-double ClothRows::find_rows()
+double ContactRows::find_rows_of_cloth()
 {
   double missing = 0.0;
-  rows.clear();
-  details.clear();
-  active.clear();
-  candidates.for_near(candidates.max_reach(), [&](const ClothPair &pair, const ClosestPoints &at) {
+  of_cloth->update(MAX_APPROACH * rules.max_thickness());
+  of_cloth->for_near(of_cloth->max_reach(), [&](const ContactPair &pair, const ClosestPoints &at) {
     const double distance = at.vector.norm();
     if (distance == 0.0) return;
-    const double thickness = candidates.rules.of(pair.with_obstacle).thickness;
-    rows.emplace_back(
-        pair, at.weight, at.vector / distance,
-        std::min(thickness, pair.joined ? distance : distance + RECOVERY * thickness));
-    details.push_back({pair.members});
-    ContactRow &row = rows.back();
-    row.distance = distance;
+    const double thickness = rules.of(pair.meeting).thickness,
+                 recovered = pair.joined || !recovers_in_solver() ? 0.0 : RECOVERY * thickness;
+    add_row(pair, at, std::min(thickness, distance + recovered));
+    const ContactRow &row = rows.back();
     const double ahead = std::min(distance, row.relative(mesh.end).dot(row.normal));
     if (!pair.joined) missing = std::max(missing, 1.0 - ahead / thickness);
-    if (!pair.with_obstacle && !pair.joined)
+    if (pair.meeting == Meeting::CLOTH_CLOTH && !pair.joined)
       mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
   });
   return missing;
 }
 
-// where vertices are at the start of the step, with masses as they are shared in it
+// A particle that starts nearer than the thickness keeps the gap it has: contact removes approach
+// and never pushes, so it cannot add energy.
 
-void ClothRows::start_rows()
+void ContactRows::find_rows_of_particles()
+{
+  const double thickness = rules.of(Meeting::PARTICLE).thickness;
+  slot_of_particle.clear();
+  of_particles->update(MAX_STRIDE * thickness);
+  of_particles->for_near(of_particles->max_reach(), [&](int i, int t, const ClosestPoints &at) {
+    add_row(mesh.pair_of(i, t), at, std::min(thickness, at.vector.norm()));
+    slot_of_particle.push_back(rows.back().slots[0]);
+  });
+}
+
+// From a triangle in which a point lies its normal leads.
+
+void ContactRows::add_row(const ContactPair &pair, const ClosestPoints &at, double gap)
+{
+  const double distance = at.vector.norm();
+  const Vec3 normal = distance > 0.0 ? Vec3(at.vector / distance)
+                                     : mesh.normal_at_start(pair.members[1]);
+  rows.emplace_back(pair, at.weight, normal, gap);
+  rows.back().distance = distance;
+  details.push_back({pair.members, pair.joined});
+}
+
+// Where vertices are at the start of the step, with masses as they are shared in it.  A triangle
+// that is almost the nearest to a particle may become that, and counts.
+
+void ContactRows::start_rows()
 {
   mesh.end = mesh.start;
-  masses.begin(mesh.halo.n_slots());
+  masses.begin(mesh.end.size());
   for (int k = 0; k < static_cast<int>(rows.size()); k++) {
     ContactRow &row = rows[k];
-    row.share = share(k, {row.weight, row.distance * row.normal});
-    masses.count(row);
+    const ClosestPoints at{row.weight, row.distance * row.normal};
+    row.share = share(k, at);
+    masses.count(
+        row, row.meeting == Meeting::PARTICLE ? share_of_leaning(leaning_of(k, at)) : row.share);
   }
   masses.share(mesh.halo);
   awake_from.resize(rows.size());
@@ -105,7 +144,7 @@ void ClothRows::start_rows()
   }
 }
 
-double ClothRows::max_slide(const ContactRow &row) const
+double ContactRows::max_slide(const ContactRow &row) const
 {
   const double of_thickness = row.share == 0.0 ? MAX_SLIDE_ASIDE
       : row.is_inside_both()                   ? MAX_SLIDE
@@ -115,13 +154,13 @@ double ClothRows::max_slide(const ContactRow &row) const
 
 // How far both sides may move before the row may push, or its closest points are found anew.
 
-double ClothRows::asleep(const ContactRow &row, double distance, double slid) const
+double ContactRows::asleep(const ContactRow &row, double distance, double slid) const
 {
   const double room = max_slide(row) - slid;
   return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
 }
 
-void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
+void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
   substep_dt = dt;
@@ -130,27 +169,29 @@ void ClothRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt
   remaining -= dt;
   active.clear();
   masses.clear_loads();
-  if (candidates.rules.cloth.restitution > 0.0) load_velocities(v);
-  if (std::max(candidates.rules.cloth.friction, candidates.rules.obstacle.friction) == 0.0) return;
-  from.resize(mesh.halo.n_slots());
-  for (int s = 0; s < mesh.halo.n_owned(); s++)
-    from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
-  mesh.halo.forward_positions(0, from.data(), before);
+  if (rules.cloth.restitution > 0.0) load_velocities(v);
+  if (rules.max_friction() > 0.0) {
+    from = mesh.end;
+    for (int s = 0; s < mesh.halo.n_owned(); s++)
+      from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
+    mesh.halo.forward_positions(0, from.data(), before);
+  }
+  points.begin_substep(dt);
 }
 
-void ClothRows::project(Vertex *displacement)
+void ContactRows::project(Vertex *displacement)
 {
   const WallTimer clock(mesh.counts.seconds);
   for (int pass = 0; pass < passes; pass++) project_once(displacement);
 }
 
-void ClothRows::project_once(Vertex *displacement)
+void ContactRows::project_once(Vertex *displacement)
 {
   load_positions(displacement);
   masses.clear_impulses();
   awake.clear();
-  for (int k = 0; k < static_cast<int>(rows.size()); k++)
-    if (awake_from[k] <= 2.0 * path) awake.push_back(k);
+  for (std::size_t k = 0; k < rows.size(); k++)
+    if (awake_from[k] <= path_of(k)) awake.push_back(static_cast<int>(k));
   for_ahead(awake, [this](int k) {
     project_normal(k);
     if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
@@ -163,29 +204,32 @@ void ClothRows::project_once(Vertex *displacement)
     displacement[s].z += mesh.w_solver[s] * impulse[2];
     received[s] += impulse / substep_dt;
   }
+  points.push(masses.impulse);
 }
 
-void ClothRows::load_positions(const Vertex *displacement)
+void ContactRows::load_positions(const Vertex *displacement)
 {
-  end_before = mesh.end;
+  const int n = mesh.halo.n_slots();
+  end_before.assign(mesh.end.begin(), mesh.end.begin() + n);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vertex &start = substep_start[s], &by = displacement[s];
     mesh.end[s] = Vec3(start.x + by.x, start.y + by.y, start.z + by.z);
   }
   mesh.halo.forward_positions(0, mesh.end.data(), remaining);
   Vec3 together = Vec3::Zero();
-  for (std::size_t s = 0; s < end_before.size(); s++) together += mesh.end[s] - end_before[s];
-  if (!end_before.empty()) together /= static_cast<double>(end_before.size());
+  for (int s = 0; s < n; s++) together += mesh.end[s] - end_before[s];
+  if (n > 0) together /= n;
   double max_sq = 0.0;
-  for (std::size_t s = 0; s < end_before.size(); s++)
+  for (int s = 0; s < n; s++)
     max_sq = std::max(max_sq, (mesh.end[s] - end_before[s] - together).squaredNorm());
   path += std::sqrt(max_sq);
+  points.measure_paths(together);
 }
 
 // A row that sleeps would not push, and would keep its closest points: the answer does not depend
 // on what wakes it.
 
-void ClothRows::project_normal(int k)
+void ContactRows::project_normal(int k)
 {
   ContactRow &row = rows[k];
   Vec3 vector = row.relative(mesh.end);
@@ -196,7 +240,7 @@ void ClothRows::project_normal(int k)
   }
   const double distance = vector.dot(row.normal);
   if (row.normal_correction == 0.0 && (distance >= row.gap || row.share == 0.0)) {
-    awake_from[k] = 2.0 * path + asleep(row, distance, slid);
+    awake_from[k] = path_of(k) + asleep(row, distance, slid);
     return;
   }
   if (!row.active) {
@@ -205,7 +249,11 @@ void ClothRows::project_normal(int k)
     row.active = true;
     active.push_back(k);
   }
-  mesh.counts.cloth_contacts++;
+  if (row.meeting == Meeting::PARTICLE) {
+    mesh.counts.contacts++;
+    mesh.counts.deepest = std::max(mesh.counts.deepest, row.gap - distance);
+  } else
+    mesh.counts.cloth_contacts++;
   const double step = std::max((row.gap - distance) * row.mass, -row.normal_correction);
   row.normal_correction += step;
   masses.apply(row, step * row.normal);
@@ -214,14 +262,14 @@ void ClothRows::project_normal(int k)
 
 // They turn little: where their direction turns round inside both, one side has passed the other.
 
-ClothRows::Vec3 ClothRows::find_closest_points(int k)
+ContactRows::Vec3 ContactRows::find_closest_points(int k)
 {
   ContactRow &row = rows[k];
   const ClosestPoints at = closest_points(row.kind, row.of_slots(mesh.end));
   const double length = at.vector.norm();
   const bool passed = at.vector.dot(row.normal) < 0.0 && inside_both(row.kind, at);
   row.distance = passed ? -length : length;
-  if (length > 0.0) row.normal = at.vector / row.distance;
+  row.normal = normal_of(row, at);
   masses.add_load(row, -row.normal_correction);
   row.weight = at.weight;
   masses.add_load(row, row.normal_correction);
@@ -230,27 +278,51 @@ ClothRows::Vec3 ClothRows::find_closest_points(int k)
   return at.vector;
 }
 
-// How much it counts: not where another pair of the same surfaces is nearer, continuously.  What
-// the two sides have in common does not count: where a cloth is folded it is always nearer.
+// From inside a triangle it is that of the triangle, whatever the distance: next to it the vector
+// is round-off.
 
-double ClothRows::share(int k, const ClosestPoints &at) const
+ContactRows::Vec3 ContactRows::normal_of(const ContactRow &row, const ClosestPoints &at) const
+{
+  if (row.kind == PairKind::POINT_TRIANGLE && inside_both(row.kind, at)) {
+    const Vec3 &a = mesh.end[row.slots[1]], &b = mesh.end[row.slots[2]],
+               &c = mesh.end[row.slots[3]];
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    return normal.dot(row.normal) < 0.0 ? Vec3(-normal) : normal;
+  }
+  const bool is_round_off = std::fabs(row.distance) < ROUND_OFF * rules_of(row).thickness;
+  return is_round_off ? row.normal : Vec3(at.vector / row.distance);
+}
+
+// How much it counts: not where another pair of the same surfaces is nearer, continuously for
+// cloth.  What the two sides have in common does not count: where a cloth is folded it is always
+// nearer.  A particle meets the nearest triangle only, so that a flat mesh is a plane to it.
+
+double ContactRows::share(int k, const ClosestPoints &at) const
 {
   const ContactRow &row = rows[k];
   const std::array<int, 2> &members = details[k].members;
   const auto &[p, q, a, b] = row.slots;
-  if (row.kind == PairKind::POINT_TRIANGLE)
-    return share_of_leaning(mesh.leaning_into_others(
-        members[1], {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, p));
+  if (row.meeting == Meeting::PARTICLE) return leaning_of(k, at) > SEAM ? 0.0 : 1.0;
+  if (row.kind == PairKind::POINT_TRIANGLE) return share_of_leaning(leaning_of(k, at));
   const double of_edges = share_of_edges(row.of_slots(mesh.end), at);
   if (of_edges == 0.0) return 0.0;
   return of_edges * share_of_leaning(leaning_beside(members[0], -at.vector, {a, b})) *
       share_of_leaning(leaning_beside(members[1], at.vector, {p, q}));
 }
 
+// of a point into other triangles
+
+double ContactRows::leaning_of(int k, const ClosestPoints &at) const
+{
+  return mesh.leaning_into_others(details[k].members[1],
+                                  {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector,
+                                  rows[k].slots[0]);
+}
+
 // into a triangle at an edge whose third vertex is none of the other side
 
-double ClothRows::leaning_beside(int e, const Vec3 &from_nearest,
-                                 const std::array<int, 2> &other_side) const
+double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
+                                   const std::array<int, 2> &other_side) const
 {
   const auto &[a, b] = edges.edges[e];
   const Vec3 edge = mesh.end[b] - mesh.end[a];
@@ -267,7 +339,7 @@ double ClothRows::leaning_beside(int e, const Vec3 &from_nearest,
 
 // Coulomb friction against the sliding of this substep
 
-void ClothRows::project_friction(int k)
+void ContactRows::project_friction(int k)
 {
   const ContactRow &row = rows[k];
   Vec3 &correction = details[k].friction_correction;
@@ -279,9 +351,10 @@ void ClothRows::project_friction(int k)
   correction = target;
 }
 
-void ClothRows::end_substep(Vertex *v, double dt)
+void ContactRows::end_substep(Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
+  points.end_substep(dt);
   masses.share_loads(mesh.halo);
   load_velocities(v);
   masses.clear_impulses();
@@ -294,37 +367,45 @@ void ClothRows::end_substep(Vertex *v, double dt)
     v[s].z += mesh.w_solver[s] * impulse[2];
     received[s] += impulse;
   }
+  points.push_velocities(masses.impulse);
 }
 
 // and the row starts anew
 
-void ClothRows::solve_velocity(int k, double dt)
+void ContactRows::solve_velocity(int k, double dt)
 {
   ContactRow &row = rows[k];
-  const ContactRules &rules = rules_of(row);
+  const ContactRules &of_row = rules_of(row);
   if (row.normal_correction > 0.0) {
     ContactMotion motion{row.relative(velocity), row.normal, 0.0,
                          masses.by_load(row, mesh.w_solver)};
     ExchangedImpulse so_far{row.normal_correction / dt};
-    if (rules.restitution > 0.0) motion.speed_before = details[k].speed_before;
-    if (rules.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
-    masses.apply(row, contact_impulse(motion, so_far, rules.restitution, rules.friction));
+    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
+    if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
+    masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));
   }
   row.active = false;
   row.normal_correction = 0.0;
-  if (rules.friction > 0.0) details[k].friction_correction.setZero();
+  if (of_row.friction > 0.0) details[k].friction_correction.setZero();
 }
 
-void ClothRows::load_velocities(const Vertex *v)
+void ContactRows::load_velocities(const Vertex *v)
 {
-  velocity.resize(mesh.halo.n_slots());
+  points.store_velocities(velocity);
   for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = Vec3(v[s].x, v[s].y, v[s].z);
   mesh.halo.forward_velocities(0, velocity.data());
 }
 
-void ClothRows::end_step()
+void ContactRows::end_step()
 {
   const WallTimer clock(mesh.counts.seconds);
+  points.end_step(atom);
+  push_held();
+  if (too_near && !recovers_in_solver()) recover_gaps();
+}
+
+void ContactRows::push_held() const
+{
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     if (mesh.w[s] > 0.0 || received[s].isZero(0.0)) continue;
     for (int d = 0; d < 3; d++) mesh.counts.impulse[d] += received[s][d] / force->ftm2v;
@@ -332,8 +413,47 @@ void ClothRows::end_step()
   }
 }
 
-double ClothRows::memory_usage() const
+// of cloth, without velocity
+
+void ContactRows::recover_gaps()
 {
-  return masses.bytes() +
-      bytes_of(rows, details, awake_from, awake, active, from, end_before, velocity, received);
+  for (int s = 0; s < mesh.halo.n_owned(); s++) mesh.end[s] = mesh.position(s);
+  mesh.halo.forward_positions(0, mesh.end.data());
+  find_missing_gaps();
+  masses.share(mesh.halo);
+  masses.clear_impulses();
+  for (const int k : awake) {
+    const ContactRow &row = rows[k];
+    const double thickness = rules_of(row).thickness,
+                 step = std::min(thickness - row.distance, RECOVERY * thickness);
+    masses.apply(row, step * masses.of(row, mesh.w) * row.normal);
+  }
+  mesh.halo.reverse_add(0, masses.impulse.data());
+  for (int s = 0; s < mesh.halo.n_owned(); s++)
+    for (int d = 0; d < 3; d++)
+      atom->x[mesh.halo.atom_of(s)][d] += mesh.w[s] * masses.impulse[s][d];
+}
+
+// Those that keep the whole thickness miss nothing while they sleep.
+
+void ContactRows::find_missing_gaps()
+{
+  awake.clear();
+  masses.begin(mesh.end.size());
+  for (std::size_t n = 0; n < n_rows_of_cloth; n++) {
+    const int k = static_cast<int>(n);
+    const double thickness = rules_of(rows[k]).thickness;
+    if (details[k].joined || (rows[k].gap == thickness && awake_from[k] > path_of(k))) continue;
+    find_closest_points(k);
+    if (rows[k].share == 0.0 || rows[k].distance >= thickness) continue;
+    awake.push_back(k);
+    masses.count(rows[k]);
+  }
+}
+
+double ContactRows::memory_usage() const
+{
+  return masses.bytes() + points.bytes() +
+      bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, end_before,
+               velocity, received);
 }

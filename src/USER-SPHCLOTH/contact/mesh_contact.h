@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Contact with one mesh, or with several that are joined to one: with particles, and of cloth with
+// itself, other cloth and obstacles.  Phases of a step: candidates (broad phase), rows (between the
+// sweeps over the constraints of a cloth), and behind the solver gaps of particles and a guarantee.
+
+#ifndef SPHCLOTH_CONTACT_MESH_CONTACT_H
+#define SPHCLOTH_CONTACT_MESH_CONTACT_H
+
+#include "contact/candidate_pairs.h"
+#include "contact/cloth_candidates.h"
+#include "contact/contact_guarantee.h"
+#include "contact/contact_rows.h"
+#include "contact/mesh_edges.h"
+#include "contact/moving_triangles.h"
+#include "contact/particle_gaps.h"
+
+#include <memory>
+
+namespace LAMMPS_NS {
+
+class MeshContact : protected Pointers {
+ public:
+  // Does it meet particles, and does cloth meet cloth or obstacles?  obstacle_bits: groups of its
+  // vertices that are of obstacles
+  struct Concerns {
+    bool particles, cloth;
+    int obstacle_bits;
+  };
+
+  MeshContact(LAMMPS *, MovingTriangles &, const Concerns &, const MeetingRules &);
+  MeshContact(const MeshContact &) = delete;    // phases refer to one another
+  MeshContact &operator=(const MeshContact &) = delete;
+
+  MovingTriangles &mesh() { return triangles; }
+  ContactRows &rows() { return contact_rows; }
+  const MeshEdges &edges() const { return mesh_edges; }
+
+  void rebuild();    // after each list build, behind the triangles
+  // Before the first list build of a run, collective: moves vertices until no edge passes through a
+  // triangle, and then atoms to their ranks.
+  void untangle();
+  // At the start of a run, behind the list build, collective.  Errors: a thickness above the height
+  // of a triangle; edges that pass through triangles.
+  void check_start(bool untangled);
+
+  // Behind the solver.  Collective; was there anything to resolve?
+  bool resolve();
+
+  double memory_usage() const;
+
+ private:
+  MovingTriangles &triangles;
+  const MeetingRules rules;
+  MeshEdges mesh_edges;
+  std::unique_ptr<CandidatePairs> of_particles;    // none: no particles meet it
+  std::unique_ptr<ClothCandidates> of_cloth;    // none: cloth meets nothing but particles
+  ContactRows contact_rows;
+  std::unique_ptr<ParticleGaps> gaps;
+  ContactGuarantee guarantee;
+
+  void move_to_owners() const;
+  void check_heights() const;
+  void warn_of_too_near() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

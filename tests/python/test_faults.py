@@ -24,7 +24,9 @@ from sphcloth.trajectory import Trajectory
 EXAMPLES = int(os.environ.get("SPHCLOTH_EXAMPLES", 120))
 
 
-def test_a_run_that_was_killed_goes_on_to_the_last_bit(monkeypatch):
+@pytest.fixture
+def killed_at_rows(monkeypatch):
+    """Runs are killed when their logs have so many rows."""
     rows = iter((3, 9))
 
     def await_rows(folder, _):
@@ -33,9 +35,22 @@ def test_a_run_that_was_killed_goes_on_to_the_last_bit(monkeypatch):
             time.sleep(0.01)
 
     monkeypatch.setattr(kill, "_await", await_rows)
+
+
+@pytest.mark.usefixtures("killed_at_rows")
+def test_a_run_that_was_killed_goes_on_to_the_last_bit():
     found = list(kill.trials(2, [2], ["block"], seed=3))
     assert [trial.complaint for trial in found] == ["", ""]
     assert all(trial.in_time and trial.had_file for trial in found)
+
+
+@pytest.mark.usefixtures("killed_at_rows")
+def test_ranks_that_a_launcher_leaves_over_are_killed_and_counted(monkeypatch):
+    """Without any patience it has always left some, and the run goes on all the same."""
+    monkeypatch.setattr(kill, "GRACE_SECONDS", 0.0)
+    (found,) = kill.trials(1, [2], ["block"], seed=3)
+    assert found.left_over and found.in_time and found.had_file
+    assert found.complaint == ""
 
 
 @pytest.fixture(scope="module")

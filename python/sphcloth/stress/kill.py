@@ -27,8 +27,10 @@ from sphcloth.stress.case import SCENES, SCHEMES
 from sphcloth.stress.processes import descendants, kill_all, run_to_end, start
 
 SCRIPT = SCENES / "in.kill"
-# seconds that the others have to end after one of them was killed, and a run at all
-GRACE_SECONDS, TIMEOUT_SECONDS = 300.0, 1800.0
+# Seconds that the launcher has to end the other ranks after one of them was killed, and a run at
+# all.  Rarely MPICH's does not: it sees the end of what started the killed rank before that of the
+# connection to it, and forgets the others.
+GRACE_SECONDS, TIMEOUT_SECONDS = 20.0, 1800.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,7 @@ class Trial:
         killed: "one" or "all" of its ranks.
         at: seconds after its start.
         in_time: whether it still ran then.
+        left_over: whether the launcher left other ranks running, which were killed then.
         had_file: whether there was a restart file to go on from; otherwise it began anew.
         complaint: what went wrong, empty if it ended as the run that was not killed.
     """
@@ -49,6 +52,7 @@ class Trial:
     killed: str
     at: float
     in_time: bool
+    left_over: bool
     had_file: bool
     complaint: str
 
@@ -88,36 +92,36 @@ def _whole(folder: Path, scheme: str, ranks: int) -> tuple[float, bytes]:
 
 def _trial(folder: Path, scheme: str, ranks: int, killed: str, at: float, end: bytes) -> Trial:
     folder.mkdir()
-    in_time, complaint = _run_and_kill(folder, scheme, ranks, killed, at)
+    in_time, left_over = _run_and_kill(folder, scheme, ranks, killed, at)
     had_file = (folder / "last.restart").exists()
-    if not complaint:
-        complaint = _finish(folder, scheme, ranks, "yes" if had_file else "no")
+    complaint = _finish(folder, scheme, ranks, "yes" if had_file else "no")
     if not complaint and (folder / "end.txt").read_bytes() != end:
         complaint = "it ended in another state"
-    return Trial(scheme, ranks, killed, at, in_time, had_file, complaint)
+    return Trial(scheme, ranks, killed, at, in_time, left_over, had_file, complaint)
 
 
 def _run_and_kill(
     folder: Path, scheme: str, ranks: int, killed: str, at: float
-) -> tuple[bool, str]:
-    """Return whether the run was still there when it was killed, and what went wrong."""
+) -> tuple[bool, bool]:
+    """Return whether the run was still there when it was killed, and whether ranks were left."""
     run = start(_command(scheme, ranks, "no"), folder)
     _await(folder, at)
     in_time = run.poll() is None
     family = descendants(run.pid)
     one = [pid for pid in family if _is_rank(pid)][-1:] if killed == "one" else []
     victims = one or family
+    left_over = False
     kill_all(victims)
     try:
         # before it has started its ranks it comes to its end
         run.wait(GRACE_SECONDS if victims else TIMEOUT_SECONDS)
     except subprocess.TimeoutExpired:
-        return in_time, f"the other ranks went on for {GRACE_SECONDS:g} s"
+        left_over = True
     finally:
         kill_all([*family, *descendants(run.pid)])
         kill_all([run.pid] if run.poll() is None else [])
         run.wait()
-    return in_time, ""
+    return in_time, left_over
 
 
 def _await(_: Path, at: float) -> None:
@@ -145,11 +149,14 @@ def _finish(folder: Path, scheme: str, ranks: int, again: str) -> str:
 
 def show(found: Sequence[Trial], console: Console) -> bool:
     """Print a row for each scheme and number of ranks; return whether all went well."""
-    table = Table("scheme", "ranks", "killed", "had a file", "same to the last bit")
+    table = Table(
+        "scheme", "ranks", "killed", "ranks left over", "had a file", "same to the last bit"
+    )
     for scheme, ranks in dict.fromkeys((t.scheme, t.ranks) for t in found):
         here = [t for t in found if (t.scheme, t.ranks) == (scheme, ranks)]
         counts = (
             sum(t.in_time for t in here),
+            sum(t.left_over for t in here),
             sum(t.had_file for t in here),
             sum(not t.complaint for t in here),
         )

@@ -40,7 +40,7 @@ bool ContactGuarantee::resolve_collisions()
   velocities.clear();
   bool any = false;
   for (int pass = 0; pass <= MAX_PASSES; pass++) {
-    find_collisions();
+    find_collisions(pass > 0);
     const bool can_push = std::any_of(rows.begin(), rows.end(),
                                       [this](const ContactRow &row) { return missing(row) > 0.0; });
     const double mine[3] = {rows.empty() ? 0.0 : 1.0, can_push ? 1.0 : 0.0,
@@ -78,7 +78,9 @@ static PairMotion motion_of(const ContactPair &pair, const MovingTriangles &mesh
   return motion;
 }
 
-void ContactGuarantee::find_collisions()
+// The candidates of particles are those of their gaps, until triangles have moved.
+
+void ContactGuarantee::find_collisions(bool triangles_moved)
 {
   rows.clear();
   if (of_cloth) {
@@ -86,7 +88,10 @@ void ContactGuarantee::find_collisions()
     of_cloth->for_near(
         0.0, [this](const ContactPair &pair, const ClosestPoints &at) { follow(pair, at); });
   }
-  if (of_particles) find_collisions_of_particles();
+  if (of_particles) {
+    if (triangles_moved) of_particles->update();
+    find_collisions_of_particles();
+  }
   masses.begin(mesh.end.size());
   for (const ContactRow &row : rows) masses.count(row);
 }
@@ -96,7 +101,6 @@ void ContactGuarantee::find_collisions()
 
 void ContactGuarantee::find_collisions_of_particles()
 {
-  of_particles->update();
   std::size_t first = rows.size();
   double smallest = 0.0;
   int particle = -1;
@@ -163,7 +167,7 @@ void ContactGuarantee::freeze_zones()
   ImpactZones zones;
   for (;;) {
     std::vector<tagint> caught;
-    find_collisions();
+    find_collisions(true);
     for (const ContactRow &row : rows) {
       (row.meeting == Meeting::PARTICLE ? mesh.counts.frozen : mesh.counts.cloth_frozen)++;
       for (const int s : row.slots) caught.push_back(atom->tag[mesh.atom_of(s)]);

@@ -33,7 +33,8 @@ class ContactGuarantee : protected Pointers {
   // after each list build, collective
   void rebuild();
 
-  // Of the motion from the last step's positions to the present ones.  Collective; was there any?
+  // Behind the gaps of particles: of the motion from the last step's positions to the present ones.
+  // Collective; was there any?
   bool resolve_collisions();
 
   // how far ghosts must reach for edges of such lengths: over that of the cloth, the gap, and what
@@ -61,7 +62,7 @@ class ContactGuarantee : protected Pointers {
   std::vector<Vec3> vertices_then;    // owned ones, at the list build
   std::array<double, 2> longest{};    // edge of cloth, and of obstacles
 
-  void find_collisions();
+  void find_collisions(bool triangles_moved);
   void find_collisions_of_particles();
   bool follow(const ContactPair &, const sphcloth::ClosestPoints &at_start);
   double leaning_of(const ContactRow &, int triangle) const;

@@ -31,11 +31,25 @@ void JoinedCoupling::rebuild()
   other.resize(mesh.halo.n_owned());
 }
 
+// At the start of the step, where they end it as `other`.  Those that rest are not moved again.
+
+void JoinedCoupling::start_obstacles()
+{
+  obstacles_rest = true;
+  for (const int s : moved) {
+    const sphcloth::Sweep sweep = mesh.sweep_of(mesh.halo.atom_of(s));
+    obstacles_rest = obstacles_rest && sweep.end == sweep.start;
+    start[s] = {sweep.start[0], sweep.start[1], sweep.start[2], 0.0};
+    other[s] = {sweep.end[0], sweep.end[1], sweep.end[2], 0.0};
+  }
+}
+
 // Vertices of obstacles: start after a share of the step, and `other` as a multiple of their
 // displacement in the step
 
 void JoinedCoupling::move_obstacles(double passed, double multiple)
 {
+  if (obstacles_rest) return;
   for (const int s : moved) {
     const sphcloth::Sweep sweep = mesh.sweep_of(mesh.halo.atom_of(s));
     const Eigen::Vector3d by = sweep.end - sweep.start, at = sweep.start + passed * by;
@@ -66,12 +80,9 @@ bool JoinedCoupling::Part::begin_step(const Vertex *from, const Vertex *end, dou
   if (!is_last()) return true;
   whole.step_dt = dt;
   whole.elapsed = 0.0;
-  whole.move_obstacles(0.0, 0.0);
-  for (const int s : whole.moved) {
-    const double *x = whole.atom->x[whole.mesh.halo.atom_of(s)];
-    whole.other[s] = {x[0], x[1], x[2], 0.0};
-  }
+  whole.start_obstacles();
   whole.present = whole.all.begin_step(whole.start.data(), whole.other.data(), dt);
+  for (const int s : whole.moved) whole.other[s] = {0.0, 0.0, 0.0, 0.0};
   return true;
 }
 

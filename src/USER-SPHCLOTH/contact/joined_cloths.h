@@ -94,9 +94,10 @@ class JoinedCoupling : protected Pointers {
   double step_dt = 0.0, substep_dt = 0.0;
   double elapsed = 0.0;    // of the step, with this substep
   std::vector<std::unique_ptr<Part>> parts;
-  bool present = false;    // in this step
+  bool present = false, obstacles_rest = false;    // in this step
   std::vector<sphcloth::Vertex> start, other;    // owned vertices of all
 
+  void start_obstacles();
   void move_obstacles(double position, double displacement);
   void scatter();
 };

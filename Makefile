@@ -36,7 +36,7 @@ demo: $(VENV)/installed
 
 test: $(VENV)/installed build/core/test_core
 	$(CTEST) build/core
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 	$(BIN)/ruff check python tests packaging
 	$(BIN)/ruff format --check python tests packaging
 

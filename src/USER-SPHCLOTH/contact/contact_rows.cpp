@@ -122,6 +122,10 @@ void ContactRows::add_row(const ContactPair &pair, const ClosestPoints &at, doub
   details.push_back({pair.members, pair.joined});
 }
 
+// of a particle, whose direction leans by so much into other triangles: the nearest, or not
+
+static double share_of_nearest(double leaning) { return leaning > SEAM ? 0.0 : 1.0; }
+
 // Where vertices are at the start of the step, with masses as they are shared in it.  A triangle
 // that is almost the nearest to a particle may become that, and counts.
 
@@ -132,9 +136,14 @@ void ContactRows::start_rows()
   for (int k = 0; k < static_cast<int>(rows.size()); k++) {
     ContactRow &row = rows[k];
     const ClosestPoints at{row.weight, row.distance * row.normal};
-    row.share = share(k, at);
-    masses.count(
-        row, row.meeting == Meeting::PARTICLE ? share_of_leaning(leaning_of(k, at)) : row.share);
+    if (row.meeting == Meeting::PARTICLE) {
+      const double leaning = leaning_of(k, at);
+      row.share = share_of_nearest(leaning);
+      masses.count(row, share_of_leaning(leaning));
+    } else {
+      row.share = share(k, at);
+      masses.count(row);
+    }
   }
   masses.share(mesh.halo);
   awake_from.resize(rows.size());
@@ -302,7 +311,7 @@ double ContactRows::share(int k, const ClosestPoints &at) const
   const ContactRow &row = rows[k];
   const std::array<int, 2> &members = details[k].members;
   const auto &[p, q, a, b] = row.slots;
-  if (row.meeting == Meeting::PARTICLE) return leaning_of(k, at) > SEAM ? 0.0 : 1.0;
+  if (row.meeting == Meeting::PARTICLE) return share_of_nearest(leaning_of(k, at));
   if (row.kind == PairKind::POINT_TRIANGLE) return share_of_leaning(leaning_of(k, at));
   const double of_edges = share_of_edges(row.of_slots(mesh.end), at);
   if (of_edges == 0.0) return 0.0;

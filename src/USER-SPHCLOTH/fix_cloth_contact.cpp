@@ -136,9 +136,7 @@ void FixClothContact::make_contacts(const std::vector<FixPBDCloth *> &cloths)
   }
   for_all_surfaces([&](ContactSurface &surface) {
     separate.push_back(std::make_unique<MeshContact>(
-        lmp, surface.triangles,
-        MeshContact::Concerns{particle_bits != 0, !cloths.empty() && options.cloth_meets_cloth, 0},
-        meeting_rules()));
+        lmp, surface.triangles, !cloths.empty() && options.cloth_meets_cloth, 0, meeting_rules()));
     contacts.push_back(separate.back().get());
   });
   for (std::size_t k = 0; k < cloths.size(); k++)

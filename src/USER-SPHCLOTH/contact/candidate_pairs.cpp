@@ -25,6 +25,7 @@ void CandidatePairs::clear()
 
 void CandidatePairs::update(double max_stride)
 {
+  if (none()) return;
   const bool holds = still_holds(max_stride);
   if (holds && candidates.empty()) return;
   measure_strides(max_stride);

@@ -23,6 +23,8 @@ class CandidatePairs : protected Pointers {
 
   CandidatePairs(LAMMPS *lmp_, const MovingTriangles &mesh_) : Pointers(lmp_), mesh(mesh_) {}
 
+  bool none() const { return mesh.groupbits == 0; }    // no particles are of concern
+
   // after each list build: there is no list
   void clear();
 

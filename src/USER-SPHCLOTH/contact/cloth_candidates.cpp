@@ -30,6 +30,7 @@ double ClothCandidates::margin() const
 
 void ClothCandidates::update(double max_approach)
 {
+  if (none()) return;
   limit = max_approach;
   const bool known = revision == edges.revision();
   if (known) measure();

@@ -35,6 +35,8 @@ class ClothCandidates : protected Pointers {
   {
   }
 
+  bool none() const { return !edges.needed; }    // cloth meets nothing but particles
+
   // Behind each list build of LAMMPS pairs of the same vertices and triangles are kept.
 
   // After each change of the sweeps of vertices.  The two sides of a pair are taken to approach by

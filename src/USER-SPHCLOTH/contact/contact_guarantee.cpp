@@ -28,7 +28,7 @@ static constexpr int MAX_PASSES = 20;
 
 void ContactGuarantee::rebuild()
 {
-  if (!of_cloth || !ghosts.matters()) return;
+  if (of_cloth.none() || !ghosts.matters()) return;
   vertices_then.resize(mesh.halo.n_owned());
   for (int s = 0; s < mesh.halo.n_owned(); s++) vertices_then[s] = mesh.position(s);
   const std::array<double, 2> here = edges.longest_here();
@@ -83,15 +83,11 @@ static PairMotion motion_of(const ContactPair &pair, const MovingTriangles &mesh
 void ContactGuarantee::find_collisions(bool triangles_moved)
 {
   rows.clear();
-  if (of_cloth) {
-    of_cloth->update();
-    of_cloth->for_near(
-        0.0, [this](const ContactPair &pair, const ClosestPoints &at) { follow(pair, at); });
-  }
-  if (of_particles) {
-    if (triangles_moved) of_particles->update();
-    find_collisions_of_particles();
-  }
+  of_cloth.update();
+  of_cloth.for_near(0.0,
+                    [this](const ContactPair &pair, const ClosestPoints &at) { follow(pair, at); });
+  if (triangles_moved) of_particles.update();
+  find_collisions_of_particles();
   masses.begin(mesh.end.size());
   for (const ContactRow &row : rows) masses.count(row);
 }
@@ -104,23 +100,18 @@ void ContactGuarantee::find_collisions_of_particles()
   std::size_t first = rows.size();
   double smallest = 0.0;
   int particle = -1;
-  of_particles->for_near(0.0, [&](int i, int t, const ClosestPoints &at) {
+  of_particles.for_near(0.0, [&](int i, int t, const ClosestPoints &at) {
     if (i != particle) first = rows.size();
     particle = i;
     if (at.vector.isZero(0.0) || !follow(mesh.pair_of(i, t), at)) return;
     const ContactRow row = rows.back();
     rows.pop_back();
-    const double leaning = std::max(SEAM, leaning_of(row, t));
+    const double leaning = std::max(SEAM, mesh.leaning_into_others(t, {row.weight, row.normal}));
     if (rows.size() > first && leaning > smallest * (1.0 + SEAM)) return;
     if (rows.size() > first && leaning < smallest * (1.0 - SEAM)) rows.resize(first, row);
     rows.push_back(row);
     smallest = leaning;
   });
-}
-
-double ContactGuarantee::leaning_of(const ContactRow &row, int t) const
-{
-  return mesh.leaning_into_others(t, {-row.weight[1], -row.weight[2], -row.weight[3]}, row.normal);
 }
 
 // A row if both sides do not stay apart
@@ -150,7 +141,7 @@ void ContactGuarantee::push_apart()
   }
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < static_cast<int>(mesh.end.size()); s++) {
-    if (masses.impulse[s].isZero(0.0) || (mesh.halo.is_ghost(s) && !mesh.is_particle(s))) continue;
+    if (masses.impulse[s].isZero(0.0) || !mesh.is_owned(s)) continue;
     mesh.end[s] += mesh.w[s] * masses.impulse[s];
     const int i = mesh.atom_of(s);
     for (int d = 0; d < 3; d++) atom->x[i][d] = mesh.end[s][d];
@@ -186,7 +177,7 @@ void ContactGuarantee::freeze_zones()
 
 double ContactGuarantee::max_displacement() const
 {
-  if (!of_cloth || !ghosts.matters()) return 0.0;
+  if (of_cloth.none() || !ghosts.matters()) return 0.0;
   double max_sq = 0.0;
   for (int s = 0; s < mesh.halo.n_owned(); s++)
     max_sq = std::max({max_sq, (mesh.start[s] - vertices_then[s]).squaredNorm(),
@@ -198,7 +189,7 @@ double ContactGuarantee::max_displacement() const
 
 void ContactGuarantee::check_reach(double displacement) const
 {
-  if (!of_cloth || !ghosts.matters() || !mesh.has_triangles()) return;
+  if (of_cloth.none() || !ghosts.matters() || !mesh.has_triangles()) return;
   const double needed = reach(longest[0], longest[1], rules.max_thickness()) + 2.0 * displacement,
                has = ghosts.reach();
   if (needed > has)

@@ -21,9 +21,8 @@ class ContactGuarantee : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // no candidates of a kind: it is of no concern
   ContactGuarantee(LAMMPS *lmp_, MovingTriangles &mesh_, const MeshEdges &edges_,
-                   CandidatePairs *of_particles_, ClothCandidates *of_cloth_,
+                   CandidatePairs &of_particles_, ClothCandidates &of_cloth_,
                    const MeetingRules &rules_) :
       Pointers(lmp_), mesh(mesh_), edges(edges_), of_particles(of_particles_), of_cloth(of_cloth_),
       rules(rules_), ghosts(lmp, mesh.label), velocities(lmp, mesh, rules_)
@@ -52,8 +51,8 @@ class ContactGuarantee : protected Pointers {
  private:
   MovingTriangles &mesh;
   const MeshEdges &edges;
-  CandidatePairs *const of_particles;
-  ClothCandidates *const of_cloth;
+  CandidatePairs &of_particles;
+  ClothCandidates &of_cloth;
   const MeetingRules rules;
   GhostReach ghosts;
   SplitMasses masses;
@@ -65,7 +64,6 @@ class ContactGuarantee : protected Pointers {
   void find_collisions(bool triangles_moved);
   void find_collisions_of_particles();
   bool follow(const ContactPair &, const sphcloth::ClosestPoints &at_start);
-  double leaning_of(const ContactRow &, int triangle) const;
   double missing(const ContactRow &) const;
   void push_apart();
   void freeze_zones();

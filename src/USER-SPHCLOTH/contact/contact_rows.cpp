@@ -58,9 +58,9 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   rows.clear();
   details.clear();
   active.clear();
-  const double missing = of_cloth ? find_rows_of_cloth() : 0.0;
+  const double missing = find_rows_of_cloth();
   n_rows_of_cloth = rows.size();
-  if (of_particles) find_rows_of_particles();
+  find_rows_of_particles();
   const double mine = rows.empty() ? NONE : missing;
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
@@ -80,8 +80,8 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
 double ContactRows::find_rows_of_cloth()
 {
   double missing = 0.0;
-  of_cloth->update(MAX_APPROACH * rules.max_thickness());
-  of_cloth->for_near(of_cloth->max_reach(), [&](const ContactPair &pair, const ClosestPoints &at) {
+  of_cloth.update(MAX_APPROACH * rules.max_thickness());
+  of_cloth.for_near(of_cloth.max_reach(), [&](const ContactPair &pair, const ClosestPoints &at) {
     const double distance = at.vector.norm();
     if (distance == 0.0) return;
     const double thickness = rules.of(pair.meeting).thickness,
@@ -103,8 +103,8 @@ void ContactRows::find_rows_of_particles()
 {
   const double thickness = rules.of(Meeting::PARTICLE).thickness;
   slot_of_particle.clear();
-  of_particles->update(MAX_STRIDE * thickness);
-  of_particles->for_near(of_particles->max_reach(), [&](int i, int t, const ClosestPoints &at) {
+  of_particles.update(MAX_STRIDE * thickness);
+  of_particles.for_near(of_particles.max_reach(), [&](int i, int t, const ClosestPoints &at) {
     add_row(mesh.pair_of(i, t), at, std::min(thickness, at.vector.norm()));
     slot_of_particle.push_back(rows.back().slots[0]);
   });
@@ -205,15 +205,22 @@ void ContactRows::project_once(Vertex *displacement)
     project_normal(k);
     if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
   });
+  push_vertices(displacement, substep_dt);
+  points.push(masses.impulse);
+}
+
+// by what rows of all ranks have pushed: displacements in this time, or velocities
+
+void ContactRows::push_vertices(Vertex *by_slot, double time)
+{
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const Vec3 &impulse = masses.impulse[s];
-    displacement[s].x += mesh.w_solver[s] * impulse[0];
-    displacement[s].y += mesh.w_solver[s] * impulse[1];
-    displacement[s].z += mesh.w_solver[s] * impulse[2];
-    received[s] += impulse / substep_dt;
+    by_slot[s].x += mesh.w_solver[s] * impulse[0];
+    by_slot[s].y += mesh.w_solver[s] * impulse[1];
+    by_slot[s].z += mesh.w_solver[s] * impulse[2];
+    received[s] += impulse / time;
   }
-  points.push(masses.impulse);
 }
 
 void ContactRows::load_positions(const Vertex *displacement)
@@ -323,9 +330,7 @@ double ContactRows::share(int k, const ClosestPoints &at) const
 
 double ContactRows::leaning_of(int k, const ClosestPoints &at) const
 {
-  return mesh.leaning_into_others(details[k].members[1],
-                                  {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector,
-                                  rows[k].slots[0]);
+  return mesh.leaning_into_others(details[k].members[1], at, rows[k].slots[0]);
 }
 
 // into a triangle at an edge whose third vertex is none of the other side
@@ -368,14 +373,7 @@ void ContactRows::end_substep(Vertex *v, double dt)
   load_velocities(v);
   masses.clear_impulses();
   for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const Vec3 &impulse = masses.impulse[s];
-    v[s].x += mesh.w_solver[s] * impulse[0];
-    v[s].y += mesh.w_solver[s] * impulse[1];
-    v[s].z += mesh.w_solver[s] * impulse[2];
-    received[s] += impulse;
-  }
+  push_vertices(v, 1.0);
   points.push_velocities(masses.impulse);
 }
 

@@ -21,9 +21,8 @@ class ContactRows : public SolverCoupling, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  // no candidates of a kind: it is of no concern
   ContactRows(LAMMPS *lmp_, MovingTriangles &mesh_, const MeshEdges &edges_,
-              CandidatePairs *of_particles_, ClothCandidates *of_cloth_,
+              CandidatePairs &of_particles_, ClothCandidates &of_cloth_,
               const MeetingRules &rules_) :
       Pointers(lmp_), mesh(mesh_), edges(edges_), of_particles(of_particles_), of_cloth(of_cloth_),
       rules(rules_), points(mesh_)
@@ -44,8 +43,8 @@ class ContactRows : public SolverCoupling, protected Pointers {
  private:
   MovingTriangles &mesh;
   const MeshEdges &edges;
-  CandidatePairs *const of_particles;
-  ClothCandidates *const of_cloth;
+  CandidatePairs &of_particles;
+  ClothCandidates &of_cloth;
   const MeetingRules rules;
   struct Detail {    // of a row
     std::array<int, 2> members;    // see ContactPair
@@ -77,7 +76,7 @@ class ContactRows : public SolverCoupling, protected Pointers {
     return row < n_rows_of_cloth ? 2.0 * path
                                  : path + points.path(slot_of_particle[row - n_rows_of_cloth]);
   }
-  bool recovers_in_solver() const { return !of_particles; }
+  bool recovers_in_solver() const { return of_particles.none(); }
   double find_rows_of_cloth();
   void find_rows_of_particles();
   void add_row(const ContactPair &, const sphcloth::ClosestPoints &at_start, double gap);
@@ -85,6 +84,7 @@ class ContactRows : public SolverCoupling, protected Pointers {
   double max_slide(const ContactRow &) const;
   double asleep(const ContactRow &, double distance, double slid) const;
   void project_once(sphcloth::Vertex *displacement);
+  void push_vertices(sphcloth::Vertex *by_slot, double time);
   void load_positions(const sphcloth::Vertex *displacement);
   void load_velocities(const sphcloth::Vertex *v);
   // rows are fetched from memory some ahead

@@ -25,7 +25,7 @@ class JoinedContact {
                 const ParticleColumns &last_positions) :
       joined(lmp, label, all_of(meshes), meshes.cloth_bits | meshes.obstacle_bits),
       triangles(lmp, &joined, label, particle_bits, rules.others, counts, last_positions),
-      contact(lmp, triangles, {particle_bits != 0, true, meshes.obstacle_bits}, rules),
+      contact(lmp, triangles, true, meshes.obstacle_bits, rules),
       coupling(lmp, contact.rows(), triangles, contact.edges())
   {
     for (const ContactMesh *cloth : meshes.cloths) parts.push_back(coupling.add_part(cloth));

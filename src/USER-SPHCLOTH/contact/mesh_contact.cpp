@@ -16,17 +16,14 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-MeshContact::MeshContact(LAMMPS *lmp_, MovingTriangles &triangles_, const Concerns &concerns,
-                         const MeetingRules &rules_) :
+MeshContact::MeshContact(LAMMPS *lmp_, MovingTriangles &triangles_, bool meets_cloth,
+                         int obstacle_bits, const MeetingRules &rules_) :
     Pointers(lmp_), triangles(triangles_), rules(rules_),
-    mesh_edges(lmp, triangles, concerns.obstacle_bits, concerns.cloth),
-    of_particles(concerns.particles ? std::make_unique<CandidatePairs>(lmp, triangles) : nullptr),
-    of_cloth(concerns.cloth ? std::make_unique<ClothCandidates>(lmp, triangles, mesh_edges, rules)
-                            : nullptr),
-    contact_rows(lmp, triangles, mesh_edges, of_particles.get(), of_cloth.get(), rules),
-    gaps(of_particles ? std::make_unique<ParticleGaps>(lmp, triangles, *of_particles, rules)
-                      : nullptr),
-    guarantee(lmp, triangles, mesh_edges, of_particles.get(), of_cloth.get(), rules)
+    mesh_edges(lmp, triangles, obstacle_bits, meets_cloth), of_particles(lmp, triangles),
+    of_cloth(lmp, triangles, mesh_edges, rules),
+    contact_rows(lmp, triangles, mesh_edges, of_particles, of_cloth, rules),
+    gaps(lmp, triangles, of_particles, rules),
+    guarantee(lmp, triangles, mesh_edges, of_particles, of_cloth, rules)
 {
 }
 
@@ -34,10 +31,8 @@ void MeshContact::rebuild()
 {
   mesh_edges.rebuild();
   contact_rows.rebuild();
-  if (of_particles) {
-    of_particles->clear();
-    gaps->rebuild();
-  }
+  of_particles.clear();
+  gaps.rebuild();
   guarantee.rebuild();
 }
 
@@ -45,7 +40,7 @@ bool MeshContact::resolve()
 {
   const WallTimer clock(triangles.counts.seconds);
   triangles.load_step();
-  const bool any = gaps && gaps->keep();
+  const bool any = gaps.keep();
   return guarantee.resolve_collisions() || any;
 }
 
@@ -53,7 +48,7 @@ bool MeshContact::resolve()
 
 void MeshContact::untangle()
 {
-  if (!of_cloth) return;
+  if (of_cloth.none()) return;
   constexpr int MAX_ROUNDS = 3;
   for (int round = 0; round < MAX_ROUNDS; round++) {
     triangles.rebuild(rules.max_thickness());
@@ -78,8 +73,8 @@ void MeshContact::move_to_owners() const
 
 void MeshContact::check_start(bool untangled)
 {
-  if (gaps) gaps->warn_of_too_near();
-  if (!of_cloth) return;
+  gaps.warn_of_too_near();
+  if (of_cloth.none()) return;
   triangles.load_positions();
   if (rules.cloth_meets_cloth) check_heights();
   check_tangles(lmp, triangles, mesh_edges, rules.cloth_meets_cloth,
@@ -88,7 +83,7 @@ void MeshContact::check_start(bool untangled)
                                   "cloths and obstacles apart",
                                   MAX_PASSES_OF_UNTANGLING)
                     : "place the cloths and obstacles apart, or add 'untangle yes'");
-  of_cloth->update();
+  of_cloth.update();
   warn_of_too_near();
 }
 
@@ -116,7 +111,7 @@ void MeshContact::check_heights() const
 void MeshContact::warn_of_too_near() const
 {
   bigint mine = 0, all;
-  of_cloth->for_near(rules.max_thickness(), [&](const ContactPair &pair, const ClosestPoints &at) {
+  of_cloth.for_near(rules.max_thickness(), [&](const ContactPair &pair, const ClosestPoints &at) {
     if (!pair.joined && at.vector.norm() < 0.999 * rules.of(pair.meeting).thickness) mine++;
   });
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -130,8 +125,6 @@ void MeshContact::warn_of_too_near() const
 
 double MeshContact::memory_usage() const
 {
-  double bytes = mesh_edges.memory_usage() + contact_rows.memory_usage() + guarantee.memory_usage();
-  if (of_particles) bytes += of_particles->memory_usage() + gaps->memory_usage();
-  if (of_cloth) bytes += of_cloth->memory_usage();
-  return bytes;
+  return mesh_edges.memory_usage() + of_particles.memory_usage() + of_cloth.memory_usage() +
+      contact_rows.memory_usage() + gaps.memory_usage() + guarantee.memory_usage();
 }

@@ -14,20 +14,14 @@
 #include "contact/moving_triangles.h"
 #include "contact/particle_gaps.h"
 
-#include <memory>
-
 namespace LAMMPS_NS {
 
 class MeshContact : protected Pointers {
  public:
-  // Does it meet particles, and does cloth meet cloth or obstacles?  obstacle_bits: groups of its
-  // vertices that are of obstacles
-  struct Concerns {
-    bool particles, cloth;
-    int obstacle_bits;
-  };
-
-  MeshContact(LAMMPS *, MovingTriangles &, const Concerns &, const MeetingRules &);
+  // meets_cloth: cloth meets cloth or obstacles; obstacle_bits: groups of its vertices that are of
+  // obstacles
+  MeshContact(LAMMPS *, MovingTriangles &, bool meets_cloth, int obstacle_bits,
+              const MeetingRules &);
   MeshContact(const MeshContact &) = delete;    // phases refer to one another
   MeshContact &operator=(const MeshContact &) = delete;
 
@@ -52,10 +46,10 @@ class MeshContact : protected Pointers {
   MovingTriangles &triangles;
   const MeetingRules rules;
   MeshEdges mesh_edges;
-  std::unique_ptr<CandidatePairs> of_particles;    // none: no particles meet it
-  std::unique_ptr<ClothCandidates> of_cloth;    // none: cloth meets nothing but particles
+  CandidatePairs of_particles;
+  ClothCandidates of_cloth;
   ContactRows contact_rows;
-  std::unique_ptr<ParticleGaps> gaps;
+  ParticleGaps gaps;
   ContactGuarantee guarantee;
 
   void move_to_owners() const;

@@ -15,13 +15,14 @@ class MeshEdges : protected Pointers {
  public:
   // obstacle_bits: groups of vertices that are of obstacles; needed: or there are no edges
   MeshEdges(LAMMPS *lmp_, const TriangleSet &mesh_, int obstacle_bits_, bool needed_) :
-      Pointers(lmp_), mesh(mesh_), obstacle_bits(obstacle_bits_), needed(needed_)
+      Pointers(lmp_), needed(needed_), mesh(mesh_), obstacle_bits(obstacle_bits_)
   {
   }
 
   // after each list build, behind the triangles
   void rebuild();
 
+  const bool needed;
   std::vector<std::array<int, 2>> edges;    // slots
   // the third vertices of the triangles at edge e: opposite[first[e] .. first[e+1])
   std::vector<int> first, opposite;
@@ -48,7 +49,6 @@ class MeshEdges : protected Pointers {
  private:
   const TriangleSet &mesh;
   const int obstacle_bits;
-  const bool needed;
   std::vector<std::array<int, 3>> triangles;    // that edges are of
   std::vector<tagint> tags;    // of slots
   std::vector<char> obstacle;

@@ -70,6 +70,8 @@ class MovingTriangles : public TriangleSet {
   void forget_particles();
   std::vector<int> particles;    // owned atoms, of those slots
   bool is_particle(int slot) const { return slot >= halo.n_slots(); }
+  // by this rank: a vertex or a particle
+  bool is_owned(int slot) const { return is_particle(slot) || !halo.is_ghost(slot); }
   int atom_of(int slot) const
   {
     return is_particle(slot) ? particles[slot - halo.n_slots()] : halo.atom_of(slot);
@@ -80,6 +82,11 @@ class MovingTriangles : public TriangleSet {
   // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.
   double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
                              int slot_of_point = -1) const;
+  double leaning_into_others(int t, const sphcloth::ClosestPoints &at, int slot_of_point = -1) const
+  {
+    return leaning_into_others(t, {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector,
+                               slot_of_point);
+  }
   bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest) const
   {
     return leaning_into_others(t, weight, from_nearest) > sphcloth::SEAM;

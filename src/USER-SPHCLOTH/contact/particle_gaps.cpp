@@ -50,6 +50,7 @@ template <class Visit> void ParticleGaps::for_particles(Visit visit)
 
 bool ParticleGaps::keep()
 {
+  if (candidates.none()) return false;
   velocities.clear();
   candidates.update();
   double mine[2] = {0.0, region.max_vertex_displacement()}, all[2];
@@ -167,6 +168,7 @@ bool ParticleGaps::is_deeper(const Gap &gap, const Gap &than) const
 
 void ParticleGaps::warn_of_too_near()
 {
+  if (candidates.none()) return;
   mesh.load_step();
   candidates.update();
   bigint mine = 0, all;

@@ -25,7 +25,10 @@ class ParticleGaps : protected Pointers {
   }
 
   // after each list build
-  void rebuild() { region.rebuild(); }
+  void rebuild()
+  {
+    if (!candidates.none()) region.rebuild();
+  }
 
   // Of the motion from the last step's positions to the present ones.  Collective; was there any?
   bool keep();

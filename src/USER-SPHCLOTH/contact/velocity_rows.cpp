@@ -22,7 +22,7 @@ void VelocityRows::solve()
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < static_cast<int>(velocity.size()); s++) {
     const Vec3 &impulse = masses.impulse[s];
-    if (impulse.isZero(0.0) || (mesh.halo.is_ghost(s) && !mesh.is_particle(s))) continue;
+    if (impulse.isZero(0.0) || !mesh.is_owned(s)) continue;
     const int i = mesh.atom_of(s);
     for (int d = 0; d < 3; d++) atom->v[i][d] += mesh.w[s] * impulse[d];
     if (mesh.w[s] == 0.0) mesh.push_held(i, impulse);

@@ -69,7 +69,7 @@ def test_reference_logs_are_like_themselves(example, which):
         assert which == NUDGED
 
 
-@pytest.mark.parametrize(("row", "allowed"), [(5, 0), (-1, 1)])
+@pytest.mark.parametrize(("row", "allowed"), [(2, 0), (-1, 1)])
 def test_what_is_more_than_allowed_differs(changed, row, allowed):
     """Early rows must agree better than late ones."""
     limit = reference_logs.ALIKE[allowed] * scale("v_fluid")
@@ -97,13 +97,13 @@ def shorter(log: Path, copy: Path) -> Path:
 def test_what_a_nudge_changes_is_allowed_from_then_on(changed):
     """And a row before, as rows are far apart."""
     change = 100 * reference_logs.ALIKE[1] * scale("v_fluid")
-    assert not compare(changed("v_fluid", 60, change), EXAMPLE, "1", alike=True)
-    shutil.copy(changed("v_fluid", 60, 0.11 * change), log_of(EXAMPLE, NUDGED))
-    for row in (59, 60, 90):
+    assert not compare(changed("v_fluid", 8, change), EXAMPLE, "1", alike=True)
+    shutil.copy(changed("v_fluid", 8, 0.11 * change), log_of(EXAMPLE, NUDGED))
+    for row in (7, 8, 12):
         assert compare(changed("v_fluid", row, change), EXAMPLE, "1", alike=True)
-    assert not compare(changed("v_fluid", 58, change), EXAMPLE, "1", alike=True)
-    assert not compare(changed("v_fluid", 60, 1.2 * change), EXAMPLE, "1", alike=True)
-    assert not compare(changed("v_strain", 60, 0.1 * scale("v_strain")), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_fluid", 6, change), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_fluid", 8, 1.2 * change), EXAMPLE, "1", alike=True)
+    assert not compare(changed("v_strain", 8, 0.1 * scale("v_strain")), EXAMPLE, "1", alike=True)
 
 
 def test_where_a_nudge_changes_the_number_of_rows_it_may_differ(tmp_path):

@@ -195,8 +195,8 @@ void FixSPHIntegrate::post_run()
 {
   control.times.end_run();
   if (scheme == SteppingScheme::CONSTANT) return;
-  const std::string waits =
-      scheme == SteppingScheme::INDIVIDUAL ? label + report.waits_in_words() : "";
+  const std::string waits = scheme == SteppingScheme::INDIVIDUAL ? label + report.waits_in_words()
+                                                                 : "";
   if (comm->me) return;
   utils::logmesg(lmp, "{}: steps by limit:{}\n{}", label, report.steps_in_words(), waits);
 }
@@ -220,6 +220,7 @@ struct FixSPHIntegrate::Record {
   Limit limited_by;
   bigint steps;
   double time;
+  StabilityWatch::State watch;
   std::array<double, N_LIMITS> steps_by_limit;
   BlockClock clock;
   SteppingScheme scheme;
@@ -244,6 +245,7 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       state.limited_by,
                       state.steps,
                       state.time,
+                      state.watch,
                       report.steps_by_limit,
                       stepper->clock() ? *stepper->clock() : BlockClock(),
                       scheme};
@@ -254,8 +256,8 @@ void FixSPHIntegrate::restart(char *buf)
 {
   const auto record = read_record<Record>(buf, label, error);
   keep_restored_time(update);
-  control.restore(
-      {record.previous, record.largest_before, record.limited_by, record.steps, record.time});
+  control.restore({record.previous, record.largest_before, record.limited_by, record.steps,
+                   record.time, record.watch});
   restored_step = record.next;
   // the time step that LAMMPS restored is the last one that was taken, no ceiling
   if (!options.ceiling_given) options.ceiling = record.ceiling;
@@ -288,7 +290,7 @@ void FixSPHIntegrate::copy_arrays(int i, int j, int)
 
 void FixSPHIntegrate::set_arrays(int i)
 {
-  rows[i][UpdateRows::OWN_STEP] = rows[i][UpdateRows::LAST_UPDATE] = 0.0;
+  std::fill_n(rows[i], UpdateRows::N_COLUMNS, 0.0);
   rows[i][UpdateRows::ACTIVE] = 1.0;
   stepper->columns().clear(i);
   stepper->add_particle(i);

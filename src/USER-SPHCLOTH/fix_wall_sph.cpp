@@ -369,6 +369,28 @@ bool FixWallSPH::moves_beside(int i)
   });
 }
 
+// Behind a wall the spring adds the square of its own frequency.
+
+void FixWallSPH::add_stiffness(int i, Stiffness &s)
+{
+  if (!query(i)) return;
+  const int type = atom->type[i];
+  const Tait &eos = fluid->equation_of_state(type);
+  const double support = fluid->support(type), rho = atom->rho[i];
+  const double nu = slip ? 0.0 : fluid->type(type).nu;
+  for (std::size_t k = 0; k < walls.size(); k++) {
+    const double delta = walls[k].distance(atom->x[i]) / support;
+    if (delta >= 1.0) continue;
+    const double share = joint_share(near, k);
+    s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k, share);
+    if (delta < 0.0) {
+      const double of_spring = rho / (STOPPING_DEPTH * support);
+      s.fluid += of_spring * of_spring / atom_mass(atom, i);
+    }
+    s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support);
+  }
+}
+
 void FixWallSPH::add_to(ConcentrationGradient &concentration, int i)
 {
   if (!query(i)) return;

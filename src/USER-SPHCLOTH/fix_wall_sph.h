@@ -49,6 +49,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
 
   double approach(int i) override;
   bool moves_beside(int i) override;
+  void add_stiffness(int i, sphcloth::Stiffness &) override;
 
   // what the walls of the last evaluation add to the concentration gradient of a fluid particle
   void add_to(sphcloth::ConcentrationGradient &, int i);

@@ -90,7 +90,7 @@ void PairSPHTait::init_style()
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
   fluid.set_lattice_masses();    // 'mass' may have come since
-  comm_forward = fluid.diffuses() ? 3 : 2;
+  comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;
   fluid.begin_run();
 }
 

@@ -10,11 +10,24 @@
 
 using namespace sphcloth;
 
+namespace {
+
+StepCoefficients by_sound()
+{
+  StepCoefficients lambda;
+  lambda.stability = 0.0;
+  lambda.acoustic = 0.5;
+  lambda.viscous = 0.2;
+  return lambda;
+}
+
+}    // namespace
+
 BOOST_AUTO_TEST_SUITE(step_limits)
 
 BOOST_AUTO_TEST_CASE(each_formula_on_its_own)
 {
-  const StepCoefficients lambda;
+  const StepCoefficients lambda = by_sound();
   const StepState rest{0.1, 0.0, 0.0, 0.0, 0.0, 1000.0, 0.0};
   BOOST_CHECK(std::isinf(particle_limit(lambda, rest).dt));
 
@@ -24,7 +37,7 @@ BOOST_AUTO_TEST_CASE(each_formula_on_its_own)
   BOOST_CHECK(particle_limit(lambda, s).by == Limit::VELOCITY);
   s = rest;
   s.accel_sq = 100.0;
-  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.05 * std::sqrt(0.1 / 10.0), 1e-17);    // (11)
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.2 * std::sqrt(0.1 / 10.0), 1e-17);    // (11)
   BOOST_CHECK(particle_limit(lambda, s).by == Limit::FORCE);
   s = rest;
   s.sound = 20.0;
@@ -59,9 +72,38 @@ BOOST_AUTO_TEST_CASE(time_to_cross_a_gap)
   BOOST_CHECK_SMALL(time_to_cross(0.0, -3.0, 6.0) - 1.0, 1e-16);    // away, and back again
 }
 
+BOOST_AUTO_TEST_CASE(stability_of_frequencies_and_friction)
+{
+  const StepCoefficients lambda;
+  StepState s{0.1, 0.0, 0.0, 0.0, 0.0, 1000.0, 0.0};
+  s.of_fluid_sq = 400.0;
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.95 * 2.0 / 20.0, 1e-16);
+  BOOST_CHECK(particle_limit(lambda, s).by == Limit::ACOUSTIC);
+  s.of_vertices_sq = 500.0;
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.95 * 2.0 / 30.0, 1e-16);
+  BOOST_CHECK(particle_limit(lambda, s).by == Limit::WETTED);
+  s.friction = 16.0;
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.95 * 2.0 / 50.0, 1e-16);
+  s.friction = 40.0;
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.95 * 2.0 / 90.0, 1e-16);
+  BOOST_CHECK(particle_limit(lambda, s).by == Limit::VISCOUS);
+  s.until_pressed = 1.0;    // friction limits free flight, too
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.95 / 40.0, 1e-16);
+  BOOST_CHECK(std::isinf(stable_step(0.0, 0.0)));
+  // x'' = -omega^2 x - r x', step by step: at the limit nothing grows
+  const double dt = stable_step(900.0, 16.0);
+  double x = 1.0, v = 0.0, largest = 0.0;
+  for (int n = 0; n < 1000; n++) {
+    v += dt * (-900.0 * x - 16.0 * v);
+    x += dt * v;
+    largest = std::max(largest, std::fabs(x));
+  }
+  BOOST_CHECK(largest <= 1.0);
+}
+
 BOOST_AUTO_TEST_CASE(limits_of_a_vertex)
 {
-  StepCoefficients lambda;
+  StepCoefficients lambda = by_sound();
   StepState s{0.1, 4.0, 0.0, 20.0, 0.0, 0.0, 0.0};
   BOOST_CHECK_SMALL(vertex_limit(lambda, s, 0.01).dt - 0.5 * 0.05 / 20.0, 1e-17);
   BOOST_CHECK(vertex_limit(lambda, s, 0.01).by == Limit::WETTED);
@@ -120,8 +162,10 @@ BOOST_AUTO_TEST_CASE(output_times_are_never_below_their_decimal_number)
 BOOST_AUTO_TEST_CASE(a_coefficient_of_zero_switches_its_limit_off)
 {
   StepCoefficients off;
-  off.velocity = off.force = off.acoustic = off.viscous = off.density = 0.0;
-  BOOST_CHECK(std::isinf(particle_limit(off, {0.1, 9.0, 9.0, 9.0, 9.0, 1000.0, 9.0}).dt));
+  off.stability = off.velocity = off.force = off.acoustic = off.viscous = off.density = 0.0;
+  StepState all{0.1, 9.0, 9.0, 9.0, 9.0, 1000.0, 9.0};
+  all.of_fluid_sq = all.of_vertices_sq = all.friction = 9.0;
+  BOOST_CHECK(std::isinf(particle_limit(off, all).dt));
 }
 
 BOOST_AUTO_TEST_CASE(step_between_ceiling_growth_and_floor)
@@ -148,18 +192,29 @@ BOOST_AUTO_TEST_CASE(whole_steps_of_equation_15_are_rounded_down_at_least_one)
 
 BOOST_AUTO_TEST_CASE(limits_of_many_particles_at_once_are_those_of_each)
 {
-  StepCoefficients lambda, off{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {}};
+  StepCoefficients lambda = by_sound(), stable, off = by_sound();
+  off.velocity = off.force = off.acoustic = off.viscous = off.density = 0.0;
   lambda.relative = 0.3;
   constexpr int N = StepStates::MAX - 3;    // does not fill the last vector
   StepStates states;
   for (int k = 0; k < N; k++) {
     const double on = k % 5 ? 1.0 : 0.0;
-    states.set(k,
-               {0.1, 0.1 * k, on * k * k, k % 8 ? 0.1 : 20.0, 0.01 * (k % 7), 1000.0,
-                on * (100.0 * k - 3000.0), on * 0.2 * k, k % 3 ? 0.0 : 0.004});
+    StepState s{0.1,
+                0.1 * k,
+                on * k * k,
+                k % 8 ? 0.1 : 20.0,
+                0.01 * (k % 7),
+                1000.0,
+                on * (100.0 * k - 3000.0),
+                on * 0.2 * k,
+                k % 3 ? 0.0 : 0.004};
+    s.of_fluid_sq = 1e4 * (k % 4);
+    s.of_vertices_sq = 1e4 * (k % 6);
+    s.friction = 50.0 * (k % 9);
+    states.set(k, s);
   }
   std::set<Limit> by;
-  for (const StepCoefficients &of : {lambda, off}) {
+  for (const StepCoefficients &of : {lambda, stable, off}) {
     StepLimits limits;
     limits.dt[N] = -1.0;
     particle_limits(of, states, N, limits);

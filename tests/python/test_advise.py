@@ -170,10 +170,16 @@ def test_an_expected_speed_counts_beside_the_measured_one(tmp_path: Path) -> Non
 
 
 def test_the_acoustic_limit_and_what_a_longer_step_does(tmp_path: Path) -> None:
-    advice = water(tmp_path, scheme="global velocity 0 force 0 viscous 0 density 0")
+    scheme = "global acoustic 0.4 velocity 0 force 0 viscous 0 density 0"
+    advice = water(tmp_path, scheme=scheme)
     assert topics(advice)["time step"] == "fix step water sph/integrate ... acoustic 0.8"
-    (step,) = advice.needs
+    step = advice.needs[0]
     assert "acoustic set " in step.measured and "times as long" in step.measured
+
+
+def test_a_step_that_is_as_long_as_is_stable_has_no_advice(tmp_path: Path) -> None:
+    advice = water(tmp_path, scheme="global velocity 0 force 0 density 0")
+    assert "time step" not in topics(advice)
 
 
 def test_a_ceiling_that_sets_the_step(tmp_path: Path) -> None:
@@ -317,12 +323,12 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
     for value, name in meant.items():
         assert run.last(value) == run.last(f"v_{name}") is not None
-    by_limit = {"velocity": 3, "force": 4, "wetted": 1760, "max": 79, "output": 2}
+    by_limit = {"velocity": 7, "force": 19, "wetted": 347, "max": 91, "output": 2}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
     step = "fix step fluid sph/integrate global until 0.5"
     assert found == {
-        "limits viscous, density": f"{step} viscous 0 density 0",
+        "limit density": f"{step} density 0",
         "contact": "# fix contact fluid cloth/contact",
         "drain": "# fix drain fluid sph/drain",
     }

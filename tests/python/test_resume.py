@@ -97,7 +97,7 @@ def test_pour_goes_on_as_if_it_had_never_stopped(tmp_path: Path) -> None:
     """To round-off: a run that begins takes up its forces in another order."""
 
     def pour(folder: str, t_end: float, resume: bool = False) -> tuple[ThermoTable, Trajectory]:
-        settings = {"t_end": f"{t_end}", "frames": f"{t_end / 0.05:.0f}", "keep": "200"}
+        settings = {"t_end": f"{t_end}", "frames": f"{t_end / 0.05:.0f}", "keep": "60"}
         console, out = Console(file=io.StringIO()), tmp_path / folder
         run_example("pour", "tiny", 1, out, settings, None, console, resume=resume)
         return ThermoTable.read(out / "log.lammps"), Trajectory(out / "pour.lammpstrj")

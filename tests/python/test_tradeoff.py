@@ -429,7 +429,7 @@ def test_all_schemes_of_a_scene_print_at_the_same_times(tmp_path: Path, quiet: C
     schemes = ("constant", "global", "individual")
     wish = plan(
         schemes=schemes,
-        vary={"acoustic": ("0.8",)},
+        vary={"acoustic": ("0.8",), "force": ("0.05",)},
         settings={"spacing": "0.05", "t_end": "0.5"},
         reference={"acoustic": "0.2"},
         quick=True,

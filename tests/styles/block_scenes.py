@@ -28,7 +28,7 @@ velocity falls set 0 0 -3 units box
     + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1")
     + neighbor(0.03)
     + """timestep {ceiling}
-fix step all sph/integrate global gain 1 velocity 0 until {end} {limits}
+fix step all sph/integrate global gain 1 velocity 0 acoustic 0.5 force 0.05 until {end} {limits}
 run_style sph/adaptive {scheme}
 thermo_modify norm no
 """

@@ -315,7 +315,7 @@ create_atoms 1 single 4.5 0 0
 group pulled id 2
 set atom 5 vy 3.0
 fix pull pulled addforce 0 0 $(0.125*40)
-fix step all sph/integrate global gain 1 {viscous}
+fix step all sph/integrate global gain 1 force 0.05 {viscous}
 run_style sph/adaptive {scheme}
 """
 )

@@ -20,7 +20,9 @@ from scenes import (
 
 def on_free_sheet(wall, limits):
     """Let water fall on a sheet of boundary particles or on one that is a wall."""
-    scene = FREE_SHEET.replace("sph/integrate global", f"sph/integrate global velocity 0 {limits}")
+    scene = FREE_SHEET.replace(
+        "sph/integrate global", f"sph/integrate global velocity 0 acoustic 0.5 force 0.05 {limits}"
+    )
     if wall:
         scene = scene.replace("3 3 boundary", "3 3 none").replace(
             "cloth/contact 0.03", "cloth/contact 0.03 wall yes\ncomm_modify cutoff 0.3"

@@ -106,7 +106,7 @@ def test_a_soft_sheet_gains_no_energy_in_steps_that_vary(tmp_path):
     energy = np.array([float(row[2]) for row in rows])
     steps = np.array([float(row[1]) for row in rows])
     assert steps.max() > 4 * steps.min()
-    assert len(energy) > 20
+    assert len(energy) > 8
     # the water of the start is a little compressed
     assert energy.max() < 1.05 * energy[0]
 

@@ -20,7 +20,7 @@ STYLES = (
     + """timestep 0.001
 group fluid type 1 2
 group floor type 3
-fix step fluid sph/integrate global
+fix step fluid sph/integrate global acoustic 0.5
 """
 )
 

@@ -140,7 +140,7 @@ def test_a_ceiling_that_divides_the_interval_is_never_cut():
 
 def test_dumps_by_time_come_with_the_first_step_that_reaches_it(tmp_path):
     """Also where steps grow and shrink much between two frames."""
-    scene = DAM.format(scheme="global acoustic 1.2", style="").replace("run 100", SHAKEN)
+    scene = DAM.format(scheme="global acoustic 1.2 force 0.05", style="").replace("run 100", SHAKEN)
     log = run(
         write(
             tmp_path,

@@ -27,10 +27,10 @@ SOFT = 0.02
 OFTEN, SELDOM, BETWEEN = 5, 60, 15
 # skin over support: what was measured to be best lies between (docs/evidence/speed.md)
 LEAST_SKIN, MOST_SKIN = 0.1, 1.2
-# constant steps over smoothing length / speed of sound: the default of global, and stability
+# constant steps over smoothing length / speed of sound: short ones, and stability
 USUAL, STABLE = 0.5, 1.6
 
-# coefficient of the acoustic limit to try: the default is 0.5, runs are stable up to about 1.6
+# coefficient of a limit by sound to try, where the script gives one: runs are stable up to 1.6
 LOUDER = "0.8"
 # how much more compression a longer step may bring
 MORE_COMPRESSION = 1.2
@@ -126,7 +126,8 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
         block = "run_style sph/adaptive block"
         yield Finding("time step", measured, block), Trial(_saves_updates, before=(block,))
     elif name in ("acoustic", "wetted"):
-        now = float(stepper.value(name, stepper.value("acoustic", "0.5")))
+        # without a coefficient the step is as long as is stable
+        now = float(stepper.value(name, stepper.value("acoustic", LOUDER)))
         louder = f"{name} {LOUDER}"
         if now < float(LOUDER):
             yield Finding("time step", measured, f"{stepper.line} ... {louder}"), _longer(louder)
@@ -180,7 +181,7 @@ def _constant(run: Evidence) -> Iterator[Finding]:
         return
     allowed = min(fluid.support / 2 / fluid.sound for fluid in commands.fluids.values())
     share = step / allowed
-    measured = f"constant step {step:.3g} is {share:.2g} h_s/c0; global takes {USUAL:g}"
+    measured = f"constant step {step:.3g} is {share:.2g} h_s/c0; {USUAL:g} is accurate"
     if share < USUAL / 2:
         yield Finding("time step", measured, f"timestep {USUAL * allowed:.2g}")
     if share > STABLE:

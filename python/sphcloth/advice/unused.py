@@ -10,7 +10,7 @@ from sphcloth.advice.evidence import Evidence
 from sphcloth.fix_values import LIMITS
 
 # limits of fix sph/integrate that can be switched off, with the value that is their default
-DEFAULTS = {"velocity": "0.1", "force": "0.05", "viscous": "0.2", "density": "0.1"}
+DEFAULTS = {"velocity": "0.1", "force": "0.2", "density": "0.1"}
 OPTIONAL = ("relative", "cloth", "fluctuation")
 # arguments of fix wall/sph: faces and their positions come first
 FACES = ("xlo", "xhi", "ylo", "yhi", "zlo", "zhi")
@@ -43,9 +43,6 @@ def _limits(run: Evidence) -> Iterator[Finding]:
         return
     off = [name for name in DEFAULTS if _is_on(stepper, name, DEFAULTS[name])]
     off += [name for name in OPTIONAL if _is_on(stepper, name, "0")]
-    # without a viscosity there is no such limit to switch off
-    if not any(fluid.alpha or fluid.nu for fluid in run.commands.fluids.values()):
-        off = [name for name in off if name != "viscous"]
     off = [name for name in off if not set_by.get(name) and not _particles(run, stepper, name)]
     if off:
         keywords = " ".join(f"{name} 0" for name in off)

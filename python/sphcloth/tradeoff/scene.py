@@ -23,6 +23,7 @@ AS_WRITTEN = "as written"
 LIMITS = (
     "velocity",
     "force",
+    "stability",
     "acoustic",
     "wetted",
     "viscous",

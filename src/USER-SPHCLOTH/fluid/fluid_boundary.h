@@ -6,6 +6,8 @@
 #ifndef SPHCLOTH_FLUID_FLUID_BOUNDARY_H
 #define SPHCLOTH_FLUID_FLUID_BOUNDARY_H
 
+#include "core/sph/stiffness.h"
+
 #include <Eigen/Core>
 
 #include <functional>
@@ -13,6 +15,7 @@
 
 namespace LAMMPS_NS {
 
+class FluidStability;
 class Modify;
 
 // Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of
@@ -65,6 +68,12 @@ class FluidBoundary {
   // of an owned vertex, if wanted
   virtual void want_wetting() {}
   virtual Wetting wetting(int) const { return {}; }
+
+  // For the limit of stability: what it adds to an owned fluid particle; then, collective, to its
+  // own vertices, with the weights of the fluid; and what these add to the row of a particle
+  virtual void add_stiffness(int i, sphcloth::Stiffness &) = 0;
+  virtual void find_vertex_stiffness(const FluidStability &) {}
+  virtual void add_row(int, sphcloth::VertexRow &) {}
 
  protected:
   ~FluidBoundary() noexcept(false) = default;

@@ -46,6 +46,7 @@ void FluidEvaluation::begin_run()
 {
   active = nullptr;    // until a fix sets the active particles
   hooks = nullptr;
+  stability.forget();
   pressures_follow = false;
   boundaries = find_fluid_boundaries(modify);
   find_sides();
@@ -171,6 +172,7 @@ void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 
 void FluidEvaluation::end()
 {
+  if (stability.wanted()) find_frequencies();
   if (hooks) hooks->apply_impulses();
   for (FluidBoundary *boundary : boundaries) boundary->end();
   is_evaluated = true;
@@ -198,6 +200,7 @@ void FluidEvaluation::begin_lists()
                  atom->tag[i], v[0], v[1], v[2]);
   }
   evaluated_order = order_of_atoms(atom);
+  stability.lists_have_changed();
 }
 
 // Lists as wide as LAMMPS's hold until LAMMPS renews its own, which follows the fastest particle.
@@ -381,6 +384,15 @@ void FluidEvaluation::check_densities() const
                  STYLE, atom->tag[i], atom->rho[i]);
 }
 
+void FluidEvaluation::find_frequencies()
+{
+  const Particles p = particles();
+  stability.find_fluid(*core, p, boundaries);
+  stability.find_vertices(*core, p, boundaries);
+  if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
+  stability.find_rows(*core, p, boundaries);
+}
+
 // Inactive particles keep their pressure until lists are built: then it follows from the density.
 
 void FluidEvaluation::find_pressures(const Particles &p)
@@ -414,6 +426,7 @@ int FluidEvaluation::ghost_size(GhostData what)
     case GhostData::MASS_OR_VOLUME: return 1;
     case GhostData::DENSITY: return 2;
     case GhostData::GRADIENT: return 3;
+    case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
   }
   return 0;
 }
@@ -430,6 +443,7 @@ int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) c
         *end++ = p_over_rho2[i];
         break;
       case GhostData::GRADIENT: end = std::copy_n(&gradient[3 * i], 3, end); break;
+      case GhostData::STIFFNESS: end = stability.pack(i, end); break;
     }
   }
   return static_cast<int>(end - buf);
@@ -448,12 +462,13 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
         std::copy_n(buf, 3, &gradient[3 * i]);
         buf += 3;
         break;
+      case GhostData::STIFFNESS: buf = stability.unpack(i, buf); break;
     }
   }
 }
 
 double FluidEvaluation::bytes() const
 {
-  return (core ? core->bytes() : 0.0) +
+  return (core ? core->bytes() : 0.0) + stability.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, rate, gradient, approach, active_fluid);
 }

@@ -11,9 +11,9 @@
 
 namespace LAMMPS_NS {
 
-// what ghosts get from their owners: one number, density and pressure, or three
+// what ghosts get from their owners: one number, density and pressure, three, or what a vertex has
 
-enum class GhostData { MASS_OR_VOLUME, DENSITY, GRADIENT };
+enum class GhostData { MASS_OR_VOLUME, DENSITY, GRADIENT, STIFFNESS };
 
 class GhostExchange {
  public:
@@ -44,6 +44,7 @@ class FluidEvaluation : public FluidState {
   void find_virials(sphcloth::Fluid::Receiver receive, void *context);
   void end();    // impulses, and what boundaries pass on
 
+  static constexpr int LARGEST_GHOST_SIZE = FluidStability::GHOST_SIZE;
   static int ghost_size(GhostData);
   int pack(GhostData, int n, const int *list, double *buf) const;
   void unpack(GhostData, int n, int first, const double *buf);
@@ -75,6 +76,7 @@ class FluidEvaluation : public FluidState {
   void find_pressures(const sphcloth::Particles &);
   void push(FluidBoundary &);
   void find_boundary_pressures(const sphcloth::Particles &);
+  void find_frequencies();
 
   // act(i, equation of state) for active fluid particles
   template <class Act> void for_each_fluid(Act &&act) const

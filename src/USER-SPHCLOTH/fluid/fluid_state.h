@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "fluid/fluid_boundary.h"
+#include "fluid/fluid_stability.h"
 #include "fluid/sph_materials.h"
 
 #include <algorithm>
@@ -26,7 +27,10 @@ class FluidState : public SPHMaterials {
   // name of extract() of the pair style
   static constexpr const char *EXTRACT = "fluid_state";
 
-  FluidState(class LAMMPS *lmp_, Pair *pair_) : SPHMaterials(lmp_), pair(pair_) {}
+  FluidState(class LAMMPS *lmp_, Pair *pair_) :
+      SPHMaterials(lmp_), stability(lmp_, *this), pair(pair_)
+  {
+  }
   // of the pair style in use; null if it is not sph/tait
   static FluidState *find(Force *);
 
@@ -66,6 +70,10 @@ class FluidState : public SPHMaterials {
   void want_density_rate();
   void want_approach() { core->model.outputs = sphcloth::Outputs::RATE_AND_APPROACH; }
   void want_wetting() const;
+  // the fastest motions that fluid, and vertices of this mobility, can make
+  void want_frequencies(const VertexMobility *vertices) { stability.want(vertices); }
+  void want_frequencies_now(bool whether) { stability.want_now(whether); }
+  const Frequencies &frequencies(int i) const { return stability[i]; }
   double approach_speed(int i);
   Wetting wetting(int i);
   // the rates of a type of fluid, of this viscosity at the boundary
@@ -98,6 +106,7 @@ class FluidState : public SPHMaterials {
                      const double *span);
 
  protected:
+  FluidStability stability;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;

@@ -6,6 +6,7 @@
 #include "atom.h"
 #include "core/contact/point_triangle.h"
 #include "error.h"
+#include "fluid/fluid_stability.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
@@ -42,6 +43,14 @@ Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
   return distance_vector(p, positions[s[0]], positions[s[1]], positions[s[2]], weight);
 }
 
+void BoundaryMesh::find_masses()
+{
+  inverse_mass.assign(set->halo.n_slots(), 0.0);
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    inverse_mass[s] = set->mesh->inverse_mass(set->halo.atom_of(s));
+  set->halo.forward(0, inverse_mass);
+}
+
 void BoundaryMesh::find_positions()
 {
   for (std::size_t s = 0; s < positions.size(); s++)
@@ -55,7 +64,8 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
 {
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
-  wetting = forces;
+  wetting = stiffness = forces;
+  find_masses();
   positions.resize(forces.size());
   find_positions();
   list_positions = positions;
@@ -225,6 +235,24 @@ void BoundaryMesh::sum_up(std::vector<Vec3> &quantities,
   std::fill(quantities.begin(), quantities.end(), Vec3::Zero());
 }
 
+void BoundaryMesh::complete_stiffness()
+{
+  set->halo.reverse_add(0, stiffness.data());
+  for (int s = 0; s < set->halo.n_owned(); s++) stiffness[s] *= inverse_mass[s];
+  set->halo.forward(0, stiffness.data());
+}
+
+Eigen::Vector3d BoundaryMesh::stiffness_at(const ClosestPoint &closest) const
+{
+  Vec3 found = Vec3::Zero();
+  for (int q = 0; q < 3; q++) {
+    const Vec3 &of = stiffness[closest.vertices[q]];
+    found[0] += closest.weight[q] * of[0];
+    found[1] = std::max(found[1], of[1]);
+  }
+  return found;
+}
+
 /* ----------------------------------------------------------------------
    all meshes
 ------------------------------------------------------------------------- */
@@ -372,22 +400,60 @@ void MeshBoundary::push_more(int i, double p_over_rho2, double times)
 
 void MeshBoundary::push(int i, double p_over_rho2, double times, bool first_push)
 {
-  const int type = atom->type[i];
-  const Tait &eos = fluid->equation_of_state(type);
-  const double mass = atom_mass(atom, i), nu = fluid->type(type).nu;
+  const double mass = atom_mass(atom, i);
   for_closest_points(i, [&](const ClosestPoint &closest) {
     const Vec3 velocity = velocity_from(closest);
     const double away = velocity.dot(closest.normal);
-    const double friction = nu * closest.share * 2.0 * eos.rho0 / atom->rho[i] *
-        wall_friction(closest.value, closest.distance / support(i), support(i));
-    const Vec3 accel =
-        -p_over_rho2 * rise(closest) - times * friction * (velocity - away * closest.normal);
+    const Vec3 accel = -p_over_rho2 * rise(closest) -
+        times * friction(closest) * (velocity - away * closest.normal);
     const Vec3 force_on = mass / force->ftm2v * accel;
     for (int d = 0; d < 3; d++) atom->f[i][d] += force_on[d];
     sheets[closest.sheet].give(closest, -force_on);
     if (!first_push) return;
     atom->drho[i] += rise(closest).dot(velocity);
     fluid->add_virial(i, closest.distance * closest.normal, force_on);
+  });
+}
+
+// rate at which it stops a particle
+
+double MeshBoundary::friction(const ClosestPoint &closest) const
+{
+  const int i = closest.particle, type = atom->type[i];
+  return fluid->type(type).nu * closest.share * 2.0 * fluid->equation_of_state(type).rho0 /
+      atom->rho[i] * wall_friction(closest.value, closest.distance / support(i), support(i));
+}
+
+void MeshBoundary::add_stiffness(int i, Stiffness &s)
+{
+  if (first[i] < 0) return;
+  const double scale = inverse_gamma(i);
+  s.fluid *= scale * scale;
+  Eigen::Map<Vec3> gradient(s.gradient);
+  gradient *= scale;
+  for_closest_points(i, [&](const ClosestPoint &closest) {
+    gradient += rise(closest);
+    s.friction += friction(closest);
+  });
+}
+
+void MeshBoundary::find_vertex_stiffness(const FluidStability &stability)
+{
+  for (BoundaryMesh &sheet : sheets) sheet.forget_stiffness();
+  for (const ClosestPoint &closest : closest_points) {
+    const int i = closest.particle;
+    sheets[closest.sheet].press(closest, stability.sound_over_density(i) * rise(closest).norm(),
+                                atom_mass(atom, i) * friction(closest));
+  }
+  for (BoundaryMesh &sheet : sheets) sheet.complete_stiffness();
+}
+
+void MeshBoundary::add_row(int i, VertexRow &row)
+{
+  for_closest_points(i, [&](const ClosestPoint &closest) {
+    const Vec3 of_vertices = sheets[closest.sheet].stiffness_at(closest);
+    row.sum += rise(closest).norm() * of_vertices[0];
+    row.friction = std::max(row.friction, of_vertices[1]);
   });
 }
 

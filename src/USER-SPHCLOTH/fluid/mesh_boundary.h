@@ -64,6 +64,15 @@ class BoundaryMesh : protected Pointers {
   {
     sum_up(wetting, take);
   }
+  // The same for the limit of stability: sums over the fluid that presses, and how fast friction
+  // stops a vertex; and what the vertices around a foot have
+  void forget_stiffness() { std::fill(stiffness.begin(), stiffness.end(), Vec3::Zero()); }
+  void press(const ClosestPoint &closest, double weight, double friction)
+  {
+    spread(closest, Vec3(weight, friction, 0.0), stiffness);
+  }
+  void complete_stiffness();
+  Vec3 stiffness_at(const ClosestPoint &) const;
 
  private:
   struct Candidate {
@@ -84,8 +93,11 @@ class BoundaryMesh : protected Pointers {
   std::vector<Seeker> seekers;
   std::vector<Vec3> positions, list_positions;    // by slot, now and at the list build
   std::vector<Vec3> forces, wetting;    // by slot
+  std::vector<double> inverse_mass;    // by slot, 0 of what something else moves
+  std::vector<Vec3> stiffness;    // by slot: the sum over fluid, the rate of friction
 
   void find_positions();
+  void find_masses();
   void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
@@ -129,6 +141,10 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   bool moves_beside(int i) override { return first[i] >= 0; }    // any mesh may move
   bool has_vertices_beside(int i) override { return first[i] >= 0; }
 
+  void add_stiffness(int i, sphcloth::Stiffness &) override;
+  void find_vertex_stiffness(const FluidStability &) override;
+  void add_row(int i, sphcloth::VertexRow &) override;
+
   void want_wetting() override { wetting_wanted = true; }
   Wetting wetting(int i) const override;
 
@@ -147,6 +163,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   template <class Do> void for_closest_points(int i, Do something);
   void push(int i, double p_over_rho2, double times, bool first_push);
   double support(int i) const;
+  double friction(const ClosestPoint &) const;
   void find_wetting();
   static double covered(const ClosestPoint &);
   Vec3 rise(const ClosestPoint &) const;

@@ -349,6 +349,9 @@ PairTerms SPHMaterials::mix(int i, int j) const
   t.stiffness = of_pair.stiffness > 0.0 ? of_pair.stiffness / a.eos.k : 1.0;
   for (int k : {i, j})
     if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;
+  // the mean of the fluid around a boundary particle follows the fluid that moves
+  const double extrapolated = extrapolates(i) || extrapolates(j) ? 2.0 : 1.0;
+  t.response = std::sqrt(extrapolated * t.stiffness);
   return t;
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -21,14 +22,29 @@ inline double atom_mass(const Atom *atom, int i)
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 
-// A number that changes when the owned atoms, or their places in the arrays, do (FNV-1a).
+// FNV-1a
+
+inline constexpr std::uint64_t EMPTY_HASH = 0xcbf29ce484222325U;
+inline std::uint64_t hash_with(std::uint64_t hash, std::uint64_t number)
+{
+  return (hash ^ number) * 0x100000001b3U;
+}
+
+// A number that changes when the owned atoms, or their places in the arrays, do.
 
 inline std::uint64_t order_of_atoms(const Atom *atom)
 {
-  std::uint64_t hash = 0xcbf29ce484222325U;
+  std::uint64_t hash = EMPTY_HASH;
   for (int i = 0; i < atom->nlocal; i++)
-    hash = (hash ^ static_cast<std::uint64_t>(atom->tag[i])) * 0x100000001b3U;
+    hash = hash_with(hash, static_cast<std::uint64_t>(atom->tag[i]));
   return hash;
+}
+
+inline std::uint64_t bits_of(double number)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof(bits));
+  return bits;
 }
 
 // at the end of the current step

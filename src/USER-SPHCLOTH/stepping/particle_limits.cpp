@@ -7,6 +7,7 @@
 #include "force.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
+#include "stepping/stability_watch.h"
 
 #include <cmath>
 #include <limits>
@@ -17,6 +18,8 @@ using namespace sphcloth;
 void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
 {
   fluid = style;
+  lambda = options.lambda;
+  if (scheme == SteppingScheme::GLOBAL) lambda.stability = 0.0;
   asks_neighbors = scheme != SteppingScheme::GLOBAL;
   interpolates_density = scheme == SteppingScheme::INDIVIDUAL;
   types.assign(atom->ntypes + 1, FluidType());
@@ -35,8 +38,36 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
 
   if (scheme == SteppingScheme::CONSTANT) return;
   fluid->want_density_rate();
-  if (options.lambda.relative > 0.0) fluid->want_approach();
-  if (!cloths.empty()) fluid->want_wetting();
+  if (lambda.relative > 0.0) fluid->want_approach();
+  if (options.lambda.stability > 0.0)
+    fluid->want_frequencies(this);
+  else if (!cloths.empty())
+    fluid->want_wetting();
+}
+
+double ParticleLimits::inverse_mass_of(int i) const
+{
+  for (const Cloth &cloth : cloths)
+    if (atom->mask[i] & cloth.fix->groupbit) return cloth.vertices->inverse_mass(i);
+  return 0.0;
+}
+
+std::uint64_t ParticleLimits::settings() const
+{
+  std::uint64_t hash = hash_with(EMPTY_HASH, static_cast<std::uint64_t>(fluid->options.kernel));
+  hash = hash_with(hash, bits_of(fluid->options.support));
+  for (int i = 1; i <= atom->ntypes; i++) {
+    if (atom->mass) hash = hash_with(hash, bits_of(atom->mass[i]));
+    for (int j = i; j <= atom->ntypes; j++)
+      for (const char c : fluid->words(i, j)) hash = hash_with(hash, static_cast<unsigned char>(c));
+  }
+  std::uint64_t movable = 0, of_ranks;
+  for_moving_vertices([&](int, const LimitedVertices &) { movable++; });
+  MPI_Allreduce(&movable, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
+  for (const std::uint64_t number :
+       {of_ranks, static_cast<std::uint64_t>(atom->natoms), bits_of(options.lambda.stability)})
+    hash = hash_with(hash, number);
+  return hash;
 }
 
 double ParticleLimits::shortest_sound_time() const
@@ -74,7 +105,7 @@ void ParticleLimits::find(const int *particles, int n, const double *const *exte
       for (int d = 0; d < 3; d++) f[d] += external[d][i];
     states.set(k, particle_state(i, f));
   }
-  particle_limits(options.lambda, states, n, limits);
+  particle_limits(lambda, states, n, limits);
 }
 
 // what particles and vertices have in common; returns the mass
@@ -96,27 +127,58 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   set_motion(i, f, s);
   const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
-  s.nu = type.viscosity;
-  s.sound = type.at_boundary * type.sound * type.eos.stiffening(s.rho);
-  if (options.lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
+  double by_sound = 0.0;    // the step under pressure
+  if (lambda.stability > 0.0)
+    by_sound = set_frequencies(i, s);
+  else if (lambda.acoustic > 0.0 || lambda.viscous > 0.0) {
+    s.nu = type.viscosity;
+    s.sound = type.at_boundary * type.sound * type.eos.stiffening(s.rho);
+    by_sound = lambda.acoustic * 0.5 * s.support / s.sound;
+  }
+  if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
   const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
-  if (in_flight) s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.sound);
+  if (in_flight && by_sound > 0.0 && s.of_vertices_sq == 0.0)
+    s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, by_sound);
   // nothing is compressed in free flight, but individual steps interpolate the density
   if (!in_flight || interpolates_density) s.drho = atom->drho[i];
   return s;
+}
+
+// returns the step that is stable under pressure
+
+inline double ParticleLimits::set_frequencies(int i, StepState &s) const
+{
+  const Frequencies &its = fluid->frequencies(i);
+  s.of_fluid_sq = its.fluid_sq;
+  s.of_vertices_sq = its.vertices_sq;
+  s.friction = its.friction;
+  return options.lambda.stability * stable_step(its.fluid_sq + its.vertices_sq, its.friction);
+}
+
+// Free flight must not end before the limit is found again.
+
+StepLimit ParticleLimits::stable_limit(int i) const
+{
+  StepCoefficients alone{};
+  for (double *other : {&alone.velocity, &alone.force, &alone.density}) *other = 0.0;
+  alone.stability = options.lambda.stability;
+  StepState s{};
+  const double by_sound = set_frequencies(i, s);
+  if (fluid->p_over_rho2_of_all()[i] == 0.0 && s.of_vertices_sq == 0.0)
+    s.until_pressed = until_pressed(i, types[atom->type[i]].eos.rho0 - atom->rho[i], by_sound) /
+        StabilityWatch::LONGEST_WAIT;
+  return particle_limit(alone, s);
 }
 
 // Neighbors under a pressure p are pushed toward each other and toward the particle, and the
 // density grows ever faster, by p/h_s^2.  Neighbors are not asked either where the particle's own
 // sound, or the ceiling, allows less.
 
-double ParticleLimits::until_pressed(int i, double gap, double sound) const
+double ParticleLimits::until_pressed(int i, double gap, double by_sound) const
 {
   const double alone = time_to_cross(gap, atom->drho[i], 0.0);
-  const double smoothing = 0.5 * types[atom->type[i]].support;
-  const double by_sound = options.lambda.acoustic * smoothing / sound;
   if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
-  const double ratio = atom->rho[i] / smoothing;
+  const double ratio = atom->rho[i] / (0.5 * types[atom->type[i]].support);
   return time_to_cross(gap, atom->drho[i], fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 
@@ -126,8 +188,8 @@ double ParticleLimits::until_pressed(int i, double gap, double sound) const
 
 StepLimit ParticleLimits::of_vertex(int i, const LimitedVertices &vertices) const
 {
-  const double edge = options.lambda.cloth > 0.0 ? vertices.shortest_edge(i) : 0.0;
-  return vertex_limit(options.lambda, vertex_state(i), edge);
+  const double edge = lambda.cloth > 0.0 ? vertices.shortest_edge(i) : 0.0;
+  return vertex_limit(lambda, vertex_state(i), edge);
 }
 
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is
@@ -137,6 +199,7 @@ StepState ParticleLimits::vertex_state(int i) const
 {
   StepState s{};
   const double mass = set_motion(i, atom->f[i], s);
+  if (options.lambda.stability > 0.0) return s;
   const Wetting wet = fluid->wetting(i);
   const double ratio = std::max(1.0, wet.fluid_mass / mass), smoothing = 0.5 * s.support;
   s.sound = smoothing * wet.sound_rate * std::sqrt(ratio);

@@ -11,17 +11,19 @@
 
 #include "core/sph/tait.h"
 #include "core/timestep/step_limits.h"
+#include "fluid/vertex_mobility.h"
 #include "stepping/limited_vertices.h"
 #include "stepping/step_options.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 class FluidState;
 
-class ParticleLimits : protected Pointers {
+class ParticleLimits : protected Pointers, public VertexMobility {
  public:
   ParticleLimits(LAMMPS *lmp_, const StepOptions &options_) :
       Pointers(lmp_), options(options_), fluid(nullptr)
@@ -64,7 +66,16 @@ class ParticleLimits : protected Pointers {
           act(i, *cloth.vertices);
   }
 
-  bool use_forces() const { return options.lambda.force > 0.0; }
+  double inverse_mass_of(int owned_atom) const override;
+
+  // What stability allows a fluid particle, for the next steps of all, from its frequencies.
+  // for_particles() knows it itself where particles take steps of their own.
+  sphcloth::StepLimit stable_limit(int i) const;
+
+  // a number that changes with what stability follows from, but for positions; collective
+  std::uint64_t settings() const;
+
+  bool use_forces() const { return lambda.force > 0.0; }
   // smoothing length over speed of sound, the least of all fluids
   double shortest_sound_time() const;
   // in which sound crosses the support
@@ -89,6 +100,7 @@ class ParticleLimits : protected Pointers {
   std::vector<Cloth> cloths;
   bool asks_neighbors = true;
   bool interpolates_density = false;
+  sphcloth::StepCoefficients lambda;    // of for_particles() and of vertices
 
   void find(const int *particles, int n, const double *const *external,
             sphcloth::StepLimits &) const;
@@ -96,7 +108,8 @@ class ParticleLimits : protected Pointers {
   double set_motion(int i, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int i, const double *force) const;
   sphcloth::StepState vertex_state(int i) const;
-  double until_pressed(int i, double gap, double sound) const;
+  double set_frequencies(int i, sphcloth::StepState &) const;
+  double until_pressed(int i, double gap, double by_sound) const;
 };
 
 }    // namespace LAMMPS_NS

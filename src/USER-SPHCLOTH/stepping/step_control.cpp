@@ -44,6 +44,7 @@ void StepControl::restore(const State &before)
   limit = before.limited_by;
   n_steps = before.steps;
   time = before.time;
+  watch.restore(before.watch);
 }
 
 /* ----------------------------------------------------------------------
@@ -59,10 +60,7 @@ void StepControl::choose(const StepLimit &mine, tagint particle)
   }
   StepLimit step = bounded(wanted, previous);
   if (is_too_short(step)) {
-    const tagint here = mine.dt == wanted.dt ? particle : 0;
-    tagint anywhere = 0;
-    MPI_Allreduce(&here, &anywhere, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-    error->all(FLERR, too_short(wanted, anywhere));
+    error->all(FLERR, too_short(wanted, owner_of(wanted, mine, particle)));
   }
   if (times.any()) times.head_for(step);
   limit = step.by;
@@ -132,6 +130,15 @@ StepLimit StepControl::tightest_of_ranks(const StepLimit &mine) const
   } in = {mine.dt, static_cast<int>(mine.by)}, out;
   MPI_Allreduce(&in, &out, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
   return {out.dt, static_cast<Limit>(out.by)};
+}
+
+tagint StepControl::owner_of(const StepLimit &of_ranks, const StepLimit &mine,
+                             tagint particle) const
+{
+  const tagint here = mine.dt == of_ranks.dt ? particle : 0;
+  tagint anywhere = 0;
+  MPI_Allreduce(&here, &anywhere, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return anywhere;
 }
 
 /* ----------------------------------------------------------------------

@@ -9,6 +9,7 @@
 
 #include "core/timestep/step_limits.h"
 #include "stepping/output_times.h"
+#include "stepping/stability_watch.h"
 #include "stepping/step_options.h"
 
 #include <string>
@@ -20,6 +21,7 @@ class FluidState;
 class StepControl : protected Pointers {
  public:
   OutputTimes times;
+  StabilityWatch watch;    // where all take the same step
 
   // label of the fix for errors, group of the fluid that it integrates
   StepControl(LAMMPS *, const StepOptions &, std::string label, int groupbit);
@@ -56,6 +58,11 @@ class StepControl : protected Pointers {
   // an error: the time was reset between an output time and the end of a base step
   void refuse_reset(double output_time, double end) const;
 
+  // collective: the tightest limit of all ranks, and the ID of the particle or vertex that has it
+  sphcloth::StepLimit tightest_of_ranks(const sphcloth::StepLimit &mine) const;
+  tagint owner_of(const sphcloth::StepLimit &of_ranks, const sphcloth::StepLimit &mine,
+                  tagint particle) const;
+
   // for restart files
   struct State {
     double previous;    // the last step, before an output time cut it; 0 before the first
@@ -63,8 +70,9 @@ class StepControl : protected Pointers {
     sphcloth::Limit limited_by;
     bigint steps;
     double time;    // at the end of the last step
+    StabilityWatch::State watch;
   };
-  State state() const { return {previous, largest_before, limit, n_steps, time}; }
+  State state() const { return {previous, largest_before, limit, n_steps, time, watch.state()}; }
   void restore(const State &);
 
  private:
@@ -79,7 +87,6 @@ class StepControl : protected Pointers {
   bigint n_steps;
   double time;    // physical, at the end of the last step
 
-  sphcloth::StepLimit tightest_of_ranks(const sphcloth::StepLimit &mine) const;
   sphcloth::Compression compression_of_ranks() const;
   void set_timestep(double dt);
   void reschedule_dumps();

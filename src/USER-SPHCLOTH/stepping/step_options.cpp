@@ -7,22 +7,49 @@
 #include "lammps_util/arg_reader.h"
 #include "stepping/output_times.h"
 
+#include <optional>
+
 using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// Limits of sound and viscosity take the place of the limit of stability where any is given; steps
+// have a margin then that they have nowhere else.
+
+static void choose_stability(ArgReader &args, std::optional<double> stability,
+                             std::optional<double> acoustic, std::optional<double> viscous,
+                             std::optional<double> force, StepCoefficients &lambda)
+{
+  lambda.force = force.value_or(lambda.force);
+  if (!acoustic && !viscous && !lambda.wetted) {
+    lambda.stability = stability.value_or(lambda.stability);
+    return;
+  }
+  if (stability.value_or(0.0) > 0.0)
+    args.fail("stability", fmt::format("{}", *stability),
+              "it takes the place of acoustic, viscous and wetted: leave these out");
+  lambda.stability = 0.0;
+  lambda.force = force.value_or(StepCoefficients::FORCE);
+  lambda.acoustic = acoustic.value_or(StepCoefficients::ACOUSTIC);
+  lambda.viscous = viscous.value_or(StepCoefficients::VISCOUS);
+}
 
 void StepOptions::read(ArgReader &args, OutputTimes &times)
 {
+  std::optional<double> stability, acoustic, viscous, force;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword == "velocity")
       lambda.velocity = args.at_least(keyword, 0.0);
     else if (keyword == "force")
-      lambda.force = args.at_least(keyword, 0.0);
+      force = args.at_least(keyword, 0.0);
+    else if (keyword == "stability")
+      stability = args.fraction(keyword);
     else if (keyword == "acoustic")
-      lambda.acoustic = args.at_least(keyword, 0.0);
+      acoustic = args.at_least(keyword, 0.0);
     else if (keyword == "wetted")
       lambda.wetted = args.at_least(keyword, 0.0);
     else if (keyword == "viscous")
-      lambda.viscous = args.at_least(keyword, 0.0);
+      viscous = args.at_least(keyword, 0.0);
     else if (keyword == "density")
       lambda.density = args.at_least(keyword, 0.0);
     else if (keyword == "relative")
@@ -60,10 +87,11 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
     else
       args.unknown(
           keyword,
-          "velocity, force, acoustic, wetted, viscous, density, relative, cloth, "
+          "velocity, force, stability, acoustic, wetted, viscous, density, relative, cloth, "
           "fluctuation, output, until, ratio, gain, waking, sleep, overdue, min, max, growth, "
           "below");
   }
+  choose_stability(args, stability, acoustic, viscous, force, lambda);
 }
 
 void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times,

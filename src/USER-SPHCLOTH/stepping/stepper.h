@@ -24,8 +24,9 @@ class StepReport;
 // What every scheme keeps of each atom, a row each: the per-atom array of the fix
 
 struct UpdateRows {
-  // the step that a particle allows, the time of its last update, 1 if it is updated in this step
-  enum Column { OWN_STEP, LAST_UPDATE, ACTIVE, N_COLUMNS };
+  // The step that a particle allows, the time of its last update, 1 if it is updated in this step;
+  // the step that stability allows, and the limit of that, when it was found last
+  enum Column { OWN_STEP, LAST_UPDATE, ACTIVE, STABLE_STEP, STABLE_BY, N_COLUMNS };
   double **row = nullptr;
   double *operator[](int i) const { return row[i]; }
 };

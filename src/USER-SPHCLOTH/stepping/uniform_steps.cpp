@@ -4,6 +4,7 @@
 #include "stepping/uniform_steps.h"
 
 #include "core/util/bytes.h"
+#include "fluid/fluid_state.h"
 #include "stepping/kick_drift.h"
 #include "stepping/step_report.h"
 
@@ -12,8 +13,17 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
+void UniformSteps::init(FluidState *style)
+{
+  Stepper::init(style);
+  if (!constant) parts.control.watch.begin_run(parts.limits.settings());
+  fluid->want_frequencies_now(parts.control.watch.due());
+}
+
 void UniformSteps::move()
 {
+  parts.control.watch.begin_step();
+  fluid->want_frequencies_now(parts.control.watch.due());
   const UpdateRows &rows = parts.rows;
   const Moved n = kick_and_drift(atom, update, force, parts.fix->groupbit,
                                  [&](int i) { return rows[i][UpdateRows::ACTIVE] == 0.0; });
@@ -24,8 +34,29 @@ void UniformSteps::move()
 void UniformSteps::choose_step()
 {
   if (constant) return;
+  integrated.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & parts.fix->groupbit) integrated.push_back(i);
+  if (parts.options.lambda.stability > 0.0 && parts.control.watch.due()) find_stable_step();
   const StepLimit tightest = tightest_limit();
   parts.control.choose(tightest, limited);
+}
+
+// Of all ranks
+
+void UniformSteps::find_stable_step()
+{
+  StepLimit mine;
+  tagint particle = 0;
+  for (const int i : integrated) {
+    const StepLimit limit = parts.limits.stable_limit(i);
+    parts.rows[i][UpdateRows::STABLE_STEP] = limit.dt;
+    parts.rows[i][UpdateRows::STABLE_BY] = static_cast<double>(limit.by);
+    if (limit.dt < mine.dt) particle = atom->tag[i];
+    mine.tighten(limit.dt, limit.by);
+  }
+  const StepLimit tightest = parts.control.tightest_of_ranks(mine);
+  parts.control.watch.found(tightest, parts.control.owner_of(tightest, mine, particle));
 }
 
 StepLimit UniformSteps::tightest_limit()
@@ -39,16 +70,21 @@ StepLimit UniformSteps::tightest_limit()
     if (limit.dt < tightest.dt) limited = atom->tag[i];
     tightest.tighten(limit.dt, limit.by);
   };
-  integrated.clear();
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & parts.fix->groupbit) integrated.push_back(i);
-  parts.limits.for_particles(integrated, nullptr, [&](int i, const StepLimit &limit) {
+  parts.limits.for_particles(integrated, nullptr, [&](int i, const StepLimit &others) {
     double *row = parts.rows[i];
+    StepLimit limit = others;
+    if (const double stable = row[UpdateRows::STABLE_STEP]; stable > 0.0)
+      limit.tighten(stable, limit_of(row[UpdateRows::STABLE_BY]));
     row[UpdateRows::OWN_STEP] = std::min(limit.dt, parts.options.ceiling);
     row[UpdateRows::LAST_UPDATE] = now;
-    take(i, limit);
+    parts.report.count_particle(limit);
+    if (others.dt < tightest.dt) limited = atom->tag[i];
+    tightest.tighten(others.dt, others.by);
   });
   parts.limits.for_vertices(take);
+  const StabilityWatch::State &watch = parts.control.watch.state();
+  if (watch.tightest.dt < tightest.dt) limited = watch.particle;
+  tightest.tighten(watch.tightest.dt, watch.tightest.by);
   return tightest;
 }
 

@@ -17,6 +17,7 @@ class UniformSteps : public Stepper {
   {
   }
 
+  void init(FluidState *) override;
   void move() override;
   void choose_step() override;
   double bytes() const override;
@@ -27,6 +28,7 @@ class UniformSteps : public Stepper {
   tagint limited = 0;    // the particle or vertex with the tightest limit
 
   sphcloth::StepLimit tightest_limit();
+  void find_stable_step();
 };
 
 }    // namespace LAMMPS_NS

@@ -166,7 +166,8 @@ def fall(scheme, ceiling=2e-3, limits=""):
         + f"timestep {ceiling}\n"
         + gravity()
         + "fix walls all wall/sph zlo 0\n"
-        + f"fix step all sph/integrate global {limits}\nrun_style sph/adaptive {scheme}\n"
+        + f"fix step all sph/integrate global acoustic 0.5 force 0.05 {limits}\n"
+        + f"run_style sph/adaptive {scheme}\n"
     )
 
 

@@ -7,7 +7,8 @@
 // the mass m_j rho0_i/rho0_j: a density has no step where two fluids meet.
 //
 // This is what the pair style sees; the loops, one set per kernel and precision, are in
-// core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h and rate_loops.h.
+// core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h,
+// rate_loops.h and stiffness_loops.h.
 
 #ifndef SPHCLOTH_CORE_SPH_FLUID_H
 #define SPHCLOTH_CORE_SPH_FLUID_H
@@ -17,6 +18,7 @@
 
 #include "core/neighbor/dual_lists.h"
 #include "core/sph/kernel.h"
+#include "core/sph/stiffness.h"
 #include "core/sph/tait.h"
 
 namespace sphcloth {
@@ -39,20 +41,23 @@ enum class Outputs : int { NOTHING, RATE, RATE_AND_APPROACH };
 
 struct PairTerms {
   KernelScale kernel;
-  double nu = 0.0;           // kinematic viscosity
-  double monaghan = 0.0;     // alpha c0 h_s of the artificial viscosity
-  double soft = 0.0;         // 0.01 h_s^2, keeps its mu finite
-  double rho0 = 0.0;         // rest density of the fluid partner of a boundary
+  double nu = 0.0;    // kinematic viscosity
+  double monaghan = 0.0;    // alpha c0 h_s of the artificial viscosity
+  double soft = 0.0;    // 0.01 h_s^2, keeps its mu finite
+  double rho0 = 0.0;    // rest density of the fluid partner of a boundary
   double rho0_ratio = 1.0;    // of two fluids: rest density of the first over that of the second
   double stiffness = 1.0;    // what the recorded pressures count, see pressure_scale
   double diffusion = 0.0;    // 2 delta c0 h_s of the density, two fluids of one type only
+  // how much a boundary presses over the gradient of the fluid's energy, as a root: what it adds to
+  // stiffness()
+  double response = 1.0;
 };
 
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
   Outputs outputs = Outputs::NOTHING;
-  std::vector<Role> role;          // [n_types + 1]
+  std::vector<Role> role;    // [n_types + 1]
   std::vector<double> mass;    // [n_types + 1], of every fluid particle of a type; 0: unequal
   // [n_types + 1], with which p/rho^2 is recorded: (rho0/R)^2 of a fluid, 1 of a boundary, whose
   // pressure is the mean of what is recorded around it.  R is one density for all; a pair of fluids
@@ -164,6 +169,15 @@ class Fluid {
   virtual void record_impulses(const Particles &, const double *pressure_time,
                                const double *span) = 0;
   virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;
+
+  // For the limit of stability, of every active fluid particle, also without pressure.  Vertices
+  // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
+  // weights, of all; then the rows, of vertices whose stiffness is complete, ghosts too
+  virtual void stiffness(const Particles &, Stiffness *) = 0;
+  virtual void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
+                                VertexStiffness *) = 0;
+  virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
+                           VertexRow *) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);

@@ -54,6 +54,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
   void impulses(const Particles &, const std::vector<int> &slots) override;
   void virials(const Particles &, Receiver, void *context) override;
+  void stiffness(const Particles &p, Stiffness *of) override { all_stiffness(p, of); }
+  void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
+                        VertexStiffness *) override;
+  void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
+                   VertexRow *) override;
   double bytes() const override
   {
     return lists.bytes() + records.bytes() + bytes_of(selection.slots, acts);
@@ -75,10 +80,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   std::vector<int> acts;    // 1: has an impulse of its own, or a pressure
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
-  Terms in_loops(const PairTerms &t) const
-  {
-    return {t, records.quantum[0], records.unit, f_unit};
-  }
+  Terms in_loops(const PairTerms &t) const { return {t, records.quantum[0], records.unit, f_unit}; }
   const Terms &pair(int t, int other) const { return terms[t * (model.n_types + 1) + other]; }
 
   // Once per evaluation: what the loops read of the model, in their precision
@@ -116,6 +118,19 @@ template <class K, class P> class FluidLoops : public Fluid {
   void fluid_on_fluid(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL> &) const;
   template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
   void across_boundary(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL> &) const;
+
+  // stiffness_loops.h
+  struct Press {
+    double x, y, z, size, slope;
+  };
+  void all_stiffness(const Particles &, Stiffness *);
+  template <bool BOUNDARY>
+  void add_stiffness(const Neighborhood &, const PairTerms &, Columns &, Stiffness &) const;
+  static Press press(const Particles &, int i, int j, const PairTerms &);
+  // Of a pair of types: rate of a particle over (mass times slope)/rho.  Artificial viscosity acts
+  // along the line of two particles while they approach each other: of all directions not more than
+  // half is in one, and that half of the time.
+  static double friction_of(const PairTerms &t) { return 2.0 * t.nu + 0.25 * t.monaghan; }
 
   // rate_loops.h
   void all_density_gradients(const Particles &, double *gradient);

@@ -4,6 +4,7 @@
 #include "core/sph/density_loops.h"
 #include "core/sph/force_loops.h"
 #include "core/sph/rate_loops.h"
+#include "core/sph/stiffness_loops.h"
 
 template std::unique_ptr<sphcloth::Fluid>
     sphcloth::fluid_of_kernel<sphcloth::WendlandC2>(sphcloth::Precision);

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits of the time step: equations (10) to (12), and the acoustic, viscous and density limits
-// that stability asks for.
+// Limits of the time step: equations (10) to (12), the limit that stability asks for, and those of
+// sound, viscosity and density.
 //
 // (10) and (11) use the support radius H, the paper's h.  The acoustic and the viscous limit use
 // the smoothing length h_s = H/2, as stability analysis does.
+//
+// Stability: semi-implicit Euler, x'' = -omega^2 x - r x' with the friction of the step before, is
+// stable while omega^2 dt^2 + 2 r dt <= 4.  What friction stops alone then changes its sign in
+// every step; it does not while r dt <= 1, so that r counts twice here.  The largest omega and r
+// that a particle has a part in are those of core/sph/stiffness.h.
 //
 // The control by compression follows Ihmsen, Akinci, Gissler & Teschner, VRIPHYS 2010, 79.
 
@@ -69,28 +74,33 @@ inline const char *limit_name(Limit limit)
 // coefficients; a coefficient of 0 switches its limit off
 
 struct StepCoefficients {
-  double velocity = 0.1;     // lambda_v of (10)
-  double force = 0.05;       // lambda_f of (11)
-  double acoustic = 0.5;     // of h_s/c; symplectic stepping is stable up to 1.6
-  double viscous = 0.2;      // of h_s^2/nu; stable up to 0.3 in 3-D
-  double density = 0.1;      // largest relative change of density in one step
-  double relative = 0.0;     // as velocity, of the speed at which a neighbor approaches
-  double cloth = 0.0;        // displacement of a vertex over the shortest edge at it
+  double stability = 0.95;    // of the longest stable step, in the place of the next two
+  double velocity = 0.1;    // lambda_v of (10)
+  double force = 0.2;    // lambda_f of (11)
+  double acoustic = 0.0;    // of h_s/c; on a lattice stable up to 1.6
+  double viscous = 0.0;    // of h_s^2/nu; stable up to 0.3 in 3-D
+  double density = 0.1;    // largest relative change of density in one step
+  double relative = 0.0;    // as velocity, of the speed at which a neighbor approaches
+  double cloth = 0.0;    // displacement of a vertex over the shortest edge at it
   std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
+
+  static constexpr double ACOUSTIC = 0.5, VISCOUS = 0.2, FORCE = 0.05;    // with these limits
 };
 
 // state of one particle
 
 struct StepState {
-  double support;     // H
+  double support;    // H
   double speed_sq;    // |v|^2
   double accel_sq;    // |dv/dt|^2
-  double sound;       // c
-  double nu;          // kinematic viscosity, laminar and artificial together
+  double sound;    // c
+  double nu;    // kinematic viscosity, laminar and artificial together
   double rho;
-  double drho;        // d rho / dt
+  double drho;    // d rho / dt
   double approach = 0.0;    // largest speed at which a neighbor approaches
   double until_pressed = 0.0;    // time to the end of free flight; 0: there is pressure
+  // squares of the largest frequencies with the fluid around, and with vertices; rate of friction
+  double of_fluid_sq = 0.0, of_vertices_sq = 0.0, friction = 0.0;
 };
 
 struct StepLimit {
@@ -105,6 +115,14 @@ struct StepLimit {
     }
   }
 };
+
+// The longest stable step of a motion
+
+SPHCLOTH_INLINE double stable_step(double omega_sq, double friction)
+{
+  const double sum = friction + std::sqrt(friction * friction + omega_sq);
+  return sum > 0.0 ? 2.0 / sum : std::numeric_limits<double>::infinity();
+}
 
 // (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches,
 // so that a loop over particles vectorizes.
@@ -126,6 +144,15 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
   limit.tighten(with(lambda.acoustic,
                      std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
                 Limit::ACOUSTIC);
+  const double omega_sq = s.of_fluid_sq + s.of_vertices_sq;
+  limit.tighten(
+      with(lambda.stability,
+           std::max(lambda.stability * stable_step(omega_sq, s.friction), 0.5 * s.until_pressed)),
+      s.friction * s.friction > omega_sq     ? Limit::VISCOUS
+          : s.of_vertices_sq > s.of_fluid_sq ? Limit::WETTED
+                                             : Limit::ACOUSTIC);
+  limit.tighten(with(lambda.stability, lambda.stability * stable_step(0.0, s.friction)),
+                Limit::VISCOUS);
   limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
                 Limit::VISCOUS);
   limit.tighten(with(lambda.density, ratio(lambda.density * s.rho, std::fabs(s.drho))),
@@ -140,7 +167,8 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
 struct StepStates {
   static constexpr int MAX = 64;
   alignas(64) double support[MAX], speed_sq[MAX], accel_sq[MAX], sound[MAX], nu[MAX], rho[MAX],
-      drho[MAX], approach[MAX], until_pressed[MAX];
+      drho[MAX], approach[MAX], until_pressed[MAX], of_fluid_sq[MAX],
+      of_vertices_sq[MAX], friction[MAX];
 
   SPHCLOTH_INLINE void set(int k, const StepState &s)
   {
@@ -153,11 +181,18 @@ struct StepStates {
     drho[k] = s.drho;
     approach[k] = s.approach;
     until_pressed[k] = s.until_pressed;
+    of_fluid_sq[k] = s.of_fluid_sq;
+    of_vertices_sq[k] = s.of_vertices_sq;
+    friction[k] = s.friction;
   }
   SPHCLOTH_INLINE StepState operator[](int k) const
   {
-    return {support[k], speed_sq[k], accel_sq[k], sound[k],        nu[k],
-            rho[k],     drho[k],     approach[k], until_pressed[k]};
+    StepState s{support[k], speed_sq[k], accel_sq[k], sound[k],        nu[k],
+                rho[k],     drho[k],     approach[k], until_pressed[k]};
+    s.of_fluid_sq = of_fluid_sq[k];
+    s.of_vertices_sq = of_vertices_sq[k];
+    s.friction = friction[k];
+    return s;
   }
 };
 

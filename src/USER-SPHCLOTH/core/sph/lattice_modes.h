@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The fastest motion of a square or cubic lattice of fluid over what one of its particles sees
+// alone.
+//
+// Sound: small displacements u of a lattice change the density of a particle by
+// sum_j m grad W_j . (u_0 - u_j).  In a wave exp(i q x) its square is
+//   (m |sum_j grad W_j sin(q r_j)|)^2,   of one particle alone   m^2 sum_j |grad W_j|^2,
+// and the largest ratio over all q is the factor between the two.  Friction between particles is a
+// sum of w_j (v_0 - v_j), w_j = |1/r dW/dr|: its factor is the largest sum_j w_j (1 - cos q r_j)
+// over sum_j w_j.
+
+#ifndef SPHCLOTH_CORE_SPH_LATTICE_MODES_H
+#define SPHCLOTH_CORE_SPH_LATTICE_MODES_H
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/sph/kernel.h"
+
+namespace sphcloth {
+
+struct LatticeModes {
+  double sound = 1.0, friction = 1.0;
+};
+
+template <class Kernel> LatticeModes lattice_modes(double support_over_spacing, int dim)
+{
+  // a wave of half the length of the support has been resolved long before
+  const double support = std::min(support_over_spacing, 8.0);
+  constexpr int WAVES = 12;    // from 0 to the shortest wave, in each direction
+  struct Neighbor {
+    std::array<int, 3> at;
+    double slope;
+  };
+  std::vector<Neighbor> half;    // one of each pair r, -r
+  double alone = 0.0, weights = 0.0;
+  const int reach = static_cast<int>(support), reach_z = dim == 3 ? reach : 0;
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++)
+      for (int k = -reach_z; k <= reach_z; k++) {
+        const double r_sq = i * i + j * j + k * k, q = std::sqrt(r_sq) / support;
+        if (!(std::array{i, j, k} > std::array{0, 0, 0}) || q >= 1.0) continue;
+        const double slope = Kernel::slope_over_q(q);
+        half.push_back({{i, j, k}, slope});
+        alone += 2.0 * slope * slope * r_sq;
+        weights -= 2.0 * slope;
+      }
+  LatticeModes largest;
+  if (half.empty()) return largest;
+  // by symmetry one of the 8 or 48 equal parts of all waves
+  for (int a = 0; a <= WAVES; a++)
+    for (int b = 0; b <= a; b++)
+      for (int c = 0; c <= (dim == 3 ? b : 0); c++) {
+        std::array<double, 3> gradient{};
+        double friction = 0.0;
+        for (const Neighbor &n : half) {
+          const double phase = PI / WAVES * (a * n.at[0] + b * n.at[1] + c * n.at[2]);
+          const double s = 2.0 * n.slope * std::sin(phase);
+          for (int d = 0; d < 3; d++) gradient[d] += s * n.at[d];
+          friction -= 2.0 * n.slope * (1.0 - std::cos(phase));
+        }
+        const double together =
+            gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2];
+        largest.sound = std::max(largest.sound, together / alone);
+        largest.friction = std::max(largest.friction, friction / weights);
+      }
+  return largest;
+}
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a fluid particle sees of its neighbors that move, and the fastest motion that follows.
+//
+// Small motions obey M x'' = -K x with K = sum_k s_k^2 g_k g_k^T, s_k = c_k sqrt(m_k)/rho_k and
+// g_k the gradient of the density of particle k over the positions of all, itself included.  Scaled
+// with the masses, K has the same eigenvalues as the matrix of s_k s_l sum_j g_kj . g_lj/m_j over
+// pairs of fluid particles under pressure: its fluid part is bounded by the largest diagonal entry
+// times the factor of the lattice (core/sph/lattice_modes.h), which is largest where there is
+// order.
+//
+// Vertices of cloth may be much lighter than the fluid, and what they do to two particles may add
+// up or not.  Their part is bounded with a_kj = s_k |g_kj|/sqrt(m_j) and unit vectors e_kj along
+// g_kj by the largest sum of absolute values in a row, with Cauchy's inequality for the sum over l:
+//   omega^2 <= max_k sum_j a_kj sqrt(tr T_j . e_kj^T T_j e_kj),   T_j = sum_l a_lj e_lj e_lj^T.
+
+#ifndef SPHCLOTH_CORE_SPH_STIFFNESS_H
+#define SPHCLOTH_CORE_SPH_STIFFNESS_H
+
+#include <cmath>
+
+namespace sphcloth {
+
+// of a fluid particle
+
+struct Stiffness {
+  double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
+  double gradient[3] = {};    // d rho/d x of itself
+  double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
+
+  // with its own motion
+  double total(double mass) const
+  {
+    double squares = 0.0;
+    for (const double g : gradient) squares += g * g;
+    return fluid + squares / mass;
+  }
+};
+
+// Of a vertex: the sum over fluid, T_j once it has V_j^2/m_j; and the rate at which fluid would
+// stop it.
+
+struct VertexStiffness {
+  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0, friction = 0.0;
+
+  double trace() const { return xx + yy + zz; }
+  double along(double x, double y, double z) const
+  {
+    return x * (xx * x + 2.0 * (xy * y + xz * z)) + y * (yy * y + 2.0 * yz * z) + zz * z * z;
+  }
+};
+
+// of the vertices around a fluid particle: sum over j of |g_kj|/V_j sqrt(tr T . e^T T e), and the
+// largest friction
+
+struct VertexRow {
+  double sum = 0.0, friction = 0.0;
+};
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What bounds the step by stability: sums of squared density gradients over the neighbors that
+// move, core/sph/stiffness.h.
+
+#ifndef SPHCLOTH_CORE_SPH_STIFFNESS_LOOPS_H
+#define SPHCLOTH_CORE_SPH_STIFFNESS_LOOPS_H
+
+#include "core/sph/fluid_loops.h"
+
+namespace sphcloth {
+
+// The neighbors of one type
+
+template <class K, class P>
+template <bool BOUNDARY>
+SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, const PairTerms &whole,
+                                                     Columns &c, Stiffness &s) const
+{
+  const Terms &t = of.terms;
+  const double *mass = nullptr;
+  LaneSum<LANES> x, y, z, squares, weights;
+  records.for_neighbors(
+      of, c,
+      [&](int from) SPHCLOTH_LAMBDA {
+        records.load_positions(c, of.near.of + from);
+        mass = of.masses.group(from);
+      },
+      [&](int k, Separation r) SPHCLOTH_LAMBDA {
+        const Real r_sq = r.sq();
+        const Real slope = (BOUNDARY ? t.rho0 : t.rho0_ratio) * t.f *
+            K::slope_over_q(std::sqrt(r_sq) * t.inv_support);
+        const double each = mass[k] * slope;    // of a boundary its volume
+        x.of[k] += each * r.x;
+        y.of[k] += each * r.y;
+        z.of[k] += each * r.z;
+        if (!BOUNDARY) squares.of[k] += each * (slope * r_sq);
+        weights.of[k] -= each;
+      });
+  const double response = BOUNDARY ? whole.response : 1.0;
+  s.gradient[0] += response * f_unit * x.total();
+  s.gradient[1] += response * f_unit * y.total();
+  s.gradient[2] += response * f_unit * z.total();
+  s.fluid += f_unit * f_unit * squares.total();
+  s.friction += friction_of(whole) * f_unit / records.unit * weights.total();
+}
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, Stiffness *of)
+{
+  Columns c;
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      Stiffness s;
+      for (const int other : lists.present_types()) {
+        const NeighborSpan near = lists(slot, other);
+        if (near.n == 0) continue;
+        const PairTerms &whole = model.pair(t, other);
+        const Neighborhood of_type{i, near, pair(t, other), masses(p, near, other)};
+        if (is_fluid(other))
+          add_stiffness<false>(of_type, whole, c, s);
+        else
+          add_stiffness<true>(of_type, whole, c, s);
+      }
+      s.friction /= p.rho[i];
+      of[i] = s;
+    }
+  }
+}
+
+// d rho/d x of a fluid particle i over the volume of the vertex j, as a length along a unit vector
+
+template <class K, class P>
+SPHCLOTH_INLINE typename FluidLoops<K, P>::Press FluidLoops<K, P>::press(const Particles &p, int i,
+                                                                         int j, const PairTerms &t)
+{
+  const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
+               dz = p.x[3 * i + 2] - p.x[3 * j + 2];
+  const double r = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const double slope = -t.rho0 * t.kernel.f * K::slope_over_q(r * t.kernel.inv_support);
+  const double inv_r = r > 0.0 ? 1.0 / r : 0.0;
+  return {dx * inv_r, dy * inv_r, dz * inv_r, t.response * slope * r, slope};
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::vertex_stiffness(const Particles &p, const int *is_vertex,
+                                        const double *weight, VertexStiffness *of)
+{
+  for (int type = 1; type <= model.n_types; type++) {
+    if (!is_vertex[type]) continue;
+    for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+      const int j = lists.at(slot);
+      VertexStiffness v;
+      for (const int other : lists.present_types()) {
+        if (!is_fluid(other)) continue;
+        const PairTerms &t = model.pair(type, other);
+        const NeighborSpan near = lists(slot, other);
+        for (int k = 0; k < near.n; k++) {
+          const int i = near.of[k];
+          const Press s = press(p, i, j, t);
+          v.friction += friction_of(t) * p.mass_or_volume[i] * s.slope / p.rho[i];
+          const double each = weight[i] * s.size;
+          v.xx += each * s.x * s.x;
+          v.yy += each * s.y * s.y;
+          v.zz += each * s.z * s.z;
+          v.xy += each * s.x * s.y;
+          v.xz += each * s.x * s.z;
+          v.yz += each * s.y * s.z;
+        }
+      }
+      of[j] = v;
+    }
+  }
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::vertex_rows(const Particles &p, const int *is_vertex,
+                                   const VertexStiffness *vertices, VertexRow *of)
+{
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      VertexRow row;
+      for (const int other : lists.present_types()) {
+        if (!is_vertex[other]) continue;
+        const NeighborSpan near = lists(slot, other);
+        for (int k = 0; k < near.n; k++) {
+          const int j = near.of[k];
+          const Press s = press(p, i, j, model.pair(t, other));
+          if (s.slope == 0.0) continue;
+          const VertexStiffness &v = vertices[j];
+          row.sum += s.size * std::sqrt(v.trace() * v.along(s.x, s.y, s.z));
+          row.friction = std::max(row.friction, v.friction);
+        }
+      }
+      of[i] = row;
+    }
+  }
+}
+
+}    // namespace sphcloth
+
+#endif

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Sums over neighbors become frequencies and rates of friction.
+
+#include "fluid/fluid_stability.h"
+
+#include "atom.h"
+#include "core/util/bytes.h"
+#include "domain.h"
+#include "fluid/fluid_boundary.h"
+#include "fluid/sph_materials.h"
+#include "fluid/vertex_mobility.h"
+#include "lammps_util/atom_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// Vertices are known by their type, also those of other ranks.
+
+void FluidStability::begin_lists()
+{
+  new_lists = false;
+  std::vector<int> here(atom->ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (materials.is_boundary(atom->type[i]) && mobility->inverse_mass_of(i) > 0.0)
+      here[atom->type[i]] = 1;
+  is_vertex = here;
+  MPI_Allreduce(here.data(), is_vertex.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  has_vertices = std::any_of(is_vertex.begin(), is_vertex.end(), [](int is) { return is != 0; });
+  stiffness.resize(atom->nmax);
+  found.resize(atom->nmax);
+  lattices.resize(atom->ntypes + 1);
+  if (!has_vertices) return;
+  weights.resize(atom->nmax);
+  rows.resize(atom->nmax);
+  vertices.resize(atom->nmax);
+}
+
+const LatticeModes &FluidStability::modes(int type, double mass)
+{
+  Lattice &lattice = lattices[type];
+  if (mass != lattice.mass) {
+    const int dim = domain->dimension;
+    const double rho0 = materials.equation_of_state(type).rho0;
+    const double spacing = dim == 3 ? std::cbrt(mass / rho0) : std::sqrt(mass / rho0);
+    lattice.mass = mass;
+    lattice.modes = with_kernel(materials.options.kernel, [&](auto kernel) {
+      return lattice_modes<decltype(kernel)>(materials.support(type) / spacing, dim);
+    });
+  }
+  return lattice.modes;
+}
+
+double FluidStability::sound_over_density(int i) const
+{
+  const Tait &eos = materials.equation_of_state(atom->type[i]);
+  const double rho = atom->rho[i];
+  return eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
+}
+
+template <class Act> void FluidStability::for_active(Fluid &core, Act act) const
+{
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (materials.is_fluid(t))
+      for (const int slot : core.active().of(t)) act(core.order().at(slot), t);
+}
+
+void FluidStability::find_fluid(Fluid &core, const Particles &p,
+                                const std::vector<FluidBoundary *> &boundaries)
+{
+  if (new_lists) begin_lists();
+  core.stiffness(p, stiffness.data());
+  for_active(core, [&](int i, int t) {
+    Stiffness &s = stiffness[i];
+    for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
+    const double mass = atom_mass(atom, i), sound = sound_over_density(i);
+    const LatticeModes &of_lattice = modes(t, mass);
+    found[i].fluid_sq = of_lattice.sound * sound * sound * s.total(mass);
+    found[i].friction = of_lattice.friction * s.friction;
+  });
+}
+
+// T_j is complete, and that of a pinned vertex 0.
+
+void FluidStability::find_vertices(Fluid &core, const Particles &p,
+                                   const std::vector<FluidBoundary *> &boundaries)
+{
+  for (FluidBoundary *boundary : boundaries) boundary->find_vertex_stiffness(*this);
+  if (!has_vertices) return;
+  for (int i = 0; i < p.n_all; i++)
+    if (materials.is_fluid(atom->type[i])) weights[i] = sound_over_density(i);
+  core.vertex_stiffness(p, is_vertex.data(), weights.data(), vertices.data());
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_vertex[atom->type[i]]) continue;
+    const double volume = p.mass_or_volume[i], per_mass = volume * mobility->inverse_mass_of(i);
+    VertexStiffness &v = vertices[i];
+    for (double *of : {&v.xx, &v.yy, &v.zz, &v.xy, &v.xz, &v.yz}) *of *= volume * per_mass;
+    v.friction *= per_mass;
+  }
+}
+
+void FluidStability::find_rows(Fluid &core, const Particles &p,
+                               const std::vector<FluidBoundary *> &boundaries)
+{
+  if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), rows.data());
+  for_active(core, [&](int i, int) {
+    VertexRow row = has_vertices ? rows[i] : VertexRow();
+    for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
+    found[i].vertices_sq = sound_over_density(i) * row.sum;
+    found[i].friction += row.friction;
+  });
+}
+
+double *FluidStability::pack(int i, double *end) const
+{
+  const VertexStiffness &v = vertices[i];
+  for (const double number : {v.xx, v.yy, v.zz, v.xy, v.xz, v.yz, v.friction}) *end++ = number;
+  return end;
+}
+
+const double *FluidStability::unpack(int i, const double *from)
+{
+  VertexStiffness &v = vertices[i];
+  for (double *of : {&v.xx, &v.yy, &v.zz, &v.xy, &v.xz, &v.yz, &v.friction}) *of = *from++;
+  return from;
+}
+
+double FluidStability::bytes() const { return bytes_of(weights, stiffness, vertices, rows, found); }

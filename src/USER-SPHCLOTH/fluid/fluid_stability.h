@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The fastest motions that the fluid of an evaluation can make, particle by particle, from which
+// the longest stable step follows: core/sph/stiffness.h.
+
+#ifndef SPHCLOTH_FLUID_FLUID_STABILITY_H
+#define SPHCLOTH_FLUID_FLUID_STABILITY_H
+
+#include "pointers.h"
+
+#include "core/sph/fluid.h"
+#include "core/sph/lattice_modes.h"
+
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FluidBoundary;
+class SPHMaterials;
+class VertexMobility;
+
+// Of an owned fluid particle, as if it were under pressure: squares of the largest frequencies that
+// it may have a part in, with the fluid around and with vertices; and the largest rate at which
+// friction slows what it has a part in.
+
+struct Frequencies {
+  double fluid_sq = 0.0, vertices_sq = 0.0, friction = 0.0;
+};
+
+class FluidStability : protected Pointers {
+ public:
+  static constexpr int GHOST_SIZE = 7;    // numbers of a vertex
+
+  FluidStability(class LAMMPS *lmp_, const SPHMaterials &materials_) :
+      Pointers(lmp_), materials(materials_)
+  {
+  }
+
+  // anew for each run; null: no step follows from it
+  void forget()
+  {
+    mobility = nullptr;
+    now = true;
+  }
+  void want(const VertexMobility *vertices) { mobility = vertices; }
+  // in the evaluations that come next
+  void want_now(bool whether) { now = whether; }
+  bool wanted() const { return mobility && now; }
+  // is any vertex a boundary particle, on any rank?
+  bool any_vertices() const { return has_vertices; }
+
+  void lists_have_changed() { new_lists = true; }
+  // Of the active fluid; then of vertices, collective
+  void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
+                  const std::vector<FluidBoundary *> &);
+  void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
+                     const std::vector<FluidBoundary *> &);
+  // ghosts of vertices have their numbers
+  void find_rows(sphcloth::Fluid &, const sphcloth::Particles &,
+                 const std::vector<FluidBoundary *> &);
+
+  const Frequencies &operator[](int i) const { return found[i]; }
+  // s_k of fluid
+  double sound_over_density(int i) const;
+  double *pack(int i, double *end) const;
+  const double *unpack(int i, const double *from);
+
+  double bytes() const;
+
+ private:
+  const SPHMaterials &materials;
+  const VertexMobility *mobility = nullptr;
+  bool now = true, new_lists = true, has_vertices = false;
+  std::vector<int> is_vertex;    // [ntypes + 1]
+  std::vector<double> weights;    // s_k, of all atoms
+  std::vector<sphcloth::Stiffness> stiffness;
+  std::vector<sphcloth::VertexStiffness> vertices;    // of all atoms
+  std::vector<sphcloth::VertexRow> rows;
+  std::vector<Frequencies> found;
+  struct Lattice {    // the last one that was asked for, of a type
+    double mass = 0.0;
+    sphcloth::LatticeModes modes;
+  };
+  std::vector<Lattice> lattices;
+
+  void begin_lists();
+  template <class Act> void for_active(sphcloth::Fluid &, Act act) const;    // act(i, type)
+  const sphcloth::LatticeModes &modes(int type, double mass);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

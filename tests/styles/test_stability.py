@@ -1,0 +1,129 @@
+"""The limit of stability against the exact one, from the eigenvalues of a whole scene."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import cloth_box, cloth_styles, header, neighbor, sheet, sph_tait
+from step_scenes import dt_and_limit
+from test_stepping import ACOUSTIC, VISCOUS, WETTED
+
+SPACING, SOUND, RHO0 = 0.05, 20.0, 1000.0
+ALONE = "velocity 0 force 0 density 0 max 1"
+LATTICE_SUM = 1.033835  # sum of W dx^3 on the lattice
+VOLUME = SPACING**3 / LATTICE_SUM
+
+
+def wendland_slope(r, support):
+    """Return (1/r) dW/dr of Wendland C2 in space."""
+    return -20 * 21 / (2 * np.pi * support**5) * np.maximum(1 - r / support, 0) ** 3
+
+
+def soaked(areal, step, fluid=f"c0 {SOUND}"):
+    """Water in a periodic box, and in the place of one of its layers a sheet of loose vertices."""
+    half = 4 * SPACING
+    lmp = instance()
+    lmp.commands_string(
+        header("p p p")
+        + cloth_box(f"-{half} {half} -{half} {half} -{half} {half}")
+        + f"mass 1 {RHO0 * SPACING**3 / LATTICE_SUM}\n"
+        + sheet(2, areal, "0.35 0.35", SPACING)
+        + f"lattice sc {SPACING} origin 0.5 0.5 0\n"
+        + "region layer block INF INF INF INF -0.01 0.01 side out units box\n"
+        + "create_atoms 1 region layer\ngroup fluid type 1\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} {fluid}",
+            f"2 2 boundary pressure own volume {VOLUME}",
+            options="tension yes",
+        )
+        + cloth_styles("0", "0")
+        + neighbor(0.03)
+        + f"timestep 1e-3\nfix step fluid sph/integrate {step}\n"
+        + "fix sheet cloth pbd/cloth\nrun 0 post no"
+    )
+    return lmp
+
+
+def longest_stable_step(lmp, support=2 * SPACING):
+    """Return 2 over the largest frequency of all particles and vertices together."""
+    x, rho, kind = (by_id(lmp, name) for name in ("x", "rho", "type"))
+    mass = lmp.numpy.extract_atom("mass")[kind]
+    low, high = lmp.extract_box()[:2]
+    apart = x[:, None] - x[None]
+    apart -= (np.array(high) - low) * np.round(apart / (np.array(high) - low))
+    r = np.linalg.norm(apart, axis=2)
+    slope = wendland_slope(r, support)
+    np.fill_diagonal(slope, 0)
+    water = kind == 1
+    felt = np.where(water, mass, RHO0 * VOLUME)
+    gradient = (felt[None] * slope)[..., None] * apart
+    change = -gradient
+    change[np.arange(len(x)), np.arange(len(x))] = gradient.sum(axis=1)
+    sound = SOUND * (rho / RHO0) ** 3
+    change *= (sound * np.sqrt(mass) / np.maximum(rho, 1))[:, None, None]
+    change /= np.sqrt(mass)[None, :, None]
+    pressed = water
+    rows = change[pressed].reshape(pressed.sum(), -1)
+    return 2 / np.sqrt(np.linalg.eigvalsh(rows @ rows.T)[-1])
+
+
+@pytest.mark.parametrize(("areal", "n"), [(200.0, 10), (4.0, 12), (0.1, 18)])
+def test_a_step_above_the_exact_limit_explodes_and_the_limit_does_not(areal, n):
+    with soaked(areal, f"global {ALONE} stability 1") as lmp:
+        exact = longest_stable_step(lmp)
+        step, by = dt_and_limit(lmp)
+    assert 0.6 * exact < step < exact
+    assert by == (ACOUSTIC if areal == 200 else WETTED)
+    assert growth(areal, 0.97 * exact, 40) < 3
+    assert growth(areal, 1.05 * exact, n) > 30
+
+
+def growth(areal, step, n):
+    """By how much the energy of small velocities grows in constant steps."""
+    with soaked(areal, "constant") as lmp:
+        lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
+        mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+        before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
+        lmp.commands_string(f"timestep {step}\nrun {n} post no")
+        return mass @ (by_id(lmp, "v") ** 2).sum(axis=1) / before
+
+
+def test_the_limit_is_found_again_where_it_changes():
+    """At most 8 steps later, and at once in a run with other coefficients."""
+    with soaked(4.0, f"global {ALONE}") as lmp:
+        usual = dt_and_limit(lmp)[0]
+        lmp.command("run 3 post no")
+        stable = lmp.numpy.extract_fix("step", 1, 2)[: lmp.extract_setting("nlocal"), 3:]
+        assert stable[:, 0][stable[:, 0] > 0].min() == pytest.approx(usual, rel=0.05)
+        assert set(np.unique(stable[:, 1])) <= {0, ACOUSTIC, WETTED}
+        lmp.command(f"pair_coeff 1 1 fluid {RHO0} c0 {4 * SOUND}")
+        lmp.command("run 0 post no")
+        assert dt_and_limit(lmp)[0] == pytest.approx(usual / 4, rel=0.05)
+
+
+def test_friction_of_light_vertices_limits_the_step():
+    """By the ratio of the masses, as it slows them down."""
+    found = []
+    for areal in (0.4, 0.1):
+        with soaked(areal, f"global {ALONE}", fluid="c0 0.1 nu 1") as lmp:
+            found.append(dt_and_limit(lmp))
+    assert found[0][1] == found[1][1] == VISCOUS
+    assert found[0][0] == pytest.approx(4 * found[1][0], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("stability 1.1", "stability is '1.1': give a number from 0 to 1"),
+        ("stability 0.9 acoustic 0.5", "takes the place of acoustic, viscous and wetted"),
+        ("wetted 1 stability 0.5", "takes the place of acoustic, viscous and wetted"),
+    ],
+)
+def test_bad_input_is_named(words, message):
+    with pytest.raises(Exception, match=message):
+        soaked(4.0, f"global {words}")
+
+
+@pytest.mark.parametrize("words", ["acoustic 0.5", "wetted 0.5", "viscous 0.2", "stability 0"])
+def test_nothing_is_summed_where_another_limit_is_asked_for(words):
+    with soaked(4.0, f"global {words}") as lmp:
+        assert (lmp.numpy.extract_fix("step", 1, 2)[:512, 3:] == 0).all()

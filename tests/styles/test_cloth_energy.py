@@ -100,13 +100,14 @@ def test_a_soft_sheet_gains_no_energy_in_steps_that_vary(tmp_path):
     lmp = drop()
     log = tmp_path / "log"
     lmp.command(f"log {log}")
+    lmp.command("thermo 5")
     lmp.command("run 100000")
     lmp.command("log none")
     rows = re.findall(r"^ +(\d+) +(\S+) +(\S+) *$", log.read_text(), re.MULTILINE)
     energy = np.array([float(row[2]) for row in rows])
     steps = np.array([float(row[1]) for row in rows])
     assert steps.max() > 4 * steps.min()
-    assert len(energy) > 8
+    assert len(energy) > 20
     # the water of the start is a little compressed
     assert energy.max() < 1.05 * energy[0]
 

@@ -61,8 +61,7 @@ def longest_stable_step(lmp, support=2 * SPACING):
     sound = SOUND * (rho / RHO0) ** 3
     change *= (sound * np.sqrt(mass) / np.maximum(rho, 1))[:, None, None]
     change /= np.sqrt(mass)[None, :, None]
-    pressed = water
-    rows = change[pressed].reshape(pressed.sum(), -1)
+    rows = change[water].reshape(water.sum(), -1)
     return 2 / np.sqrt(np.linalg.eigvalsh(rows @ rows.T)[-1])
 
 

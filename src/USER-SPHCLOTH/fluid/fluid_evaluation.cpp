@@ -227,9 +227,7 @@ void FluidEvaluation::select(const Particles &p)
   if (!core->select(p)) return;
   if (!hooks) return;
   active_fluid.clear();
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (is_fluid(t))
-      for (const int slot : core->active().of(t)) active_fluid.push_back(core->order().at(slot));
+  core->for_active_fluid([this](int i, int) { active_fluid.push_back(i); });
 }
 
 Fluid::Box FluidEvaluation::box() const

@@ -81,11 +81,7 @@ class FluidEvaluation : public FluidState {
   // act(i, equation of state) for active fluid particles
   template <class Act> void for_each_fluid(Act &&act) const
   {
-    for (int t = 1; t <= atom->ntypes; t++) {
-      if (!is_fluid(t)) continue;
-      const sphcloth::Tait eos = type(t).eos;
-      for (const int slot : core->active().of(t)) act(core->order().at(slot), eos);
-    }
+    core->for_active_fluid([&](int i, int t) { act(i, equation_of_state(t)); });
   }
 };
 

@@ -32,8 +32,8 @@ void FluidStability::begin_lists()
   stiffness.resize(atom->nmax);
   found.resize(atom->nmax);
   lattices.resize(atom->ntypes + 1);
+  sounds.resize(atom->nmax);
   if (!has_vertices) return;
-  weights.resize(atom->nmax);
   rows.resize(atom->nmax);
   vertices.resize(atom->nmax);
 }
@@ -53,29 +53,27 @@ const LatticeModes &FluidStability::modes(int type, double mass)
   return lattice.modes;
 }
 
-double FluidStability::sound_over_density(int i) const
+double FluidStability::find_sound(int i) const
 {
   const Tait &eos = materials.equation_of_state(atom->type[i]);
   const double rho = atom->rho[i];
   return eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
 }
 
-template <class Act> void FluidStability::for_active(Fluid &core, Act act) const
-{
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (materials.is_fluid(t))
-      for (const int slot : core.active().of(t)) act(core.order().at(slot), t);
-}
-
 void FluidStability::find_fluid(Fluid &core, const Particles &p,
                                 const std::vector<FluidBoundary *> &boundaries)
 {
   if (new_lists) begin_lists();
+  if (has_vertices || !boundaries.empty()) {    // inactive fluid presses on vertices, too
+    for (int i = 0; i < p.n_all; i++)
+      if (materials.is_fluid(atom->type[i])) sounds[i] = find_sound(i);
+  } else
+    core.for_active_fluid([this](int i, int) { sounds[i] = find_sound(i); });
   core.stiffness(p, stiffness.data());
-  for_active(core, [&](int i, int t) {
+  core.for_active_fluid([&](int i, int t) {
     Stiffness &s = stiffness[i];
     for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
-    const double mass = atom_mass(atom, i), sound = sound_over_density(i);
+    const double mass = atom_mass(atom, i), sound = sounds[i];
     const LatticeModes &of_lattice = modes(t, mass);
     found[i].fluid_sq = of_lattice.sound * sound * sound * s.total(mass);
     found[i].friction = of_lattice.friction * s.friction;
@@ -89,9 +87,7 @@ void FluidStability::find_vertices(Fluid &core, const Particles &p,
 {
   for (FluidBoundary *boundary : boundaries) boundary->find_vertex_stiffness(*this);
   if (!has_vertices) return;
-  for (int i = 0; i < p.n_all; i++)
-    if (materials.is_fluid(atom->type[i])) weights[i] = sound_over_density(i);
-  core.vertex_stiffness(p, is_vertex.data(), weights.data(), vertices.data());
+  core.vertex_stiffness(p, is_vertex.data(), sounds.data(), vertices.data());
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_vertex[atom->type[i]]) continue;
     const double volume = p.mass_or_volume[i], per_mass = volume * mobility->inverse_mass_of(i);
@@ -105,10 +101,10 @@ void FluidStability::find_rows(Fluid &core, const Particles &p,
                                const std::vector<FluidBoundary *> &boundaries)
 {
   if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), rows.data());
-  for_active(core, [&](int i, int) {
+  core.for_active_fluid([&](int i, int) {
     VertexRow row = has_vertices ? rows[i] : VertexRow();
     for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
-    found[i].vertices_sq = sound_over_density(i) * row.sum;
+    found[i].vertices_sq = sounds[i] * row.sum;
     found[i].friction += row.friction;
   });
 }
@@ -127,4 +123,4 @@ const double *FluidStability::unpack(int i, const double *from)
   return from;
 }
 
-double FluidStability::bytes() const { return bytes_of(weights, stiffness, vertices, rows, found); }
+double FluidStability::bytes() const { return bytes_of(sounds, stiffness, vertices, rows, found); }

@@ -61,7 +61,7 @@ class FluidStability : protected Pointers {
 
   const Frequencies &operator[](int i) const { return found[i]; }
   // s_k of fluid
-  double sound_over_density(int i) const;
+  double sound_over_density(int i) const { return sounds[i]; }
   double *pack(int i, double *end) const;
   const double *unpack(int i, const double *from);
 
@@ -72,7 +72,7 @@ class FluidStability : protected Pointers {
   const VertexMobility *mobility = nullptr;
   bool now = true, new_lists = true, has_vertices = false;
   std::vector<int> is_vertex;    // [ntypes + 1]
-  std::vector<double> weights;    // s_k, of all atoms
+  std::vector<double> sounds;    // s_k, of all atoms
   std::vector<sphcloth::Stiffness> stiffness;
   std::vector<sphcloth::VertexStiffness> vertices;    // of all atoms
   std::vector<sphcloth::VertexRow> rows;
@@ -84,7 +84,7 @@ class FluidStability : protected Pointers {
   std::vector<Lattice> lattices;
 
   void begin_lists();
-  template <class Act> void for_active(sphcloth::Fluid &, Act act) const;    // act(i, type)
+  double find_sound(int i) const;
   const sphcloth::LatticeModes &modes(int type, double mass);
 };
 

@@ -43,14 +43,6 @@ Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
   return distance_vector(p, positions[s[0]], positions[s[1]], positions[s[2]], weight);
 }
 
-void BoundaryMesh::find_masses()
-{
-  inverse_mass.assign(set->halo.n_slots(), 0.0);
-  for (int s = 0; s < set->halo.n_owned(); s++)
-    inverse_mass[s] = set->mesh->inverse_mass(set->halo.atom_of(s));
-  set->halo.forward(0, inverse_mass);
-}
-
 void BoundaryMesh::find_positions()
 {
   for (std::size_t s = 0; s < positions.size(); s++)
@@ -65,7 +57,6 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
   skin = list_skin;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
   wetting = stiffness = forces;
-  find_masses();
   positions.resize(forces.size());
   find_positions();
   list_positions = positions;
@@ -238,7 +229,8 @@ void BoundaryMesh::sum_up(std::vector<Vec3> &quantities,
 void BoundaryMesh::complete_stiffness()
 {
   set->halo.reverse_add(0, stiffness.data());
-  for (int s = 0; s < set->halo.n_owned(); s++) stiffness[s] *= inverse_mass[s];
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    stiffness[s] *= set->mesh->inverse_mass(set->halo.atom_of(s));
   set->halo.forward(0, stiffness.data());
 }
 

@@ -93,11 +93,9 @@ class BoundaryMesh : protected Pointers {
   std::vector<Seeker> seekers;
   std::vector<Vec3> positions, list_positions;    // by slot, now and at the list build
   std::vector<Vec3> forces, wetting;    // by slot
-  std::vector<double> inverse_mass;    // by slot, 0 of what something else moves
   std::vector<Vec3> stiffness;    // by slot: the sum over fluid, the rate of friction
 
   void find_positions();
-  void find_masses();
   void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
   bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;

@@ -159,8 +159,8 @@ inline double ParticleLimits::set_frequencies(int i, StepState &s) const
 
 StepLimit ParticleLimits::stable_limit(int i) const
 {
-  StepCoefficients alone{};
-  for (double *other : {&alone.velocity, &alone.force, &alone.density}) *other = 0.0;
+  StepCoefficients alone;
+  alone.velocity = alone.force = alone.density = 0.0;
   alone.stability = options.lambda.stability;
   StepState s{};
   const double by_sound = set_frequencies(i, s);

@@ -65,8 +65,7 @@ StepLimit UniformSteps::tightest_limit()
   StepLimit tightest;
   limited = 0;
   parts.report.forget_particles();
-  const auto take = [&](int i, const StepLimit &limit) {
-    parts.report.count_particle(limit);
+  const auto tighten = [&](int i, const StepLimit &limit) {
     if (limit.dt < tightest.dt) limited = atom->tag[i];
     tightest.tighten(limit.dt, limit.by);
   };
@@ -78,10 +77,12 @@ StepLimit UniformSteps::tightest_limit()
     row[UpdateRows::OWN_STEP] = std::min(limit.dt, parts.options.ceiling);
     row[UpdateRows::LAST_UPDATE] = now;
     parts.report.count_particle(limit);
-    if (others.dt < tightest.dt) limited = atom->tag[i];
-    tightest.tighten(others.dt, others.by);
+    tighten(i, others);
   });
-  parts.limits.for_vertices(take);
+  parts.limits.for_vertices([&](int i, const StepLimit &limit) {
+    parts.report.count_particle(limit);
+    tighten(i, limit);
+  });
   const StabilityWatch::State &watch = parts.control.watch.state();
   if (watch.tightest.dt < tightest.dt) limited = watch.particle;
   tightest.tighten(watch.tightest.dt, watch.tightest.by);

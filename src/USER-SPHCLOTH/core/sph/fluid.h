@@ -127,6 +127,13 @@ class Fluid {
   // False if nothing has changed.
   bool select(const Particles &);
   const Selection &active() const { return selection; }
+  // act(i, type) for the active fluid particles, in that order
+  template <class Act> void for_active_fluid(Act act) const
+  {
+    for (int t = 1; t <= model.n_types; t++)
+      if (model.role[t] == Role::FLUID)
+        for (const int slot : selection.of(t)) act(lists.at(slot), t);
+  }
 
   // Records the positions of all particles.  Mixed precision counts them from the corner lo -
   // margin in parts of the box lengths, so that periodic images are exact.

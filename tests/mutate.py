@@ -69,7 +69,8 @@ SOURCES, BLOCK = "tests/styles/test_sources.py", "tests/styles/test_block.py"
 BLOCK_SHEET = "tests/styles/test_block_sheet.py"
 PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
-OBSTACLES = "tests/styles/test_obstacles.py"
+STABILITY = "tests/styles/test_stability.py"
+OBSTACLES, SUBSTEPS = "tests/styles/test_obstacles.py", "tests/styles/test_substeps.py"
 
 BUGS = [
     Bug("sources: layers are not moved by their age", "fix_sph_emit.cpp",
@@ -92,9 +93,22 @@ BUGS = [
     Bug("cloth: the half-kick correction is twice as large", "cloth/half_kick_correction.h",
         "part = 0.5 * (1.0 - 1.0 / substeps)", "part = 1.0 - 1.0 / substeps",
         f"{CLOTH}::test_springs_of_other_fixes_neither_feed_nor_damp"),
-    Bug("cloth: as many substeps in each block step", "cloth/substepping.cpp",
-        "  n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));\n", "",
-        f"{BLOCK_SHEET}::test_steps_that_jump_do_not_feed_a_sheet"),
+    Bug("cloth: only edges that push have a load", "core/pbd/cloth_solver.cpp",
+        "load = std::fabs(c.lambda[m]) * inv_dt_sq", "load = c.lambda[m] * inv_dt_sq", SUBSTEPS),
+    Bug("cloth: rigid edges are as stiff as each substep makes them", "core/pbd/cloth_solver.cpp",
+        "SINGLE_SWEEP_SOFTNESS * (s.softness_ratio - 1.0)", "0.0", CORE),
+    Bug("cloth: rigid edges take all of their error", "cloth/substepping.h",
+        "? sphcloth::STABLE_EDGE_SHARE : 1.0", "? 1.0 : 1.0",
+        "tests/styles/test_cloth_energy.py::test_a_crumpled_sheet_without_hinges_comes_to_rest"),
+    Bug("cloth: the length of a substep is not in the restart file", "cloth/substepping.h",
+        "    length.state = from.length;\n", "",
+        f"{SUBSTEPS}::test_a_restart_goes_on_with_the_same_substeps"),
+    Bug("stability: a vertex between two sides moves as one beside water",
+        "core/sph/stiffness_loops.h",
+        "std::sqrt(v.trace() * v.along(s.x, s.y, s.z))", "v.along(s.x, s.y, s.z)", STABILITY),
+    Bug("stability: half of what neighbors do to the density", "core/sph/stiffness_loops.h",
+        "s.fluid += f_unit * f_unit * squares", "s.fluid += 0.5 * f_unit * f_unit * squares",
+        STABILITY),
     Bug("cloth: the reference step has no effect", "cloth/reference_step.cpp",
         "if (given > 0.0)", "if (false)",
         f"{CLOTH}::test_with_a_reference_k_is_a_spring_that_does_not_depend_on_the_step"),

@@ -10,11 +10,12 @@ using namespace LAMMPS_NS;
 static const std::vector<NamedValue> &values_of_cloth()
 {
   static const std::vector<NamedValue> VALUES = {
-      {"force/x", 1, NamedValue::EXTENSIVE},    {"force/y", 2, NamedValue::EXTENSIVE},
-      {"force/z", 3, NamedValue::EXTENSIVE},    {"strain", 4, NamedValue::INTENSIVE},
-      {"residual", 5, NamedValue::INTENSIVE},   {"sweeps", 6, NamedValue::INTENSIVE},
-      {"energy", 7, NamedValue::EXTENSIVE},     {"halfkick/x", 8, NamedValue::EXTENSIVE},
-      {"halfkick/y", 9, NamedValue::EXTENSIVE}, {"halfkick/z", 10, NamedValue::EXTENSIVE},
+      {"force/x", 1, NamedValue::EXTENSIVE},      {"force/y", 2, NamedValue::EXTENSIVE},
+      {"force/z", 3, NamedValue::EXTENSIVE},      {"strain", 4, NamedValue::INTENSIVE},
+      {"residual", 5, NamedValue::INTENSIVE},     {"sweeps", 6, NamedValue::INTENSIVE},
+      {"energy", 7, NamedValue::EXTENSIVE},       {"halfkick/x", 8, NamedValue::EXTENSIVE},
+      {"halfkick/y", 9, NamedValue::EXTENSIVE},   {"halfkick/z", 10, NamedValue::EXTENSIVE},
+      {"unconverged", 11, NamedValue::INTENSIVE},
   };
   return VALUES;
 }

@@ -35,16 +35,16 @@ using namespace sphcloth;
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
     held(lmp, this, options), mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
-    reference(lmp, label, options.reference, constraints), powers_of_two(false), vertices(lmp),
-    holders(lmp, vertices), substepping(lmp, options.solving, constraints, vertices),
-    holder_force{}, measured(true), last_residual(0.0), last_energy(0.0)
+    reference(lmp, label, options.reference, constraints), vertices(lmp), holders(lmp, vertices),
+    substepping(lmp, label, options.solving, constraints, vertices), holder_force{}, measured(true),
+    last_residual(0.0), last_energy(0.0), last_unconverged(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
   restart_global = 1;
   create_attribute = 1;
   vector_flag = 1;
-  size_vector = 10;
+  size_vector = 11;
   global_freq = 1;
   extvector = 0;
 
@@ -130,7 +130,6 @@ void FixPBDCloth::setup_post_neighbor()
     if (const auto *integrates = dynamic_cast<HasSteppingScheme *>(fix))
       scheme = integrates->stepping_scheme();
   reference.set_steps_vary(scheme != SteppingScheme::CONSTANT);
-  powers_of_two = scheme == SteppingScheme::BLOCK;
   post_neighbor();
 }
 
@@ -167,6 +166,8 @@ void FixPBDCloth::post_neighbor()
   }
   halo.forward(ClothConstraints::ALL, w);
   vertices.reset(w, substepping.uses(ClothSolver::JACOBI));
+  constraints.distance.weigh(vertices.p.data());
+  constraints.bending.weigh(vertices.p.data());
 }
 
 /* ----------------------------------------------------------------------
@@ -176,21 +177,23 @@ void FixPBDCloth::post_neighbor()
 void FixPBDCloth::post_integrate()
 {
   if (solved_here.empty()) return;
+  int substeps = 1;
+  for (FixPBDCloth *cloth : solved_here)
+    substeps = std::max(substeps, cloth->substepping.wanted_substeps(update->dt));
   std::vector<Substepping *> solvers;
   for (FixPBDCloth *cloth : solved_here) {
-    cloth->begin_step();
+    cloth->begin_step(substeps);
     solvers.push_back(&cloth->substepping);
   }
-  for (int n = 0; n < substepping.substeps(); n++) Substepping::substep(n, solvers);
+  for (int n = 0; n < substeps; n++) Substepping::substep(n, solvers);
   for (FixPBDCloth *cloth : solved_here) cloth->end_step();
 }
 
-void FixPBDCloth::begin_step()
+void FixPBDCloth::begin_step(int substeps)
 {
   held.move_pins(vertices.halo);
-  substepping.begin_step({update->dt, powers_of_two}, present, holders);
-  if (half_kick.on())
-    half_kick.apply(vertices, substepping.substeps(), update->dt, force->ftm2v, atom);
+  substepping.begin_step(update->dt, substeps, present, holders);
+  if (half_kick.on()) half_kick.apply(vertices, substeps, update->dt, force->ftm2v, atom);
   load();
   if (holders.wanted()) holders.begin_step();
   begin_couplings();
@@ -212,11 +215,13 @@ void FixPBDCloth::solve_together(const std::vector<FixPBDCloth *> &cloths)
   const Substepping::Options &one = first->options.solving;
   for (FixPBDCloth *cloth : cloths) {
     const Substepping::Options &other = cloth->options.solving;
-    if (one.solver != other.solver || one.iterations != other.iterations)
-      cloth->error->all(FLERR,
-                        "{}: solver and iterations differ from those of {}, and the two may meet: "
-                        "give both the same, or put the cloths into one fix",
-                        cloth->label, first->label);
+    if (one.solver != other.solver || one.iterations != other.iterations ||
+        one.strain != other.strain)
+      cloth->error->all(
+          FLERR,
+          "{}: solver, iterations or strain differ from those of {}, and the two may meet: "
+          "give both the same, or put the cloths into one fix",
+          cloth->label, first->label);
     cloth->solved_here.clear();
   }
   first->solved_here = cloths;
@@ -307,30 +312,35 @@ Eigen::Vector3d FixPBDCloth::reaction_force(int i) const
 
 /* ----------------------------------------------------------------------
    output: force of the holders on the cloth (x, y, z), largest edge strain, residual, sweeps,
-   elastic energy, momentum that the half-kick correction has given ahead (x, y, z)
+   elastic energy, momentum that the half-kick correction has given ahead (x, y, z), strain that the
+   solver has left
 ------------------------------------------------------------------------- */
 
 double FixPBDCloth::compute_vector(int n)
 {
   if (n == 5) return substepping.sweeps_of_last_step();
-  if ((n == 4 || n == 6) && !measured) measure();
+  if ((n == 4 || n == 6 || n == 10) && !measured) measure();
   double mine = 0.0, all;
   if (n < 3) mine = holder_force[n];
   if (n == 3) mine = constraints.largest_strain(vertices.halo, options.heldbits());
   if (n == 4) mine = last_residual;
   if (n == 6) mine = last_energy;
-  if (n > 6) mine = half_kick.sum(vertices, n - 7);
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, n == 3 || n == 4 ? MPI_MAX : MPI_SUM, world);
+  if (n > 6 && n < 10) mine = half_kick.sum(vertices, n - 7);
+  if (n == 10) mine = last_unconverged;
+  const bool is_largest = n == 3 || n == 4 || n == 10;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, is_largest ? MPI_MAX : MPI_SUM, world);
   return all;
 }
 
-// residual and energy of the last step, once and only if they are asked for or the lists change
+// residual, energy and strain left of the last step, once and only if they are asked for or the
+// lists change
 
 void FixPBDCloth::measure()
 {
   measured = true;
   last_residual = substepping.residual();
   last_energy = substepping.energy();
+  last_unconverged = substepping.unconverged();
 }
 
 /* ----------------------------------------------------------------------

@@ -102,7 +102,6 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   GhostReach ghosts;
   ClothConstraints constraints;
   ReferenceStep reference;
-  bool powers_of_two;    // steps go to and fro between them
   ClothVertices vertices;
   HolderForces holders;
   HalfKickCorrection half_kick;    // of the solver substeps
@@ -111,10 +110,10 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   std::vector<FixPBDCloth *> solved_here;    // cloths that this fix solves: itself, or none
 
   double holder_force[3];    // in the last step, this rank's part
-  bool measured;    // the next two are of the last step, this rank's part
-  double last_residual, last_energy;
+  bool measured;    // the next three are of the last step, this rank's part
+  double last_residual, last_energy, last_unconverged;
 
-  void begin_step();
+  void begin_step(int substeps);
   void begin_couplings();
   void end_step();
   void load();

@@ -64,6 +64,22 @@ double error_after(const Corners &x, double rest, double share)
   return angle_of(after) - rest;
 }
 
+// of an edge of the length 1.1 in place of 1: part of its error that one projection leaves
+
+double left_of_edge(const Spring &spring, ClothState state)
+{
+  const std::array<Vec3, 2> x{Vec3(0.0, 0.0, 0.0), Vec3(1.1, 0.0, 0.0)};
+  Constraints<2> c = alone<2>(spring);
+  const auto start = vertices<2>(x, {1.0, 3.0});
+  auto displacement = start;
+  for (Vertex &v : displacement) v.x = v.y = v.z = 0.0;
+  state.start = start.data();
+  state.displacement = displacement.data();
+  state.inv_dt_sq = 1.0;
+  project(c, 0, state);
+  return (1.1 + displacement[1].x - displacement[0].x - 1.0) / 0.1;
+}
+
 // forces on held vertices by vertex, with a multiplier of 1
 
 template <std::size_t N>
@@ -73,9 +89,8 @@ std::map<int, Vec3> held(const std::array<Vec3, N> &x, const std::array<double, 
   c.lambda[0] = 1.0;
   const auto p = vertices<N>(x, w);
   std::map<int, Vec3> force;
-  for_each_held(c, p.data(), nullptr, [&](int q, const Vec3 &f) {
-    BOOST_CHECK(force.emplace(q, f).second);
-  });
+  for_each_held(c, p.data(), nullptr,
+                [&](int q, const Vec3 &f) { BOOST_CHECK(force.emplace(q, f).second); });
   return force;
 }
 
@@ -95,8 +110,67 @@ BOOST_AUTO_TEST_CASE(a_projection_of_a_hinge_takes_no_more_than_its_share)
 {
   constexpr double ERROR = 1e-5;
   for (double share : {0.25, 0.5})
-    BOOST_CHECK_SMALL(error_after(hinge(), angle_of(hinge()) - ERROR, share) -
-                          (1.0 - share) * ERROR, 1e-8);
+    BOOST_CHECK_SMALL(
+        error_after(hinge(), angle_of(hinge()) - ERROR, share) - (1.0 - share) * ERROR, 1e-8);
+}
+
+// W = 4: what is left is a/(W + a), a the compliance that the edge has in the projection
+
+BOOST_AUTO_TEST_CASE(an_edge_takes_no_more_than_its_share_and_is_as_soft_as_in_a_longer_substep)
+{
+  const auto with = [](double share, double ratio) {
+    ClothState state;
+    state.max_edge_share = share;
+    state.softness_ratio = ratio;
+    return state;
+  };
+  const auto left = [](double a) { return a / (4.0 + a); };
+  const auto close = boost::test_tools::tolerance(1e-12);
+  const Spring rigid{1.0, 1.0, 0.0, FREE}, soft{1.0, 1.0, 6.0, FREE}, k{1.0, 0.3, 0.0, FREE},
+      stiff{1.0, 0.95, 0.0, FREE};
+  BOOST_CHECK_SMALL(left_of_edge(rigid, with(1.0, 1.0)), 1e-12);
+  BOOST_TEST(left_of_edge(rigid, with(0.8, 1.0)) == 0.2, close);
+  // W/4 and W/2 of h^2, in a substep of half the length
+  BOOST_TEST(left_of_edge(rigid, with(0.8, 4.0)) == left(4.0 * 4.0 / 4 + 3.0 * 4.0 / 2), close);
+  BOOST_TEST(left_of_edge(rigid, with(1.0, 4.0)) == left(3.0 * 4.0 / 2), close);
+  // a compliance that is softer than the share stays what it is
+  BOOST_TEST(left_of_edge(soft, with(0.8, 1.0)) == left(6.0), close);
+  BOOST_TEST(left_of_edge(soft, with(0.8, 4.0)) == left(6.0 + 3.0 * 4.0 / 2), close);
+  // a k below 1 has a reference of its own, and the same share
+  BOOST_TEST(left_of_edge(k, with(0.8, 4.0)) == 0.7, close);
+  BOOST_TEST(left_of_edge(stiff, with(0.8, 1.0)) == 0.2, close);
+}
+
+BOOST_AUTO_TEST_CASE(a_load_demands_substeps_that_leave_no_more_than_the_strain)
+{
+  constexpr double FORCE = 50.0, STRAIN = 0.01, SHARE = 0.1, LENGTH = 0.2, LONG = 3.0;
+  constexpr double INV_DT_SQ = 4.0, SOFTNESS = 1.25;
+  const auto close = boost::test_tools::tolerance(1e-12);
+  const auto vertex = vertices<2>({Vec3(0, 0, 0), Vec3(1, 0, 0)}, {1.0, 3.0});
+  const auto of_edge = [&](double rest, double compliance) {
+    Constraints<2> c = alone<2>({rest, 1.0, compliance, FREE});
+    c.weigh(vertex.data());
+    c.lambda[0] = -FORCE / INV_DT_SQ;
+    return demand(c, INV_DT_SQ, SOFTNESS, STRAIN, SHARE, LONG);
+  };
+  // 1.25 W F h^2 is STRAIN of the length
+  BOOST_TEST(of_edge(LENGTH, 0.0) == SOFTNESS * 4.0 * FORCE / (STRAIN * LENGTH), close);
+  BOOST_TEST(of_edge(0.0, 0.0) == SOFTNESS * 4.0 * FORCE / (STRAIN * LONG), close);
+  // W h^2/2 is a tenth of the compliance, if that is longer
+  BOOST_TEST(of_edge(LENGTH, 0.5) == 0.5 * 4.0 / (SHARE * 0.5), close);
+  BOOST_TEST(of_edge(LENGTH, 1e-9) == of_edge(LENGTH, 0.0), close);
+  // 1.25 W h^2 is STRAIN of the compliance, where the length is that of the load alone
+  BOOST_TEST(of_edge(0.0, 0.5) == SOFTNESS * 4.0 / (STRAIN * 0.5), close);
+
+  Constraints<4> hinge;
+  hinge.clear(1, 4);
+  hinge.add({0, 1, 2, 3}, {0.0, 1.0, 0.0, FREE}, 1.0, 2.5);
+  hinge.close_color();
+  const auto corners = vertices<4>(::hinge(), {1.0, 3.0, 0.5, 2.0});
+  hinge.weigh(corners.data());
+  hinge.lambda[0] = FORCE / INV_DT_SQ;
+  BOOST_TEST(demand(hinge, INV_DT_SQ, 4.0, STRAIN, SHARE) == 4.0 * 2.5 * 6.5 * FORCE / STRAIN,
+             close);
 }
 
 BOOST_AUTO_TEST_CASE(a_hinge_of_any_size_has_its_angle)

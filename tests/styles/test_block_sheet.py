@@ -144,11 +144,10 @@ JET = (
 fix drain water sph/drain
 fix step water sph/integrate global gain 1 until {end}
 run_style sph/adaptive {scheme}
-fix sheet cloth pbd/cloth iterations 20 pin pins
+fix sheet cloth pbd/cloth {solving} pin pins
 fix contact water cloth/contact 0.01
 compute energy cloth ke
 variable energy equal c_energy
-fix most all ave/time 1 1 1 v_energy f_sheet[6] ave running
 fix kept all vector 1 v_energy
 thermo_modify norm no
 """
@@ -159,12 +158,12 @@ thermo_modify norm no
     ("edge", "hinge", "end"),
     [("1.0", "compliance 1", 0.18), ("1.0", "0", 0.18), ("compliance 2e-4", "0.02", 0.25)],
 )
-def test_steps_that_jump_do_not_feed_a_sheet(edge, hinge, end):
+@pytest.mark.parametrize("solving", ["", "iterations 20"])
+def test_steps_that_jump_do_not_feed_a_sheet(solving, edge, hinge, end):
+    values = {"edge": edge, "hinge": hinge, "end": end, "solving": solving}
     with instance() as lmp:
-        lmp.commands_string(JET.format(edge=edge, hinge=hinge, end=end, scheme="block"))
+        lmp.commands_string(JET.format(**values, scheme="block"))
         lmp.command("run 100000")
         n = lmp.extract_global("ntimestep")
         energy = [lmp.extract_fix("kept", 0, 1, k) for k in range(n)]
-        substeps = lmp.extract_fix("most", 0, 1, 1)
     assert max(energy) < 1.0
-    assert 20 < substeps < 60

@@ -230,7 +230,7 @@ ERRORS = {
     ),
     "other solvers": (
         {"fixes": "fix sheet lower pbd/cloth pin pins\nfix other upper pbd/cloth iterations 20\n"},
-        "fix other pbd/cloth: solver and iterations differ from those of fix sheet pbd/cloth",
+        "fix other pbd/cloth: solver, iterations or strain differ from those of fix sheet",
     ),
 }
 

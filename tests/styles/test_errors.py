@@ -122,6 +122,12 @@ CASES = [
     case(
         "cloth: keyword", SHEET + "fix s cloth pbd/cloth stretch 1", r"fix s pbd/cloth.*'stretch'"
     ),
+    case("cloth: strain", SHEET + "fix s cloth pbd/cloth strain 0", r"strain is '0'.*> 0"),
+    case(
+        "cloth: strain of whole steps",
+        SHEET + "fix s cloth pbd/cloth strain 0.1 solver gs",
+        r"strain is '0.1.*how long substeps are: leave it away",
+    ),
     case("cloth: sweeps", SHEET + "fix s cloth pbd/cloth iterations 0", r"iterations is '0'"),
     case(
         "cloth: solver",

@@ -61,7 +61,7 @@ STYLES = {
     "bond": ("bond_coeff", "", TIE, BOND),
     "hinge": ("dihedral_coeff", "", TIE, {"rest": [["model", "flat"]]}),
     "cloth": ("fix f cloth pbd/cloth", "", [], {
-        "iterations": [COUNT], "solver": [["gs", "jacobi", "substeps"]],
+        "iterations": [COUNT], "strain": [NUMBER], "solver": [["gs", "jacobi", "substeps"]],
         "order": [["forward", "symmetric"]], "direction": [["current", "start"]],
         "tolerance": [NUMBER], "reference": [NUMBER], "pin": [GROUP],
         "velocity": [NUMBER] * 3, "attach": [GROUP],

@@ -14,6 +14,7 @@ STEP = (
     "wait/max wait/mean"
 )
 CLOTH = "force/x force/y force/z strain residual sweeps energy halfkick/x halfkick/y halfkick/z"
+CLOTH += " unconverged"
 CONTACT = (
     "contacts stops caught overlap impulse/x impulse/y impulse/z force/x force/y force/z cpu "
     "cloth/contacts cloth/stops cloth/caught cloth/gap"

@@ -187,6 +187,19 @@ def test_the_style_acts(runs, entry):
         assert np.any(values != 0), name
 
 
+@pytest.mark.parametrize("scene", SCENES)
+def test_fixes_may_be_replaced_by_others_of_their_ids(scene, tmp_path, monkeypatch):
+    """LAMMPS deletes the old one first, and leaves its slot empty while the new one is made."""
+    monkeypatch.chdir(tmp_path)
+    parts = SCENES[scene]
+    again = "".join(re.findall(r"^fix (?:.*&\n)*.*\n", parts.fixes, re.MULTILINE))
+    with instance() as lmp:
+        if parts.make:
+            lmp.commands_string(parts.make + "\nclear")
+        lmp.commands_string(render(f"{parts.first()}\n{again}run 2\n", "si"))
+        assert lmp.extract_global("ntimestep") == 2
+
+
 @pytest.mark.parametrize(("entry", "ranks"), checked("1", "2"))
 def test_a_restart_continues_to_the_last_bit(runs, entry, ranks):
     whole, again = (runs.end(entry.scene, int(ranks), again=again) for again in (False, True))

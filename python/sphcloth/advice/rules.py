@@ -254,7 +254,7 @@ def _total(run: Evidence, name: str) -> float:
 
 
 def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
-    """The strain of rigid edges, which iterations or substeps take away."""
+    """The strain of rigid edges, which shorter substeps or more sweeps take away."""
     if not all(_is_rigid(words) for words in run.commands.bonds.values()):
         return
     for fix in run.commands.styled("pbd/cloth"):
@@ -262,20 +262,26 @@ def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
         strain = run.largest(name)
         if strain is None or strain <= wanted:
             continue
-        more, kind = more_sweeps(fix, strain, wanted), "substeps" if is_substeps(fix) else "sweeps"
-        measured = (
-            f"an edge is drawn by {strain:.2%} with {sweeps(fix)} {kind}, {wanted:.2%} wanted"
-        )
-        line = f"{fix.line} ... iterations {more}"
+        now, better = _remedy(fix, strain, wanted)
+        measured = f"an edge is drawn by {strain:.2%} with {now}, {wanted:.2%} wanted"
 
         def judge(
-            _: Evidence, again: Evidence, name: str = name, more: int = more, was: float = strain
+            _: Evidence, again: Evidence, name: str = name, more: str = better, was: float = strain
         ) -> tuple[str, bool]:
             left = again.largest(name)
             return f"{left:.2%} with {more}", left < (was + wanted) / 2
 
-        trial = Trial(judge, edits={"pbd/cloth": f"iterations {more}"})
-        yield Finding("stretch", measured, line), trial
+        trial = Trial(judge, edits={"pbd/cloth": better})
+        yield Finding("stretch", measured, f"{fix.line} ... {better}"), trial
+
+
+def _remedy(fix: Fix, strain: float, wanted: float) -> tuple[str, str]:
+    """Return what bounds the strain, and keywords that bring it down to one that is wanted."""
+    if is_substeps(fix) and "iterations" not in fix.arguments:
+        allowed = float(fix.value("strain", "0.01"))
+        return f"strain {allowed:.2g}", f"strain {allowed * wanted / strain:.2g}"
+    kind = "substeps" if is_substeps(fix) else "sweeps"
+    return f"{sweeps(fix)} {kind}", f"iterations {more_sweeps(fix, strain, wanted)}"
 
 
 def sweeps(fix: Fix) -> int:

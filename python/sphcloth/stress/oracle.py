@@ -35,6 +35,8 @@ LIGHT = 0.5
 # by how much one sweep of a solver leaves more of the error of an edge than substeps of its length
 # do, where many edges meet
 SLOWER = {"substeps": 2.0, "gs": 20.0, "jacobi": 20.0}
+# of the default solver in the longest step
+DEFAULT_ITERATIONS = 10
 Array = NDArray[np.float64]
 
 
@@ -265,8 +267,8 @@ def energy_may_grow(e: Evidence) -> bool:
     """Whether the scene is one of those that may gain energy, see docs/evidence/reliability.md.
 
     Individual steps do not keep energy; edges that are rigid, or stiffer than the solver can make
-    them, return more than they stored where steps get shorter; and so do whole steps of a sheet
-    that is much lighter than what lies on it.
+    them, may return more than they stored where steps vary; and so may whole steps of a sheet that
+    is much lighter than what lies on it.
     """
     s = e.scene
     if s.scheme == "individual" or s.sheet == "none":
@@ -283,7 +285,13 @@ def energy_may_grow(e: Evidence) -> bool:
 
 def substep(s: RandomScene, dt: float) -> float:
     """Return the length of a sweep; n of whole steps leave what so many of dt / sqrt(n) do."""
-    return dt / s.iterations if s.solver == "substeps" else dt / math.sqrt(s.iterations)
+    n = sweeps(s)
+    return dt / n if s.solver == "substeps" else dt / math.sqrt(n)
+
+
+def sweeps(s: RandomScene) -> int:
+    """Return the iterations in a step, with the default solver in the longest one."""
+    return s.iterations or DEFAULT_ITERATIONS
 
 
 def of_material(s: RandomScene, mass: float, dt: float) -> float:
@@ -291,9 +299,9 @@ def of_material(s: RandomScene, mass: float, dt: float) -> float:
     kind, value = s.edge
     if kind == "compliance" or value == 1:
         return value if kind == "compliance" else 0.0
-    share = 1 - (1 - value) ** (1 / s.iterations)
+    share = 1 - (1 - value) ** (1 / sweeps(s))
     step = s.dt if s.reference else dt
-    h = step / s.iterations if s.solver == "substeps" else step
+    h = step / sweeps(s) if s.solver == "substeps" else step
     return 2 / mass * h**2 * (1 - share) / share
 
 

@@ -229,8 +229,9 @@ class _Script:
 
     def _cloth(self) -> str:
         s = self.s
-        words = [f"fix sheet cloth pbd/cloth solver {s.solver} iterations {s.iterations}"]
-        words += [f"direction {s.direction}"]
+        words = ["fix sheet cloth pbd/cloth"]
+        if s.iterations:
+            words += [f"solver {s.solver} iterations {s.iterations} direction {s.direction}"]
         if s.order != "forward":
             words += [f"order {s.order}"]
         words += [f"damping {self.q(s.damping, unit='1/s')}"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,6 +13,9 @@ from sphcloth.validation.runner import Run
 
 SOLVERS = ("gs", "jacobi", "substeps")
 DIRECTIONS = ("current", "start")
+ITERATIONS = Parameter(
+    "iterations", 0, "1", "sweeps, or substeps, in a step; 0: as the fix chooses", 0, 100_000
+)
 
 
 def solver(
@@ -27,7 +31,7 @@ def solver(
 
     Args:
         dt: default of the time step, s.
-        iterations: default of the sweeps or substeps in a step.
+        iterations: default of the sweeps or substeps in a step; 0: as the fix chooses.
         method: default of what the iterations are.
         direction: default of the direction in which edges are projected.
         quick_dt: time step with ``--quick``.
@@ -35,15 +39,7 @@ def solver(
     """
     return (
         Parameter("dt", dt, "s", "time step", 1e-7, 0.1, quick=quick_dt),
-        Parameter(
-            "iterations",
-            iterations,
-            "1",
-            "sweeps, or substeps, in a step",
-            1,
-            100_000,
-            quick=quick_iterations,
-        ),
+        dataclasses.replace(ITERATIONS, default=iterations, quick=quick_iterations),
         Parameter("solver", method, "1", "what the iterations are", choices=SOLVERS),
         Parameter("direction", direction, "1", "of the projection", choices=DIRECTIONS),
         Parameter("tolerance", 0.0, "1", "error that ends the sweeps", 0.0, 1.0),

@@ -86,10 +86,16 @@ void ClothConstraints::measure_rest(int groupbit, const ParticleColumns &rest_x,
     mean += edges.rest.back() / static_cast<double>(mesh.edges.size());
   }
   if (mean == 0.0) mean = 1.0;    // nothing has a size: residuals are lengths
+  edges.lever.assign(edges.rest.size(), 1.0);
   hinges.rest.clear();
+  hinges.lever.clear();
   for (const auto &[a, e1, e2, b] : mesh.hinges.vertices) {
     const double angle = hinge_angle(from(e1, a), Vec3::Zero(), from(e1, e2), from(e1, b));
     hinges.rest.push_back(std::isnan(angle) ? 0.0 : angle);
+    double lever = 0.0;
+    for (const Vec3 &gradient : hinge_gradients(from(e1, a), from(e1, e2), from(e1, b)))
+      lever += 0.25 * gradient.squaredNorm();
+    hinges.lever.push_back(std::isnan(angle) ? 0.0 : lever);
   }
 }
 
@@ -250,7 +256,7 @@ void ClothConstraints::fill(Constraints<N> &c, const Kind<N> &kind, const ByColo
         if (layer >= static_cast<int>(springs.size())) continue;
         Spring spring = springs[layer];
         spring.rest *= kind.rest[f.element];
-        c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]));
+        c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]), kind.lever[f.element]);
       }
       c.close_color();
     }

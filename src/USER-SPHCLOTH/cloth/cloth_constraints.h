@@ -82,6 +82,7 @@ class ClothConstraints : protected Pointers {
 
     const ClothElements<N> &elements;
     std::vector<double> rest;    // length or angle, by element
+    std::vector<double> lever;    // mean square of the gradients in the rest shape, by element
     std::vector<int> color;
     int colors = 0, layers = 1;
     std::vector<std::vector<sphcloth::Spring>> springs;    // of a unit rest value, by type

@@ -15,9 +15,13 @@ void ClothOptions::read(ArgReader &args)
 {
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword == "iterations")
+    if (keyword == "iterations") {
       solving.iterations = args.integer("iterations", 1, 100000);
-    else if (keyword == "solver") {
+      iterations_given = true;
+    } else if (keyword == "strain") {
+      solving.strain = args.positive(keyword);
+      strain_given = true;
+    } else if (keyword == "solver") {
       solving.solver = static_cast<ClothSolver>(args.choice(keyword, {"gs", "jacobi", "substeps"}));
       solver_given = true;
     } else if (keyword == "order")
@@ -39,9 +43,10 @@ void ClothOptions::read(ArgReader &args)
     else if (keyword == "rest")
       rest_property = args.word("rest property");
     else
-      args.unknown(keyword,
-                   "iterations, solver, order, direction, tolerance, reference, pin, velocity, "
-                   "attach, damping, rest");
+      args.unknown(
+          keyword,
+          "iterations, strain, solver, order, direction, tolerance, reference, pin, velocity, "
+          "attach, damping, rest");
   }
   check(args);
 }
@@ -55,9 +60,13 @@ void ClothOptions::check(ArgReader &args)
                owner);
   if (!solver_given && (attachbit || solving.tolerance > 0.0))
     solving.solver = ClothSolver::GAUSS_SEIDEL;
+  if (iterations_given && !strain_given) solving.strain = 0.0;
   if (attachbit && solving.solver == ClothSolver::SUBSTEPS)
     args.fail("solver", "substeps",
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
+  if (strain_given && solving.solver != ClothSolver::SUBSTEPS)
+    args.fail("strain", std::to_string(solving.strain),
+              "it says how long substeps are: leave it away, or use 'solver substeps'");
   if (solving.symmetric_sweeps && solving.solver == ClothSolver::JACOBI)
     args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
   if (solving.tolerance > 0.0 && solving.solver == ClothSolver::SUBSTEPS)

@@ -31,7 +31,7 @@ class ClothOptions : protected Pointers {
  private:
   const std::string owner;
   const int igroup;
-  bool solver_given = false;
+  bool solver_given = false, iterations_given = false, strain_given = false;
 
   int read_held(ArgReader &, const std::string &keyword);
   void check(ArgReader &);

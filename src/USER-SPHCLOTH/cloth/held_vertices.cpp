@@ -14,8 +14,9 @@ void HeldVertices::stop_pins()
 {
   if (options.pin_motion) return;
   int moved_by_others = 0;
+  // null: one of this ID that the present one replaces
   for (const Fix *other : modify->get_fix_list())
-    if (other != cloth && other->time_integrate) moved_by_others |= other->groupbit;
+    if (other && other != cloth && other->time_integrate) moved_by_others |= other->groupbit;
   for (int i = 0; i < atom->nlocal; i++)
     if (is_vertex(i) && is_pinned(i) && !(atom->mask[i] & moved_by_others))
       std::fill(atom->v[i], atom->v[i] + 3, 0.0);

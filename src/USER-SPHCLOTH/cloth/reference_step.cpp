@@ -16,7 +16,8 @@ void ReferenceStep::rescale(int usual_substeps, double substep_dt)
   } else if (steps_vary) {
     if (first == 0.0) take_first_step();
     constraints.rescale_stiffness(first / usual_substeps, substep_dt);
-  }
+  } else
+    constraints.rescale_stiffness(update->dt / usual_substeps, substep_dt);
 }
 
 void ReferenceStep::take_first_step()

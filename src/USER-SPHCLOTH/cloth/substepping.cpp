@@ -5,6 +5,8 @@
 #include "cloth/substepping.h"
 
 #include "atom.h"
+#include "comm.h"
+#include "error.h"
 #include "force.h"
 
 #include <algorithm>
@@ -15,25 +17,62 @@ using namespace sphcloth;
 
 static constexpr int ALL = ClothConstraints::ALL;
 
-// What a sweep leaves of a stretch acts as a spring of the stiffness m/h^2, h the substep, and so
-// does a k below 1.  Where steps go to and fro between powers of two that would feed what they
-// stretch: substeps stay as long as those of the shortest recent step.
+int Substepping::wanted_substeps(double dt)
+{
+  if (!follows_load()) return usual_substeps();
+  const double wanted = length.substeps(dt, options.iterations);
+  if (length.is_held())
+    warn(fmt::format("edges are strained by more than {}, whatever the substep: what holds them is "
+                     "too far apart for their lengths; give a compliance, or a larger 'strain'",
+                     options.strain));
+  const int allowed = std::max(1000, options.iterations);
+  if (wanted <= allowed) return static_cast<int>(wanted);
+  warn(fmt::format("a strain of {} under the present load takes {:.6g} substeps, and no more than "
+                   "{} are done in a step: the sheet stretches more, see 'unconverged' of compute "
+                   "pbd/cloth; give a compliance, a larger 'strain', or a shorter step",
+                   options.strain, wanted, allowed));
+  return allowed;
+}
 
-void Substepping::begin_step(const StepInfo &step, const std::vector<SolverCoupling *> &meets,
+// once
+
+void Substepping::warn(const std::string &of)
+{
+  if (comm->me == 0 && !warned) error->warning(FLERR, "{}: {}", owner, of);
+  warned = true;
+}
+
+void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCoupling *> &meets,
                              HolderForces &holders_)
 {
   couplings = &meets;
   holders = &holders_;
-  // factors: by which substeps may lengthen from step to step, and by which a step may be longer
-  // than the shortest recent one for its substeps to be as short
-  constexpr double LENGTHENS = 1.01, MAX_RATIO = 8.0, ROUNDING = 1e-6;
-  step_dt = step.dt;
-  n_substeps = usual_substeps();
-  if (!uses(ClothSolver::SUBSTEPS) || !step.powers_of_two) return;
-  recent_shortest = std::min(LENGTHENS * recent_shortest, step_dt);
-  recent_shortest = std::max(recent_shortest, step_dt / MAX_RATIO);
-  const double per_time = n_substeps / recent_shortest;
-  n_substeps = static_cast<int>(std::ceil(per_time * step_dt - ROUNDING));
+  step_dt = dt;
+  n_substeps = substeps;
+  if (!follows_load()) length.stiffen();
+  length.use(substep_dt());
+}
+
+void Substepping::end_step()
+{
+  started = true;
+  if (!follows_load()) return;
+  const double mine = demand();
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  length.set_demand(all * force->ftm2v);
+}
+
+// of this rank's constraints, from the multipliers of the last sweep
+
+double Substepping::demand() const
+{
+  constexpr double SHARE_OF_COMPLIANCE = 0.1, ANGLE_OVER_STRAIN = 5.0;
+  const double by = inv_dt_sq(), strain = options.strain;
+  return std::max(sphcloth::demand(constraints.distance, by, 1.0 / max_edge_share(), strain,
+                                   SHARE_OF_COMPLIANCE, constraints.mean_length()),
+                  sphcloth::demand(constraints.bending, by, 1.0 / max_hinge_share(),
+                                   ANGLE_OVER_STRAIN * strain, SHARE_OF_COMPLIANCE));
 }
 
 // The last couplings of all cloths come last, and together: what couples cloths is the last of
@@ -149,10 +188,16 @@ void Substepping::damp()
 
 void Substepping::sweep()
 {
-  const ClothState state{
-      vertices.start.data(), vertices.displacement.data(),
-      options.from_start,    uses(ClothSolver::JACOBI) ? vertices.change.data() : nullptr,
-      inv_dt_sq(),           single_sweeps() ? STABLE_HINGE_SHARE : 1.0};
+  ClothState state;
+  state.start = vertices.start.data();
+  state.displacement = vertices.displacement.data();
+  state.along_start = options.from_start;
+  if (uses(ClothSolver::JACOBI)) state.change = vertices.change.data();
+  state.inv_dt_sq = inv_dt_sq();
+  state.max_edge_share = max_edge_share();
+  state.max_hinge_share = max_hinge_share();
+  if (uses(ClothSolver::SUBSTEPS))
+    state.softness_ratio = std::pow(length.length() / substep_dt(), 2);
   uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
   sweeps++;
 }
@@ -225,6 +270,15 @@ double Substepping::residual() const
   const Vertex *p = vertices.p.data();
   return std::max(sphcloth::residual(constraints.distance, p, by, constraints.mean_length()),
                   sphcloth::residual(constraints.bending, p, by));
+}
+
+double Substepping::unconverged() const
+{
+  if (!uses(ClothSolver::SUBSTEPS)) return 0.0;
+  const double by = length.length() * length.length() * force->ftm2v;
+  return by *
+      sphcloth::demand(constraints.distance, inv_dt_sq(), 1.0 / max_edge_share(), 1.0, 0.0,
+                       constraints.mean_length());
 }
 
 // force times length: the unit of energy in all systems of units

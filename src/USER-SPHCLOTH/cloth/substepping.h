@@ -11,19 +11,14 @@
 #include "cloth/cloth_vertices.h"
 #include "cloth/holder_forces.h"
 #include "cloth/solver_coupling.h"
+#include "core/pbd/substep_length.h"
 #include "pointers.h"
 
-#include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
-
-// what the step of a cloth depends on
-
-struct StepInfo {
-  double dt = 0.0;
-  bool powers_of_two = false;    // steps go to and fro between them
-};
 
 // GAUSS_SEIDEL: a projection sees all before it.  JACOBI: it sees none of its own sweep, and the
 // share that it may move is one over the number of constraints at its vertices.  SUBSTEPS: as many
@@ -36,25 +31,32 @@ class Substepping : protected Pointers {
   struct Options {
     ClothSolver solver = ClothSolver::SUBSTEPS;
     int iterations = 10;
+    // strain that the solver may add, which says how long a substep may be; 0: there are as many as
+    // iterations
+    double strain = 0.01;
     bool symmetric_sweeps = false;    // forward through the constraints, then backward
     bool from_start =
         true;    // edges are projected along their directions at the start of the step
     double tolerance = 0.0;    // of the residual, 0: all iterations are done
-    double damping = 0.0;      // rate at which stretching motion decays, 1/time
+    double damping = 0.0;    // rate at which stretching motion decays, 1/time
   };
 
-  Substepping(LAMMPS *lmp_, const Options &options_, ClothConstraints &constraints_,
-              ClothVertices &vertices_) :
-      Pointers(lmp_), options(options_), constraints(constraints_), vertices(vertices_)
+  // owner: the fix, for warnings
+  Substepping(LAMMPS *lmp_, std::string owner_, const Options &options_,
+              ClothConstraints &constraints_, ClothVertices &vertices_) :
+      Pointers(lmp_), owner(std::move(owner_)), options(options_), constraints(constraints_),
+      vertices(vertices_)
   {
   }
 
   bool uses(ClothSolver one) const { return options.solver == one; }
   int usual_substeps() const { return uses(ClothSolver::SUBSTEPS) ? options.iterations : 1; }
+  // how many substeps the next step takes, of dt, under the load of the last one
+  int wanted_substeps(double dt);
 
   // cuts the next step into substeps, with what meets the cloth in it; forces of the holders are
   // summed where they are wanted
-  void begin_step(const StepInfo &, const std::vector<SolverCoupling *> &, HolderForces &);
+  void begin_step(double dt, int substeps, const std::vector<SolverCoupling *> &, HolderForces &);
   int substeps() const { return n_substeps; }
   const std::vector<SolverCoupling *> &present() const { return *couplings; }
   double substep_dt() const { return step_dt / n_substeps; }
@@ -62,34 +64,40 @@ class Substepping : protected Pointers {
   // Substep n of several cloths from vertices.start and velocities v, phase by phase: what couples
   // them finds all in the same one.
   static void substep(int n, const std::vector<Substepping *> &cloths);
-  void end_step() { started = true; }
+  void end_step();
 
   // largest C + a lambda of this rank's constraints, relative to lengths; elastic energy of those
   // that it owns
   double residual() const;
   double energy() const;
+  // largest strain that single sweeps have left of this rank's edges, by the load of the last step;
+  // 0 with whole steps
+  double unconverged() const;
   int sweeps_of_last_step() const { return n_substeps * sweeps; }
 
   struct State {    // of the restart file: plain and without gaps
-    double shortest, started;
+    sphcloth::SubstepLength::State length;
+    double started;
   };
-  State state() const { return {recent_shortest, started ? 1.0 : 0.0}; }
+  State state() const { return {length.state, started ? 1.0 : 0.0}; }
   void set_state(const State &from)
   {
-    recent_shortest = from.shortest;
+    length.state = from.length;
     started = from.started != 0.0;
   }
 
  private:
+  const std::string owner;
   const Options &options;
   ClothConstraints &constraints;
   ClothVertices &vertices;
   const std::vector<SolverCoupling *> *couplings = nullptr;    // of this step
   HolderForces *holders = nullptr;
-  // steps: the present one, and the shortest of the recent ones
-  double step_dt = 0.0, recent_shortest = std::numeric_limits<double>::infinity();
+  double step_dt = 0.0;
   int n_substeps = 1;
   int sweeps = 0;    // of the last substep
+  sphcloth::SubstepLength length;
+  bool warned = false;
   bool started = false;    // velocities are those of half a step ago, see direction start
 
   double inv_dt_sq() const;
@@ -106,7 +114,16 @@ class Substepping : protected Pointers {
   void jacobi(const sphcloth::ClothState &);
   // each substep goes through the constraints once, in one direction
   bool single_sweeps() const { return uses(ClothSolver::SUBSTEPS) && !options.symmetric_sweeps; }
+  bool follows_load() const { return uses(ClothSolver::SUBSTEPS) && options.strain > 0.0; }
+  // an edge takes all where the user says how many substeps there are
+  double max_edge_share() const
+  {
+    return single_sweeps() && follows_load() ? sphcloth::STABLE_EDGE_SHARE : 1.0;
+  }
+  double max_hinge_share() const { return single_sweeps() ? sphcloth::STABLE_HINGE_SHARE : 1.0; }
   bool converged() const;
+  void warn(const std::string &of);
+  double demand() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -42,7 +42,7 @@ class FluidStability : protected Pointers {
     mobility = nullptr;
     now = true;
   }
-  void want(const VertexMobility *vertices) { mobility = vertices; }
+  void want(const VertexMobility *of_vertices) { mobility = of_vertices; }
   // in the evaluations that come next
   void want_now(bool whether) { now = whether; }
   bool wanted() const { return mobility && now; }

@@ -38,6 +38,8 @@ namespace {
   {
     const Vertex *start = s.start, *displacement = s.displacement;
     Vertex *moved = s.change ? s.change : s.displacement;
+    const double softer = SINGLE_SWEEP_SOFTNESS * (s.softness_ratio - 1.0);
+    const double inv_share = 1.0 / s.max_edge_share, by_ratio = s.softness_ratio;
     for (int m = c.begin[color]; m < c.begin[color + 1]; m += WIDE) {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
       Rows before, now;
@@ -55,7 +57,9 @@ namespace {
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double a = compliance[l] * s.inv_dt_sq;
+        const double of_edge =
+            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * by_ratio * d.w[l]);
+        const double a = of_edge + (k[l] < 1.0 ? 0.0 : softer * d.w[l]);
         const DistanceStep by = START
             ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
                                   k[l], a, lambda[l], max_lambda[l])
@@ -107,7 +111,7 @@ namespace {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m];
       double *lambda = &c.lambda[m];
-      const double inv_share = 1.0 / s.max_hinge_share;
+      const double inv_share = 1.0 / s.max_hinge_share, by_ratio = s.softness_ratio;
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const HingeShape h =
@@ -124,7 +128,7 @@ namespace {
         const double lever = weight - MIN_LEVER * w * steepest;
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double softness =
-            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * weight);
+            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * by_ratio * weight);
         const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, step_ratio,
                                             softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
@@ -251,6 +255,26 @@ namespace {
     return largest;
   }
 
+  // softness: of a constraint that is rigid, over W h^2; unit: of the error of a constraint, 0 if
+  // its own deviation is the only one that there is
+
+  template <std::size_t N, class Unit>
+  double largest_demand(const Constraints<N> &c, double inv_dt_sq, double softness, double error,
+                        double share, Unit unit)
+  {
+    double largest = 0.0;
+    for (int m = 0; m < c.size(); m++) {
+      if (!c.hard[m]) continue;
+      const double load = std::fabs(c.lambda[m]) * inv_dt_sq, a = c.compliance[m];
+      const double size = unit(c.rest[m], a);
+      const double by_error = softness / error * (size > 0.0 ? load / size : 1.0 / a),
+                   by_share = SINGLE_SWEEP_SOFTNESS / (share * a);
+      largest =
+          std::max(largest, c.weight[m] * (size > 0.0 ? std::min(by_error, by_share) : by_error));
+    }
+    return largest;
+  }
+
   template <std::size_t N>
   double sum_of_energies(const Constraints<N> &c, const Vertex *p, int n_owned)
   {
@@ -265,6 +289,20 @@ namespace {
   }
 
 }    // namespace
+
+double demand(const Constraints<2> &c, double inv_dt_sq, double softness, double error,
+              double share, double length)
+{
+  return largest_demand(c, inv_dt_sq, softness, error, share, [&](double rest, double compliance) {
+    return rest > 0.0 ? rest : compliance > 0.0 ? 0.0 : length;
+  });
+}
+
+double demand(const Constraints<4> &c, double inv_dt_sq, double softness, double error,
+              double share)
+{
+  return largest_demand(c, inv_dt_sq, softness, error, share, [](double, double) { return 1.0; });
+}
 
 void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)
 {
@@ -289,12 +327,9 @@ void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, con
     const std::array<int, 4> s{c.slot[0][m], c.slot[1][m], c.slot[2][m], c.slot[3][m]};
     if (c.lambda[m] == 0.0 || std::all_of(s.begin(), s.end(), [&](int q) { return p[q].w > 0.0; }))
       continue;
-    const Vec3 e1 = position(p[s[1]]), a = position(p[s[0]]) - e1, e = position(p[s[2]]) - e1,
-               b = position(p[s[3]]) - e1;
-    const HingeShape h = hinge_shape(a[0], a[1], a[2], e[0], e[1], e[2], b[0], b[1], b[2]);
-    const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
-    const Vec3 g2 = -h.a2 * ga - h.b2 * gb;
-    const std::array<Vec3, 4> gradient{ga, -ga - g2 - gb, g2, gb};
+    const Vec3 e1 = position(p[s[1]]);
+    const std::array<Vec3, 4> gradient =
+        hinge_gradients(position(p[s[0]]) - e1, position(p[s[2]]) - e1, position(p[s[3]]) - e1);
     for (int q = 0; q < 4; q++)
       if (p[s[q]].w == 0.0) on(s[q], c.lambda[m] * gradient[q]);
   }

@@ -38,11 +38,14 @@ template <std::size_t N> class Constraints {
     begin.reserve(colors + 1);
     for (auto &s : slot) s.clear();
     hard.clear();
-    for (auto *list : {&rest, &k, &compliance, &max_lambda, &lambda, &reference_k}) list->clear();
+    for (auto *list : {&rest, &k, &compliance, &max_lambda, &lambda, &weight, &reference_k})
+      list->clear();
     step_ratio = 1.0;
   }
-  // in order of their colors; share: the part of a projection that one sweep may do
-  void add(const std::array<int, N> &vertices, const Spring &spring, double share = 1.0)
+  // in order of their colors; share: the part of a projection that one sweep may do; lever: mean
+  // square of the gradients at its vertices, 0 if no load of it counts
+  void add(const std::array<int, N> &vertices, const Spring &spring, double share = 1.0,
+           double lever = 1.0)
   {
     for (std::size_t q = 0; q < N; q++) slot[q].push_back(vertices[q]);
     rest.push_back(spring.rest);
@@ -51,6 +54,7 @@ template <std::size_t N> class Constraints {
     compliance.push_back(spring.compliance);
     max_lambda.push_back(spring.max_lambda);
     lambda.push_back(0.0);
+    weight.push_back(lever);
   }
   void close_color()
   {
@@ -58,6 +62,15 @@ template <std::size_t N> class Constraints {
     vertices.fill(idle);
     while (size() % GROUP<double> != 0) add(vertices, {0.0, 0.0, 0.0, 0.0});
     begin.push_back(size());
+  }
+  // once, when all have been added: of vertices the w are read
+  void weigh(const Vertex *of)
+  {
+    for (int m = 0; m < size(); m++) {
+      double w = 0.0;
+      for (std::size_t q = 0; q < N; q++) w += of[slot[q][m]].w;
+      weight[m] *= w;
+    }
   }
 
   // k of soft constraints such that they stay the springs that k is in a reference step.  ratio:
@@ -76,7 +89,7 @@ template <std::size_t N> class Constraints {
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
-    double sum = bytes_of(rest, k, compliance, max_lambda, lambda, reference_k);
+    double sum = bytes_of(rest, k, compliance, max_lambda, lambda, weight, reference_k);
     for (const std::vector<int> &vertex : slot) sum += bytes_of(vertex);
     return sum;
   }
@@ -84,6 +97,7 @@ template <std::size_t N> class Constraints {
   std::vector<int> begin{0};    // of each color, and the end
   std::array<std::vector<int>, N> slot;
   AlignedVector<double> rest, k, compliance, max_lambda, lambda;
+  AlignedVector<double> weight;    // W of demand(), with the gradients of the rest shape
   std::vector<char> hard;    // k = 1: to be met in full
 
  private:
@@ -103,18 +117,35 @@ struct ClothState {
   bool along_start = false;    // project edges along the directions that they had at the start
   Vertex *change = nullptr;    // Jacobi: sum of the changes of displacements; or null
   double inv_dt_sq = 0.0;    // times a compliance: an inverse mass
-  // part of its error that one projection of a hinge may take: 1, or less where a stiffer one is
-  // not stable
-  double max_hinge_share = 1.0;
+  // part of its error that one projection may take: 1, or less where a stiffer one is not stable
+  double max_edge_share = 1.0, max_hinge_share = 1.0;
+  // square of the substep that the solver is as soft as, over that of the present one
+  double softness_ratio = 1.0;
 };
 
-// A single sweep goes from one end to the other: the forces that it makes of overlapping hinges
-// have no energy, and feed the motion unless each hinge takes only part of its error.  A loaded
-// sheet gains energy from a share of 0.37 on, a free one from 0.65 on.
-inline constexpr double STABLE_HINGE_SHARE = 0.25;
+// A single sweep goes from one end to the other: the forces that it makes of constraints that share
+// vertices have no energy, and feed the motion unless each takes only part of its error.  A loaded
+// sheet gains energy from a share of 0.37 of its hinges on, a free one from 0.65 on; water that
+// strikes a sheet of rigid edges gains by edges from a share of 0.9 on.
+inline constexpr double STABLE_HINGE_SHARE = 0.25, STABLE_EDGE_SHARE = 0.8;
+
+// What one sweep leaves of constraints in a row that take all of their error is as if they had this
+// share of W h^2 as compliance, W = sum_j w_j |grad_j C|^2: the next one in the sweep stretches
+// every second one by all of it.
+inline constexpr double SINGLE_SWEEP_SOFTNESS = 0.5;
 
 void project(Constraints<2> &, int color, const ClothState &);
 void project(Constraints<4> &, int color, const ClothState &);
+
+// 1/h^2 of the longest substep h in which the solver, under the multipliers that a substep left,
+// changes no hard constraint by more than `error`, or by more than `share` of what its own
+// compliance does.  softness: of the softest of rigid ones, over W h^2; error: of edges relative to
+// the rest length, where that is 0 to the present one, or to `length` if it has no compliance
+// either; of hinges an angle.
+double demand(const Constraints<2> &, double inv_dt_sq, double softness, double error, double share,
+              double length);
+double demand(const Constraints<4> &, double inv_dt_sq, double softness, double error,
+              double share);
 
 // takes the share of the stretching motion out of the velocities v of one color
 void damp(const Constraints<2> &, int color, const Vertex *p, Vertex *v, double share);

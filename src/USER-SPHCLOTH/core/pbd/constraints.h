@@ -220,6 +220,16 @@ SPHCLOTH_INLINE DistanceStep damping_step(double dx, double dy, double dz, doubl
   return {step * dx, step * dy, step * dz, step};
 }
 
+// gradients of the angle at wing a, edge 1, edge 2 and wing b, from positions relative to edge 1
+
+inline std::array<Vec3, 4> hinge_gradients(const Vec3 &a, const Vec3 &e2, const Vec3 &b)
+{
+  const HingeShape h = hinge_shape(a[0], a[1], a[2], e2[0], e2[1], e2[2], b[0], b[1], b[2]);
+  const Vec3 ga(h.ax, h.ay, h.az), gb(h.bx, h.by, h.bz);
+  const Vec3 g2 = -h.a2 * ga - h.b2 * gb;
+  return {ga, -ga - g2 - gb, g2, gb};
+}
+
 // angle of a hinge, for rest angles; NaN for a degenerate one
 
 inline double hinge_angle(const Vec3 &a, const Vec3 &e1, const Vec3 &e2, const Vec3 &b)

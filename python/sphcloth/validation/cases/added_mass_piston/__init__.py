@@ -53,7 +53,7 @@ PARAMETERS = (
         choices=("extrapolate", "mirror", "own"),
     ),
     Parameter("thickness", 0.2, "spacing", "gap that contact keeps", 0.01, 0.5),
-    Parameter("iterations", 50, "1", "sweeps, or substeps, in a step", 1, 100_000),
+    cloth.ITERATIONS,
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     Parameter("refined", 1.0, "1", "time step over that of the fluid", 1e-4, 2.0),

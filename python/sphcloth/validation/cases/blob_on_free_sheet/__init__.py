@@ -48,7 +48,7 @@ PARAMETERS = (
         "wall", "own", "1", "pressure of the vertices", choices=("extrapolate", "mirror", "own")
     ),
     Parameter("thickness", 0.2, "spacing", "gap that contact keeps", 0.01, 0.5),
-    Parameter("iterations", 10, "1", "sweeps, or substeps, in a step", 1, 100_000),
+    cloth.ITERATIONS,
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
     Parameter("order", "forward", "1", "of a sweep", choices=("forward", "symmetric")),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),

@@ -49,7 +49,7 @@ PARAMETERS = (
         "wall", "own", "1", "pressure of the vertices", choices=("extrapolate", "mirror", "own")
     ),
     Parameter("gap", 0.2, "spacing", "gap that contact keeps", 0.01, 0.5),
-    Parameter("iterations", 10, "1", "sweeps, or substeps, in a step", 1, 100_000),
+    cloth.ITERATIONS,
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     *numerics(alpha=0.1, courant=0.5, support=2.0, disorder=0.0, density="continuity"),

@@ -1,0 +1,172 @@
+"""Substeps of fix pbd/cloth by their length: what a load needs, and no more."""
+
+import re
+
+import numpy as np
+import pytest
+from cloth_scenes import cloth
+from harness import by_id, instance, run, write
+from scenes import cloth_styles, header
+
+GRAVITY = 9.81
+PULL = 200.0  # N per vertex of 0.02 kg, of 11 in a column
+TOP = "region top block INF INF 0.45 INF INF INF\n"
+PINNED = {"options": "pin top pins", "regions": TOP, "newton": "on"}
+
+
+def hung(fix="", extra="", k=1.0):
+    """Hang a sheet of 2 kg/m^2 in its plane by its upper side; the load comes at once."""
+    lmp = cloth(fix=f"pin pins {fix}", extra=extra, k=k, bend=0.02, **PINNED)
+    lmp.commands_string(f"unfix gravity\nfix load cloth addforce 0 -{PULL} 0\nrun 0")
+    return lmp
+
+
+def value(lmp, n):
+    return lmp.extract_fix("sheet", 0, 1, n - 1)
+
+
+@pytest.mark.parametrize("strain", [0.01, 0.003])
+@pytest.mark.parametrize("dt", [1e-3, 4e-3])
+def test_the_strain_of_rigid_edges_under_a_load_is_what_is_asked(dt, strain):
+    """Ten substeps in a step leave ten times more at 4 ms."""
+    lmp = hung(f"damping 100 strain {strain}", f"timestep {dt}\n")
+    lmp.command("run 800")
+    assert 0.2 * strain < value(lmp, 4) < 1.5 * strain
+    assert 0.5 * strain < value(lmp, 11) < 1.05 * strain
+
+
+def test_what_the_solver_leaves_of_a_chain():
+    """Of its upper edge, which takes 4/5 of its error, 5/4 of w T h^2."""
+    lmp = instance()
+    lmp.commands_string(
+        header(boundary="f f f", cutoff=2.0)
+        + """
+region box block -1 1 -1 1 -4 1
+create_box 1 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 2
+create_atoms 1 single 0 0 0 units box
+create_atoms 1 single 0 0 -1 units box
+create_atoms 1 single 0 0 -2 units box
+mass 1 0.1
+group pins id 1
+pair_style zero 2.0
+pair_coeff * *
+bond_style pbd
+bond_coeff 1 1
+create_bonds single/bond 1 1 2
+create_bonds single/bond 1 2 3
+fix gravity all gravity 9.81 vector 0 0 -1
+fix sheet all pbd/cloth pin pins damping 20
+timestep 0.01
+run 3000
+"""
+    )
+    substep = 0.01 / 10
+    assert value(lmp, 6) == 10
+    left = 1.25 / 0.1 * (2 * 0.1 * GRAVITY) * substep**2
+    assert value(lmp, 11) == pytest.approx(left, rel=1e-3)
+    # the present length has the part of the share, and of the sweep that of the lower edge
+    assert 0.2 * left < value(lmp, 4) < 2 * left
+
+
+def test_steps_that_are_shorter_than_a_substep_need_one():
+    """The longest step has ten, and a load may ask for more."""
+    lmp = cloth(extra="unfix gravity\n")
+    lmp.command("run 1")
+    assert value(lmp, 6) == 10
+    lmp.commands_string("timestep 2.5e-4\nrun 1")
+    assert value(lmp, 6) == 3
+    lmp.commands_string("timestep 1e-5\nrun 1")
+    assert value(lmp, 6) == 1
+
+
+def test_iterations_say_how_many_there_are():
+    lmp = hung("iterations 4")
+    for dt in (1e-3, 1e-4):
+        lmp.commands_string(f"timestep {dt}\nrun 5")
+        assert value(lmp, 6) == 4
+
+
+def test_edges_that_are_held_too_far_apart_take_no_more_substeps(tmp_path):
+    """No substep brings a strain of 4 % down: a warning says so."""
+    lmp = cloth(fix="pin pins damping 50", k=1.0, bend=0.02, **PINNED)
+    lmp.commands_string(
+        f"""log {tmp_path}/log
+unfix gravity
+region low block INF INF INF -0.45 INF INF
+group low region low
+group pins union pins low
+displace_atoms low move 0 -0.04 0 units box
+run 500
+log none
+"""
+    )
+    assert 0.04 < value(lmp, 4) < 0.12
+    assert 10 < value(lmp, 6) < 100
+    text = (tmp_path / "log").read_text()
+    assert len(re.findall("WARNING: fix sheet pbd/cloth: edges are strained by more", text)) == 1
+
+
+LOADED = (
+    header(boundary="f f f", cutoff=0.3)
+    + "region box block -2 2 -2 2 -2 2\n"
+    + "create_box 1 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &\n"
+    + "  extra/angle/per/atom 8 extra/dihedral/per/atom 8\n"
+    + TOP
+    + """create_cloth 1 2.0 size 1.0 1.0 spacing 0.1 group cloth pin top pins
+pair_style zero 0.3
+pair_coeff * *
+"""
+    + cloth_styles(1.0, 0.5)
+    + """variable push equal -10*(step>20)*(1+(step>60)*9)
+fix push cloth addforce 0 v_push 0
+fix sheet cloth pbd/cloth pin pins damping 20
+timestep 2e-3
+thermo 1
+thermo_style custom step f_sheet[4] f_sheet[6] f_sheet[11]
+thermo_modify format float %.12g
+"""
+)
+
+
+def loaded(tmp_path, name):
+    """A load that grows tenfold in a step, and the log file."""
+    return f"{LOADED}log {tmp_path}/{name}\n"
+
+
+def rows(path):
+    found = re.findall(r"^ +(\d+) +(\S+) +(\d+) +(\S+) *$", path.read_text(), re.MULTILINE)
+    return np.array(found, float)
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_take_the_same_substeps(tmp_path, ranks):
+    for n in (1, ranks):
+        run(write(tmp_path, loaded(tmp_path, f"log.{n}") + "run 120\n"), ranks=n)
+    one, more = rows(tmp_path / "log.1"), rows(tmp_path / f"log.{ranks}")
+    assert len(one) == 121
+    assert len(set(one[:, 2])) > 4
+    assert np.array_equal(one[:, 2], more[:, 2])
+    assert np.allclose(one, more, rtol=1e-9, atol=1e-12)
+
+
+def test_a_restart_goes_on_with_the_same_substeps(tmp_path):
+    with instance() as lmp:
+        lmp.commands_string(loaded(tmp_path, "log.a") + f"run 70\nwrite_restart {tmp_path}/half\n")
+        lmp.command("run 50")
+        there = by_id(lmp, "x")
+    script = loaded(tmp_path, "log.b")
+    begin = script[: script.index("region box")]
+    go_on = script[script.index("pair_style") :]
+    with instance() as lmp:
+        lmp.commands_string(begin + f"read_restart {tmp_path}/half\n" + go_on + "run 50\n")
+        assert np.array_equal(by_id(lmp, "x"), there)
+    first, second = rows(tmp_path / "log.a"), rows(tmp_path / "log.b")
+    assert np.array_equal(first[-50:, 2], second[-50:, 2])
+
+
+def test_a_strain_that_no_substep_reaches_is_said(tmp_path):
+    script = loaded(tmp_path, "log").replace("damping 20", "damping 20 strain 1e-9")
+    text = run(write(tmp_path, script + "run 60\ntimestep 0.2\nrun 1\n"))
+    assert len(re.findall("WARNING: fix sheet pbd/cloth: a strain of 1e-09 under the", text)) == 1
+    assert "no more than 1000 are done in a step" in text
+    assert rows(tmp_path / "log")[:, 2].max() == 1000

@@ -19,6 +19,14 @@ pair_style zero 0.05
 pair_coeff * *
 """
 )
+SHAKEN = """
+variable v1 atom random(-0.2,0.2,77)
+variable v2 atom random(-0.2,0.2,78)
+variable v3 atom random(-0.2,0.2,79)
+velocity cloth set v_v1 v_v2 v_v3
+velocity cloth zero linear
+velocity cloth zero angular
+"""
 
 
 @pytest.mark.parametrize("hinges", [1.0, "compliance 1e-9"])
@@ -29,14 +37,8 @@ def test_a_crumpled_sheet_with_stiff_hinges_comes_to_rest(edges, hinges):
     lmp.commands_string(
         CRUMPLED
         + cloth_styles(edges, hinges)
-        + """
-variable v1 atom random(-0.2,0.2,77)
-variable v2 atom random(-0.2,0.2,78)
-variable v3 atom random(-0.2,0.2,79)
-velocity cloth set v_v1 v_v2 v_v3
-velocity cloth zero linear
-velocity cloth zero angular
-timestep 1e-4
+        + SHAKEN
+        + """timestep 1e-4
 fix sheet cloth pbd/cloth iterations 10
 compute motion all ke
 run 0
@@ -53,14 +55,8 @@ def test_a_crumpled_sheet_without_hinges_comes_to_rest():
     lmp.commands_string(
         CRUMPLED
         + cloth_styles(1.0, 0)
-        + """
-variable v1 atom random(-0.2,0.2,77)
-variable v2 atom random(-0.2,0.2,78)
-variable v3 atom random(-0.2,0.2,79)
-velocity cloth set v_v1 v_v2 v_v3
-velocity cloth zero linear
-velocity cloth zero angular
-timestep 1e-3
+        + SHAKEN
+        + """timestep 1e-3
 fix sheet cloth pbd/cloth
 compute motion all ke
 run 0

@@ -126,7 +126,7 @@ struct ClothState {
 // A single sweep goes from one end to the other: the forces that it makes of constraints that share
 // vertices have no energy, and feed the motion unless each takes only part of its error.  A loaded
 // sheet gains energy from a share of 0.37 of its hinges on, a free one from 0.65 on; water that
-// strikes a sheet of rigid edges gains by edges from a share of 0.9 on.
+// strikes a sheet gains from rigid edges that take all, and not from a share of 0.91 down.
 inline constexpr double STABLE_HINGE_SHARE = 0.25, STABLE_EDGE_SHARE = 0.8;
 
 // What one sweep leaves of constraints in a row that take all of their error is as if they had this

@@ -135,13 +135,22 @@ BOOST_AUTO_TEST_CASE(control_by_compression)
   BOOST_CHECK(control.step(1.1e-4, {0.5, 0.1}, 0.0) == 0.05 * 0.002);
 }
 
-BOOST_AUTO_TEST_CASE(last_two_steps_before_an_output_time_are_balanced)
+BOOST_AUTO_TEST_CASE(the_last_steps_before_an_output_time_are_equal)
 {
-  BOOST_CHECK(step_towards(1.0, 0.3) == 0.3);
+  BOOST_CHECK(step_towards(5.0, 0.3) == 0.3);
+  BOOST_CHECK(step_towards(1.0, 0.3) == 0.25);
   BOOST_CHECK(step_towards(0.5, 0.3) == 0.25);
   BOOST_CHECK(step_towards(0.25, 0.3) == 0.25);
   BOOST_CHECK(step_towards(0.3 * (1.0 + 1e-12), 0.3) == 0.3 * (1.0 + 1e-12));
   BOOST_CHECK(step_towards(0.3, 0.3) == 0.3);
+  double remaining = 10.7, shortest = 1.0;
+  for (int n = 0; remaining > 1e-12; n++) {
+    const double step = step_towards(remaining, 1.0);
+    shortest = std::min(shortest, step);
+    remaining -= step;
+    BOOST_TEST(n < 12);
+  }
+  BOOST_TEST(shortest == 10.7 / 11.0, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(output_times_are_never_below_their_decimal_number)

@@ -4,20 +4,25 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+
 using namespace sphcloth;
 
 namespace {
 
-constexpr double DT = 1e-3, USUAL = DT / 10;
+constexpr double DT = 1e-3;
 
-// steps under a load, whose strain over the allowed one is `of` the square of a length
+double hardness(double strain) { return std::pow(1.0 + 9.0 * std::pow(strain, 4), -2); }
+
+// steps in which an edge has this strain over the one that `strain` allows; the last number of
+// substeps
 template <class Strain> double steps(SubstepLength &length, int n, Strain of)
 {
   double substeps = 0.0;
   for (int k = 0; k < n; k++) {
     substeps = length.substeps(DT, 10);
-    length.use(DT / substeps);
-    length.set_demand(of(length.length()) / (length.length() * length.length()));
+    const double strain = of(length) / length.yield();
+    length.found(hardness(strain), strain);
   }
   return substeps;
 }
@@ -30,63 +35,71 @@ BOOST_AUTO_TEST_CASE(the_longest_step_has_as_many_as_usual)
 {
   SubstepLength length;
   BOOST_TEST(length.substeps(DT, 10) == 10);
-  BOOST_TEST(length.substeps(2.0 * DT, 10) > 19);    // it lengthens slowly
+  BOOST_TEST(length.substeps(2.0 * DT, 10) == 10);
   BOOST_TEST(length.substeps(0.1 * DT, 10) == 1);
-  BOOST_TEST(length.length() == USUAL, boost::test_tools::tolerance(0.03));
+  BOOST_TEST(length.substeps(0.5 * DT, 10) == 3);
+  BOOST_TEST(length.longest() == 0.2 * DT);
 }
 
-BOOST_AUTO_TEST_CASE(a_load_shortens_it_by_one_percent_a_step_until_the_strain_is_allowed)
+BOOST_AUTO_TEST_CASE(a_load_shortens_them_at_once_and_its_growth_in_advance)
 {
   SubstepLength length;
-  const auto load = [](double of) { return 16.0 * of * of / (USUAL * USUAL); };
-  steps(length, 2, load);
-  BOOST_TEST(length.length() == USUAL / 1.01, boost::test_tools::tolerance(1e-12));
-  BOOST_TEST(steps(length, 300, load) == 40);
-  BOOST_TEST(length.length() == USUAL / 4, boost::test_tools::tolerance(1e-3));
-  BOOST_TEST(!length.is_held());
-  // without it back to what is usual
-  BOOST_TEST(steps(length, 300, [](double) { return 0.0; }) == 10);
+  const auto strain = [](double of) { return [of](const SubstepLength &) { return of; }; };
+  const double heavy = std::pow(3.0 / 9.0, 0.25);    // g is 1/16
+  steps(length, 3, strain(0.0));
+  BOOST_TEST(steps(length, 1, strain(heavy)) == 10);
+  // and half of that, since it was 1 before
+  BOOST_TEST(steps(length, 1, strain(heavy)) == std::ceil(40.0 * std::sqrt(2.0) - 0.1));
+  // longer by 1.5 % in a step
+  BOOST_TEST(steps(length, 10, strain(heavy)) > 45);
+  BOOST_TEST(steps(length, 20, strain(heavy)) == 40);
+  BOOST_TEST(steps(length, 30, strain(0.0)) > 20);
+  BOOST_TEST(steps(length, 100, strain(0.0)) == 10);
+  BOOST_TEST(length.longest() == 0.1 * DT);
 }
 
-BOOST_AUTO_TEST_CASE(a_strain_that_does_not_fall_shortens_it_no_more)
+BOOST_AUTO_TEST_CASE(what_is_held_apart_yields_until_it_is_soft)
 {
   SubstepLength length;
-  const auto held = [](double) { return 3.0; };
+  const auto held = [](const SubstepLength &) { return 2.0; };
   int first = 0;
-  for (int k = 1; k < 5000; k++) {
+  for (int k = 1; k < 500; k++) {
     steps(length, 1, held);
     if (length.is_held() && first == 0) first = k;
   }
-  BOOST_TEST(first > 200);
-  BOOST_TEST(first < 300);
-  BOOST_TEST(length.length() == USUAL, boost::test_tools::tolerance(0.02));
-  steps(length, 300, [](double) { return 0.5; });
-  BOOST_TEST(length.length() == USUAL, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(first > 30);
+  BOOST_TEST(first < 100);
+  BOOST_TEST(!length.is_overloaded());
+  BOOST_TEST(steps(length, 1, held) < 30);
+  // let go, it is as before
+  steps(length, 200, [](const SubstepLength &) { return 0.0; });
+  BOOST_TEST(!length.is_held());
+  BOOST_TEST(length.yield() == 1.0);
 }
 
-BOOST_AUTO_TEST_CASE(a_load_that_grows_is_not_held)
+BOOST_AUTO_TEST_CASE(a_load_that_no_hardening_bears_is_not_taken_for_held)
 {
   SubstepLength length;
-  double growth = 1.0;
-  const auto load = [&](double of) {
-    growth = std::min(growth * 1.03, 64.0);
-    return growth * of * of / (USUAL * USUAL);
-  };
-  for (int k = 0; k < 100; k++) {
-    steps(length, 10, load);
-    BOOST_TEST(!length.is_held());
+  const auto load = [](const SubstepLength &of) { return 2.0 * of.yield(); };
+  steps(length, 100, load);
+  BOOST_TEST(length.is_overloaded());
+  BOOST_TEST(!length.is_held());
+  steps(length, 100, load);
+  BOOST_TEST(length.yield() == 1.0);
+  // a moment is not enough for either
+  SubstepLength other;
+  for (int k = 0; k < 50; k++) {
+    steps(other, 20, load);
+    steps(other, 1, [](const SubstepLength &) { return 0.5; });
+    BOOST_TEST(other.yield() == 1.0);
   }
-  BOOST_TEST(length.length() == USUAL / 8, boost::test_tools::tolerance(1e-3));
 }
 
-BOOST_AUTO_TEST_CASE(it_is_never_shorter_than_the_present_one)
+BOOST_AUTO_TEST_CASE(given_substeps_are_followed_down_slowly_and_up_at_once)
 {
   SubstepLength length;
-  for (int k = 0; k < 5; k++) {
-    length.stiffen();
-    length.use(k == 2 ? 3.0 : 1.0);
-  }
-  BOOST_TEST(length.length() == 3.0 / 1.01 / 1.01, boost::test_tools::tolerance(1e-12));
+  for (int k = 0; k < 5; k++) length.follow(k == 2 ? 3.0 : 1.0);
+  BOOST_TEST(length.longest() == 3.0 / 1.01 / 1.01, boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -98,7 +98,8 @@ BOOST_AUTO_TEST_CASE(equal_base_steps_arrive_at_an_output_time_at_little_cost)
   WantedSteps one;
   for (int k = 0; k < 100; k++) one.add(0.3, 0.3);
   BOOST_CHECK_SMALL(one.base_step_towards(0.5, 0.3, 0.0, 1.0) - 0.25, 1e-15);
-  BOOST_CHECK_SMALL(one.base_step_towards(0.7, 0.3, 0.0, 1.0) - 0.3, 1e-15);
+  BOOST_CHECK_SMALL(one.base_step_towards(0.7, 0.3, 0.0, 1.0) - 0.7 / 3.0, 1e-15);
+  BOOST_CHECK_SMALL(one.base_step_towards(9.0, 0.3, 0.0, 1.0) - 0.3, 1e-15);
 }
 
 BOOST_AUTO_TEST_CASE(uniform_step_unless_unequal_ones_gain_enough)

@@ -206,7 +206,7 @@ def test_frames_of_block_steps_are_output_times() -> None:
         assert 0 < math.ceil(frames) - frames < 1e-5
     t_end, variables = schemes.clock(values | {"scheme": "global"}, 3.1, 20, t_settle=1.1)
     assert t_end == 3.1
-    assert variables == {"frames": 20, "t_settle": 1.1, "ceiling": 1.0}
+    assert variables == {"frames": 20, "t_settle": 1.1, "ceiling": 4.0}
 
 
 # cases in full, as small as they can be

@@ -79,11 +79,25 @@ def test_a_step_above_the_exact_limit_explodes_and_the_limit_does_not(areal, n):
 def growth(areal, step, n):
     """By how much the energy of small velocities grows in constant steps."""
     with soaked(areal, "constant") as lmp:
-        lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
-        mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
-        before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
-        lmp.commands_string(f"timestep {step}\nrun {n} post no")
-        return mass @ (by_id(lmp, "v") ** 2).sum(axis=1) / before
+        return growth_in(lmp, f"timestep {step}\nrun {n} post no")
+
+
+def growth_in(lmp, run):
+    lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+    before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
+    lmp.commands_string(run)
+    return mass @ (by_id(lmp, "v") ** 2).sum(axis=1) / before
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+@pytest.mark.parametrize("steps", [1.3, 2.3, 3.2])
+def test_output_times_feed_nothing(scheme, steps):
+    """A shorter step after every few whole ones would: two steps swing in resonance."""
+    with soaked(200.0, f"global {ALONE}") as lmp:
+        interval = steps * dt_and_limit(lmp)[0]
+    with soaked(200.0, f"global {ALONE} output {interval}") as lmp:
+        assert growth_in(lmp, f"run_style sph/adaptive {scheme}\nrun 150 post no") < 3
 
 
 def test_the_limit_is_found_again_where_it_changes():

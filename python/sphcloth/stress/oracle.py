@@ -266,9 +266,9 @@ def stretch(e: Evidence) -> tuple[float, float]:
 def energy_may_grow(e: Evidence) -> bool:
     """Whether the scene is one of those that may gain energy, see docs/evidence/reliability.md.
 
-    Individual steps do not keep energy; edges that are rigid, or stiffer than the solver can make
-    them, may return more than they stored where steps vary; and so may whole steps of a sheet that
-    is much lighter than what lies on it.
+    Individual steps do not keep energy; edges that are rigid, or stiffer than a number of iterations
+    can make them, may return more than they stored where steps vary; and so may whole steps of a
+    sheet that is much lighter than what lies on it.
     """
     s = e.scene
     if s.scheme == "individual" or s.sheet == "none":
@@ -276,7 +276,8 @@ def energy_may_grow(e: Evidence) -> bool:
     first = e.frames[0]
     mass = float(first.select(VERTEX).columns["mass"].min())
     dt = float(e.log("Dt", "s").max())
-    stiff = of_material(s, mass, dt) < SOFT * substep(s, dt) ** 2 / mass
+    given = s.iterations > 0
+    stiff = given and of_material(s, mass, dt) < SOFT * substep(s, dt) ** 2 / mass
     dense = max(s.rest_density) * s.spacing**3
     whole = s.solver != "substeps" or s.iterations == 1
     light = s.contact and whole and mass < LIGHT * dense

@@ -55,7 +55,7 @@ PARAMETERS = (
     Parameter("sound", 20.0, "V", "speed of sound at rest c0", 5.0, 1000.0),
     Parameter("across", 40, "1", "particles across the gap", 16, 400, quick=24),
     Parameter("plates", "planes", "1", "what they are", choices=("planes", "particles")),
-    Parameter("viscous", 0.1, "1", "largest step over smoothing length^2 / nu", 0.01, 0.3),
+    Parameter("viscous", 0.1, "1", "step of constant over smoothing length^2 / nu", 0.01, 0.3),
 )
 
 QUANTITIES = (

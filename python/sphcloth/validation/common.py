@@ -23,13 +23,12 @@ def numerics(
     density: str = "summation",
     delta: float = 0.1,
     scheme: str = "constant",
-    ceiling: float = 4.0,
 ) -> tuple[Parameter, ...]:
     """Return the parameters of the method; their names are those of the scripts' variables.
 
     Args:
         alpha: default of the artificial viscosity.
-        courant: default of the largest step over smoothing length / speed of sound.
+        courant: default of the step of constant over smoothing length / speed of sound.
         kernel: default of the kernel.
         support: default of the support radius over the spacing.
         tension: default of whether negative pressure acts.
@@ -37,7 +36,6 @@ def numerics(
         density: default of how the density is found.
         delta: default of the diffusion of the density.
         scheme: default of the scheme of the time step.
-        ceiling: default of the longest step where particles have steps of their own.
     """
     return (
         Parameter("gamma", 7.0, "1", "exponent of the equation of state", 1.01, 10.0),
@@ -50,8 +48,8 @@ def numerics(
         Parameter("delta", delta, "1", "diffusion of the density, with continuity", 0.0, 1.0),
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
-        Parameter("courant", courant, "1", "largest step over smoothing length / c0", 0.01, 1.6),
-        *schemes.parameters(scheme, ceiling),
+        Parameter("courant", courant, "1", "step of constant over smoothing length / c0", 0.01, 1.6),
+        *schemes.parameters(scheme),
     )
 
 

@@ -17,7 +17,7 @@ EARLY = 1e-6
 
 def parameters(scheme: str = "constant", ceiling: float = 4.0) -> tuple[Parameter, ...]:
     """Return the parameters of the time step, with these defaults."""
-    of_ceiling = "longest step over that of constant, individual and block"
+    of_ceiling = "longest step of the other schemes over that of constant"
     return (
         Parameter("scheme", scheme, "1", "scheme of the time step", choices=SCHEMES),
         Parameter("ceiling", ceiling, "1", of_ceiling, 1.0, 100.0),
@@ -42,11 +42,10 @@ def check(values: Mapping[str, Value]) -> None:
 def keywords(values: Mapping[str, Value]) -> dict[str, Value]:
     """Return the script's variables for a scheme: the ceiling, and keywords of fix sph/integrate.
 
-    With one step for all the ceiling is the step of ``constant``.
+    No limit is among them: what a user gets without any is what is looked at.
     """
-    ceiling = values["ceiling"] if values["scheme"] in UNEQUAL else 1.0
     limits = {"limits": f"gain {values['gain']!r}"} if values["scheme"] == "block" else {}
-    return {"ceiling": ceiling, **limits}
+    return {"ceiling": values["ceiling"], **limits}
 
 
 def clock(

@@ -141,6 +141,15 @@ template <std::size_t N> double ClothConstraints::share_of(const std::array<int,
   return 1.0 / max;
 }
 
+// An edge without a length is as long as its load and its compliance make it, and one that is welded
+// as others are.
+
+double ClothConstraints::size_of(const Spring &spring, const Kind<2> &) const
+{
+  if (spring.rest > 0.0) return spring.rest;
+  return spring.compliance > 0.0 ? 0.0 : mean;
+}
+
 double ClothConstraints::shortest_edge(int i) const
 {
   double shortest = std::numeric_limits<double>::infinity();
@@ -256,7 +265,8 @@ void ClothConstraints::fill(Constraints<N> &c, const Kind<N> &kind, const ByColo
         if (layer >= static_cast<int>(springs.size())) continue;
         Spring spring = springs[layer];
         spring.rest *= kind.rest[f.element];
-        c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]), kind.lever[f.element]);
+        c.add(f.slots, spring, share_of(kind.elements.vertices[f.element]), size_of(spring, kind),
+              kind.lever[f.element]);
       }
       c.close_color();
     }

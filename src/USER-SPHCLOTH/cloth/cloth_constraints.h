@@ -105,6 +105,8 @@ class ClothConstraints : protected Pointers {
   const PBDMaterial *material_of_hinge(int type) const;
   template <std::size_t N> void count(const Kind<N> &);
   template <std::size_t N> double share_of(const std::array<int, N> &vertices) const;
+  double size_of(const sphcloth::Spring &, const Kind<2> &) const;
+  double size_of(const sphcloth::Spring &, const Kind<4> &) const { return 1.0; }
   template <std::size_t N>
   ByColor<N> find(const Kind<N> &, VertexHalo &, const std::vector<int> &vertex_of_slot) const;
   template <std::size_t N>

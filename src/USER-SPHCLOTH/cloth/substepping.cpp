@@ -17,6 +17,9 @@ using namespace sphcloth;
 
 static constexpr int ALL = ClothConstraints::ALL;
 
+// of hinges, in radians, over the strain of edges
+static constexpr double ANGLE_OVER_STRAIN = 5.0;
+
 int Substepping::wanted_substeps(double dt)
 {
   if (!follows_load()) return usual_substeps();
@@ -25,13 +28,12 @@ int Substepping::wanted_substeps(double dt)
     warn(fmt::format("edges are strained by more than {}, whatever the substep: what holds them is "
                      "too far apart for their lengths; give a compliance, or a larger 'strain'",
                      options.strain));
-  const int allowed = std::max(1000, options.iterations);
-  if (wanted <= allowed) return static_cast<int>(wanted);
-  warn(fmt::format("a strain of {} under the present load takes {:.6g} substeps, and no more than "
-                   "{} are done in a step: the sheet stretches more, see 'unconverged' of compute "
-                   "pbd/cloth; give a compliance, a larger 'strain', or a shorter step",
-                   options.strain, wanted, allowed));
-  return allowed;
+  if (length.is_overloaded())
+    warn(fmt::format("a strain of {} under the present load takes more than {:.6g} substeps: the "
+                     "sheet stretches more, see 'unconverged' of compute pbd/cloth; give a "
+                     "compliance, a larger 'strain', more 'iterations', or a shorter step",
+                     options.strain, wanted));
+  return static_cast<int>(wanted);
 }
 
 // once
@@ -49,30 +51,29 @@ void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCo
   holders = &holders_;
   step_dt = dt;
   n_substeps = substeps;
-  if (!follows_load()) length.stiffen();
-  length.use(substep_dt());
+  if (!follows_load()) length.follow(substep_dt());
 }
 
 void Substepping::end_step()
 {
   started = true;
   if (!follows_load()) return;
-  const double mine = demand();
-  double all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  length.set_demand(all * force->ftm2v);
+  const SolverError edges = error_of(constraints.distance, allowed_strain(), max_edge_share());
+  const SolverError hinges =
+      error_of(constraints.bending, ANGLE_OVER_STRAIN * allowed_strain(), max_hinge_share());
+  const double mine[2] = {-std::min(edges.hardest, hinges.hardest), edges.largest};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  length.found(-all[0], all[1] / allowed_strain());
 }
 
 // of this rank's constraints, from the multipliers of the last sweep
 
-double Substepping::demand() const
+template <std::size_t N>
+SolverError Substepping::error_of(const Constraints<N> &c, double allowed, double share) const
 {
-  constexpr double SHARE_OF_COMPLIANCE = 0.1, ANGLE_OVER_STRAIN = 5.0;
-  const double by = inv_dt_sq(), strain = options.strain;
-  return std::max(sphcloth::demand(constraints.distance, by, 1.0 / max_edge_share(), strain,
-                                   SHARE_OF_COMPLIANCE, constraints.mean_length()),
-                  sphcloth::demand(constraints.bending, by, 1.0 / max_hinge_share(),
-                                   ANGLE_OVER_STRAIN * strain, SHARE_OF_COMPLIANCE));
+  const double longest_sq = std::pow(length.longest(), 2) * force->ftm2v;
+  return solver_error(c, {inv_dt_sq(), longest_sq, allowed, 1.0 / share - SINGLE_SWEEP_SOFTNESS});
 }
 
 // The last couplings of all cloths come last, and together: what couples cloths is the last of
@@ -196,8 +197,11 @@ void Substepping::sweep()
   state.inv_dt_sq = inv_dt_sq();
   state.max_edge_share = max_edge_share();
   state.max_hinge_share = max_hinge_share();
-  if (uses(ClothSolver::SUBSTEPS))
-    state.softness_ratio = std::pow(length.length() / substep_dt(), 2);
+  if (uses(ClothSolver::SUBSTEPS)) state.longest_sq = std::pow(length.longest() / substep_dt(), 2);
+  if (follows_load()) {
+    state.max_edge_error = allowed_strain();
+    state.max_hinge_error = ANGLE_OVER_STRAIN * allowed_strain();
+  }
   uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
   sweeps++;
 }
@@ -275,10 +279,8 @@ double Substepping::residual() const
 double Substepping::unconverged() const
 {
   if (!uses(ClothSolver::SUBSTEPS)) return 0.0;
-  const double by = length.length() * length.length() * force->ftm2v;
-  return by *
-      sphcloth::demand(constraints.distance, inv_dt_sq(), 1.0 / max_edge_share(), 1.0, 0.0,
-                       constraints.mean_length());
+  const double allowed = follows_load() ? allowed_strain() : 0.0;
+  return error_of(constraints.distance, allowed, max_edge_share()).largest;
 }
 
 // force times length: the unit of energy in all systems of units

@@ -70,8 +70,7 @@ class Substepping : protected Pointers {
   // that it owns
   double residual() const;
   double energy() const;
-  // largest strain that single sweeps have left of this rank's edges, by the load of the last step;
-  // 0 with whole steps
+  // largest strain that the solver adds to this rank's edges under their loads; 0 with whole steps
   double unconverged() const;
   int sweeps_of_last_step() const { return n_substeps * sweeps; }
 
@@ -123,7 +122,10 @@ class Substepping : protected Pointers {
   double max_hinge_share() const { return single_sweeps() ? sphcloth::STABLE_HINGE_SHARE : 1.0; }
   bool converged() const;
   void warn(const std::string &of);
-  double demand() const;
+  template <std::size_t N>
+  sphcloth::SolverError error_of(const sphcloth::Constraints<N> &, double allowed,
+                                 double share) const;
+  double allowed_strain() const { return options.strain * length.yield(); }
 };
 
 }    // namespace LAMMPS_NS

@@ -19,6 +19,8 @@ using namespace sphcloth;
 
 // part of a step by which a time may miss the one that it counts as
 static constexpr double SLACK = 1e-6;
+// of the step that others allow: one that is shorter is set by the output time
+static constexpr double HARDLY_SHORTER = 0.9;
 
 // A time that is nearer than a small part of a step has passed.
 
@@ -37,7 +39,7 @@ void OutputTimes::head_for(StepLimit &step)
   const double dt = step_towards(remaining, step.dt);
   arriving = dt == remaining;
   whole = step.dt;
-  if (dt < (1.0 - SLACK) * step.dt) step.by = Limit::OUTPUT;
+  if (dt < HARDLY_SHORTER * step.dt) step.by = Limit::OUTPUT;
   step.dt = dt;
 }
 

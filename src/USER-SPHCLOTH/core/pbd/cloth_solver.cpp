@@ -33,13 +33,33 @@ namespace {
   SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
   SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
 
+  // An edge in a sweep: its compliance, and the part of its error that it has at the start of the
+  // substep and is not pulled back for, since it pulls as the tangent of a spring that hardens.
+
+  struct EdgeSpring {
+    double compliance, offset;
+  };
+
+  SPHCLOTH_INLINE EdgeSpring edge_spring(double before, double w, double own, double taken,
+                                         const SolverSoftness &s)
+  {
+    const double by_share = taken * s.softness;
+    const double a = std::max(own, by_share) + SINGLE_SWEEP_SOFTNESS * (s.softness - w);
+    const double hardens = (by_share > own ? by_share : 0.0) + SINGLE_SWEEP_SOFTNESS * s.softness;
+    const double steeper = a + s.steeper * std::min(a, hardens);
+    const double tangent = steeper > 0.0 ? a / steeper : 1.0;
+    return {a * tangent, before * (1.0 - tangent)};
+  }
+
   template <bool START>
   SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int color, const ClothState &s)
   {
     const Vertex *start = s.start, *displacement = s.displacement;
     Vertex *moved = s.change ? s.change : s.displacement;
-    const double softer = SINGLE_SWEEP_SOFTNESS * (s.softness_ratio - 1.0);
-    const double inv_share = 1.0 / s.max_edge_share, by_ratio = s.softness_ratio;
+    const double inv_share = 1.0 / s.max_edge_share;
+    const double softest = inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS;
+    const double longest_sq = std::max(1.0, s.longest_sq);
+    const double per_allowed = s.max_edge_error > 0.0 ? 1.0 / s.max_edge_error : 0.0;
     for (int m = c.begin[color]; m < c.begin[color + 1]; m += WIDE) {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
       Rows before, now;
@@ -53,18 +73,27 @@ namespace {
       before.to(e);
       now.to(d);
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
-                   *max_lambda = &c.max_lambda[m];
+                   *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
       double *lambda = &c.lambda[m];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double of_edge =
-            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * by_ratio * d.w[l]);
-        const double a = of_edge + (k[l] < 1.0 ? 0.0 : softer * d.w[l]);
+        const double length = std::sqrt(e.x[l] * e.x[l] + e.y[l] * e.y[l] + e.z[l] * e.z[l]);
+        const double deviation = length - rest[l], own = compliance[l] * s.inv_dt_sq;
+        const double x = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
+        const bool hard = k[l] >= 1.0;
+        const SolverSoftness softness =
+            solver_softness(x, d.w[l], own, per_size[l], longest_sq, per_allowed, softest);
+        const double taken = k[l] * inv_share - 1.0;
+        const EdgeSpring of_hard = edge_spring(x, d.w[l], own, taken, softness);
+        const EdgeSpring spring{hard ? of_hard.compliance
+                                     : std::max(own, taken * longest_sq * d.w[l]),
+                                hard ? of_hard.offset : 0.0};
+        const double target = rest[l] + spring.offset;
         const DistanceStep by = START
-            ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], rest[l],
-                                  k[l], a, lambda[l], max_lambda[l])
-            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], rest[l], k[l], a, lambda[l],
-                            max_lambda[l]);
+            ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], target,
+                                  k[l], spring.compliance, lambda[l], max_lambda[l])
+            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], target, k[l], spring.compliance,
+                            lambda[l], max_lambda[l]);
         lambda[l] += by.lambda;
         step.put(l, by.x, by.y, by.z);
       }
@@ -109,9 +138,12 @@ namespace {
     SPHCLOTH_INLINE void project(Constraints<4> &c, int m, const ClothState &s)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
-                   *max_lambda = &c.max_lambda[m];
+                   *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
       double *lambda = &c.lambda[m];
-      const double inv_share = 1.0 / s.max_hinge_share, by_ratio = s.softness_ratio;
+      const double inv_share = 1.0 / s.max_hinge_share;
+      const double softest = inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS;
+      const double longest_sq = std::max(1.0, s.longest_sq);
+      const double per_allowed = s.max_hinge_error > 0.0 ? 1.0 / s.max_hinge_error : 0.0;
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const HingeShape h =
@@ -127,10 +159,15 @@ namespace {
         const double steepest = std::max(std::max(ga, gb), std::max(g1, g2));
         const double lever = weight - MIN_LEVER * w * steepest;
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
-        const double softness =
-            std::max(compliance[l] * s.inv_dt_sq, (k[l] * inv_share - 1.0) * by_ratio * weight);
-        const double step = multiplier_step(angle_difference(h.angle, rest[l]), weight, step_ratio,
-                                            softness, lambda[l], max_lambda[l]);
+        const double error = angle_difference(h.angle, rest[l]);
+        const double own = compliance[l] * s.inv_dt_sq;
+        const SolverSoftness of_solver =
+            solver_softness(error, weight, own, per_size[l], longest_sq, per_allowed, softest);
+        const bool hard = step_ratio >= 1.0;
+        const double soft = hard ? of_solver.softness : longest_sq * weight;
+        const double softness = std::max(own, (k[l] * inv_share - 1.0) * soft);
+        const double step =
+            multiplier_step(error, weight, step_ratio, softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
         a.put(l, step * h.ax, step * h.ay, step * h.az);
         e2.put(l, step * x2, step * y2, step * z2);
@@ -255,24 +292,15 @@ namespace {
     return largest;
   }
 
-  // softness: of a constraint that is rigid, over W h^2; unit: of the error of a constraint, 0 if
-  // its own deviation is the only one that there is
-
-  template <std::size_t N, class Unit>
-  double largest_demand(const Constraints<N> &c, double inv_dt_sq, double softness, double error,
-                        double share, Unit unit)
+  template <std::size_t N> SolverError largest_error(const Constraints<N> &c, const LoadedSolver &s)
   {
-    double largest = 0.0;
+    SolverError found;
     for (int m = 0; m < c.size(); m++) {
-      if (!c.hard[m]) continue;
-      const double load = std::fabs(c.lambda[m]) * inv_dt_sq, a = c.compliance[m];
-      const double size = unit(c.rest[m], a);
-      const double by_error = softness / error * (size > 0.0 ? load / size : 1.0 / a),
-                   by_share = SINGLE_SWEEP_SOFTNESS / (share * a);
-      largest =
-          std::max(largest, c.weight[m] * (size > 0.0 ? std::min(by_error, by_share) : by_error));
+      if (!c.hard[m] || c.weight[m] == 0.0) continue;
+      const double load = std::fabs(c.lambda[m]) * s.inv_dt_sq;
+      found.join(s.of(load, c.weight[m], c.compliance[m], c.per_size[m]));
     }
-    return largest;
+    return found;
   }
 
   template <std::size_t N>
@@ -290,18 +318,14 @@ namespace {
 
 }    // namespace
 
-double demand(const Constraints<2> &c, double inv_dt_sq, double softness, double error,
-              double share, double length)
+SolverError solver_error(const Constraints<2> &c, const LoadedSolver &s)
 {
-  return largest_demand(c, inv_dt_sq, softness, error, share, [&](double rest, double compliance) {
-    return rest > 0.0 ? rest : compliance > 0.0 ? 0.0 : length;
-  });
+  return largest_error(c, s);
 }
 
-double demand(const Constraints<4> &c, double inv_dt_sq, double softness, double error,
-              double share)
+SolverError solver_error(const Constraints<4> &c, const LoadedSolver &s)
 {
-  return largest_demand(c, inv_dt_sq, softness, error, share, [](double, double) { return 1.0; });
+  return largest_error(c, s);
 }
 
 void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)

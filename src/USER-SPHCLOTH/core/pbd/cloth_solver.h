@@ -8,11 +8,13 @@
 #ifndef SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 #define SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
 
 #include "core/pbd/constraints.h"
+#include "core/pbd/solver_softness.h"
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
 
@@ -38,14 +40,16 @@ template <std::size_t N> class Constraints {
     begin.reserve(colors + 1);
     for (auto &s : slot) s.clear();
     hard.clear();
-    for (auto *list : {&rest, &k, &compliance, &max_lambda, &lambda, &weight, &reference_k})
+    for (auto *list :
+         {&rest, &k, &compliance, &max_lambda, &lambda, &per_size, &weight, &reference_k})
       list->clear();
     step_ratio = 1.0;
   }
-  // in order of their colors; share: the part of a projection that one sweep may do; lever: mean
+  // in order of their colors; share: the part of a projection that one sweep may do; size: what its
+  // error is relative to, 0 if nothing but its compliance says how far it may be off; lever: mean
   // square of the gradients at its vertices, 0 if no load of it counts
   void add(const std::array<int, N> &vertices, const Spring &spring, double share = 1.0,
-           double lever = 1.0)
+           double size = 1.0, double lever = 1.0)
   {
     for (std::size_t q = 0; q < N; q++) slot[q].push_back(vertices[q]);
     rest.push_back(spring.rest);
@@ -54,6 +58,7 @@ template <std::size_t N> class Constraints {
     compliance.push_back(spring.compliance);
     max_lambda.push_back(spring.max_lambda);
     lambda.push_back(0.0);
+    per_size.push_back(size > 0.0 ? 1.0 / size : 0.0);
     weight.push_back(lever);
   }
   void close_color()
@@ -89,7 +94,7 @@ template <std::size_t N> class Constraints {
   bool is_idle(int m) const { return slot[0][m] == idle; }
   double bytes() const
   {
-    double sum = bytes_of(rest, k, compliance, max_lambda, lambda, weight, reference_k);
+    double sum = bytes_of(rest, k, compliance, max_lambda, lambda, per_size, weight, reference_k);
     for (const std::vector<int> &vertex : slot) sum += bytes_of(vertex);
     return sum;
   }
@@ -97,7 +102,8 @@ template <std::size_t N> class Constraints {
   std::vector<int> begin{0};    // of each color, and the end
   std::array<std::vector<int>, N> slot;
   AlignedVector<double> rest, k, compliance, max_lambda, lambda;
-  AlignedVector<double> weight;    // W of demand(), with the gradients of the rest shape
+  AlignedVector<double> per_size;    // 1/size
+  AlignedVector<double> weight;    // W, with the gradients of the rest shape
   std::vector<char> hard;    // k = 1: to be met in full
 
  private:
@@ -119,8 +125,12 @@ struct ClothState {
   double inv_dt_sq = 0.0;    // times a compliance: an inverse mass
   // part of its error that one projection may take: 1, or less where a stiffer one is not stable
   double max_edge_share = 1.0, max_hinge_share = 1.0;
-  // square of the substep that the solver is as soft as, over that of the present one
-  double softness_ratio = 1.0;
+  // square of the longest substep, which the solver of unloaded constraints is as soft as, over that
+  // of the present one
+  double longest_sq = 1.0;
+  // error that the solver may add to the size of a constraint, which hardens on the way there; 0: it
+  // is as soft under any load
+  double max_edge_error = 0.0, max_hinge_error = 0.0;
 };
 
 // A single sweep goes from one end to the other: the forces that it makes of constraints that share
@@ -129,23 +139,12 @@ struct ClothState {
 // strikes a sheet gains from rigid edges that take all, and not from a share of 0.91 down.
 inline constexpr double STABLE_HINGE_SHARE = 0.25, STABLE_EDGE_SHARE = 0.8;
 
-// What one sweep leaves of constraints in a row that take all of their error is as if they had this
-// share of W h^2 as compliance, W = sum_j w_j |grad_j C|^2: the next one in the sweep stretches
-// every second one by all of it.
-inline constexpr double SINGLE_SWEEP_SOFTNESS = 0.5;
-
 void project(Constraints<2> &, int color, const ClothState &);
 void project(Constraints<4> &, int color, const ClothState &);
 
-// 1/h^2 of the longest substep h in which the solver, under the multipliers that a substep left,
-// changes no hard constraint by more than `error`, or by more than `share` of what its own
-// compliance does.  softness: of the softest of rigid ones, over W h^2; error: of edges relative to
-// the rest length, where that is 0 to the present one, or to `length` if it has no compliance
-// either; of hinges an angle.
-double demand(const Constraints<2> &, double inv_dt_sq, double softness, double error, double share,
-              double length);
-double demand(const Constraints<4> &, double inv_dt_sq, double softness, double error,
-              double share);
+// what the solver adds to the errors of hard constraints, under the multipliers of a substep
+SolverError solver_error(const Constraints<2> &, const LoadedSolver &);
+SolverError solver_error(const Constraints<4> &, const LoadedSolver &);
 
 // takes the share of the stretching motion out of the velocities v of one color
 void damp(const Constraints<2> &, int color, const Vertex *p, Vertex *v, double share);

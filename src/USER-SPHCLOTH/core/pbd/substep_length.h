@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long the substeps of a cloth are, and how soft its solver.
-//
-// What a single sweep leaves of the error of a constraint is that of a spring of the stiffness
-// m/h^2, h the substep (Macklin et al., SCA 2019).  So a strain that the solver may add, and the
-// load, say how long a substep may be.  If the stiffness followed h at once, it would feed what is
-// stretched: the solver stays as soft as in substeps of a `length` that varies slowly, and the
-// present ones are never longer.
+// How long the substeps of a cloth are: as long as the softness allows that the present load has
+// left to its constraints (core/pbd/solver_softness.h).
 
 #ifndef SPHCLOTH_CORE_PBD_SUBSTEP_LENGTH_H
 #define SPHCLOTH_CORE_PBD_SUBSTEP_LENGTH_H
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/pbd/solver_softness.h"
 
 namespace sphcloth {
 
@@ -20,76 +17,80 @@ class SubstepLength {
   // how many substeps a step of dt needs; the longest step so far takes at least `usual`
   double substeps(double dt, int usual)
   {
-    state.longest_step = std::max(state.longest_step, dt);
-    const double longest = state.longest_step / usual;
-    if (state.length == 0.0)
-      state.length = longest;
-    else {
-      const double error = state.demand * state.length * state.length;
-      watch(error);
-      double wanted = std::min(longest, state.length / std::sqrt(error));
-      if (state.held_error > 0.0) wanted = std::max(wanted, state.length_then);
-      state.length = std::clamp(wanted, state.length / CHANGE, state.length * CHANGE);
-    }
-    constexpr double ROUNDING = 1e-6;
-    return std::ceil(dt / state.length - ROUNDING);
+    constexpr double SPARED = 0.1;    // of a substep, which a little load would need
+    state.longest = std::max(state.longest, dt / usual);
+    state.hardness = expected();
+    return std::ceil(dt / (state.longest * std::sqrt(state.hardness)) - SPARED);
   }
 
-  // of a step whose substeps are given; the solver is never stiffer than the present ones make it
-  void use(double substep) { state.length = std::max(state.length, substep); }
-  void stiffen() { state.length /= CHANGE; }
+  // Of the last step: how soft the hardest constraint was, over that of the longest substep, and
+  // the strain over the one that was allowed then.
+  void found(double hardest, double strain)
+  {
+    state.hardest_before = state.hardest;
+    state.hardest = hardest;
+    watch(strain);
+  }
 
-  // of the last step: 1/h^2 of the longest substep h in which the strain is not above the allowed
-  void set_demand(double demand) { state.demand = demand; }
+  // A softness that is not bounded by a strain: it follows substeps that are given, if they become
+  // longer at once, else slowly.
+  void follow(double substep)
+  {
+    constexpr double CHANGE = 1.01;    // in a step: a period of an edge is some six substeps
+    state.longest = std::max(state.longest / CHANGE, substep);
+  }
 
-  // substep that the solver is as soft as
-  double length() const { return state.length; }
+  // which the solver of unloaded constraints is as soft as
+  double longest() const { return state.longest; }
+  // what the allowed strain is multiplied with where something holds the vertices apart
+  double yield() const { return state.yield; }
 
-  // The strain is above the allowed one in substeps of any length: something holds the vertices
-  // apart, and shorter ones are of no use.
-  bool is_held() const { return state.held_steps >= HELD; }
+  // The strain stays above what hardens the edges, and stays where more is allowed: something holds
+  // the vertices apart.  overloaded: a load that no hardening bears.
+  bool is_held() const { return state.phase == HELD; }
+  bool is_overloaded() const { return state.phase == OVERLOADED; }
 
   struct State {    // plain and without gaps
-    double longest_step = 0.0, length = 0.0, demand = 0.0;
-    double length_then = 0.0, error_then = 0.0;    // since when a strain above is watched; 0: none
-    double held_error = 0.0, held_steps = 0.0;    // that shorter substeps did not change; 0: none
-    double mean_error = 0.0;    // of recent steps
+    double longest = 0.0;
+    double hardest = 1.0, hardest_before = 1.0;    // of the last two steps
+    double hardness = 1.0;    // that the substeps of this step are made for
+    double yield = 1.0;
+    double phase = BORNE, steps = 0.0, strain_then = 0.0;
   };
   State state;
 
  private:
-  static constexpr double CHANGE = 1.01;    // in a step: a period of an edge is some six substeps
-  static constexpr double HELD = 150.0;    // steps, in which the length is again what it was
+  static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0;
 
-  // Substeps of half the length leave a quarter of the strain of a load, and all of one that is
-  // held: then they become what they were, which a load would answer with more strain.  A load that
-  // grows is watched anew.
-
-  void watch(double error)
+  // A load that grows hardens in the coming step as it did in the last one.  Substeps become longer
+  // slowly: the sheet is the calmer the less they vary.
+  double expected() const
   {
-    constexpr double SHORTER = 0.5, SMALLER = 0.7, GROWS = 1.2, HELD_GROWS = 1.5, MEMORY = 30.0;
+    constexpr double FASTEST = 0.5, RELAXES = 1.03;
+    const double grows = std::clamp(state.hardest / state.hardest_before, FASTEST, 1.0);
+    return std::min(state.hardest * grows, state.hardness * RELAXES);
+  }
+
+  // Where edges harden no further for many steps, more is allowed from step to step,
+  // until the constraints are soft again.  A load stretches them by as much more, then that was of
+  // no use.
+
+  void watch(double strain)
+  {
+    constexpr double PATIENCE = 30.0, CHANGE = 1.03, SOFT = 1.0 / 3.0, GROWS = 1.25;
     State &s = state;
-    if (error <= 1.0) {
-      s.length_then = s.error_then = s.held_error = s.held_steps = 0.0;
-      s.mean_error = error;
+    if (s.phase == YIELDS) {
+      s.yield *= CHANGE;
+      if (strain * s.yield > GROWS * s.strain_then) s.phase = OVERLOADED;
+      if (strain < SOFT) s.phase = HELD;
       return;
     }
-    if (s.length_then == 0.0) s.mean_error = error;
-    s.mean_error += (error - s.mean_error) / MEMORY;
-    if (s.held_error > 0.0) {
-      s.held_steps++;
-      if (s.mean_error > HELD_GROWS * s.held_error)
-        s.length_then = s.held_error = s.held_steps = 0.0;
-    } else if (s.length_then == 0.0 || s.mean_error > GROWS * s.error_then) {
-      s.length_then = s.length;
-      s.error_then = s.mean_error;
-    } else if (s.length <= SHORTER * s.length_then) {
-      if (s.mean_error > SMALLER * s.error_then) {
-        s.held_error = s.mean_error;
-        s.held_steps = 0.0;
-      } else
-        s.length_then = 0.0;
-    }
+    s.steps = strain > MAX_OF_ALLOWED ? s.steps + 1.0 : 0.0;
+    if (s.phase != HELD || strain < SOFT * SOFT) s.yield = std::max(1.0, s.yield / CHANGE);
+    if (s.steps == 0.0 && s.yield == 1.0) s.phase = BORNE;
+    if (s.steps < PATIENCE || s.phase == OVERLOADED) return;
+    s.phase = YIELDS;
+    s.strain_then = strain * s.yield;
   }
 };
 

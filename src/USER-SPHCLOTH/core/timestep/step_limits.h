@@ -301,14 +301,14 @@ inline double output_times_until(double now, double interval, double slack)
   return std::floor((now + slack) / interval);
 }
 
-// The step towards something that is `remaining` away.  It arrives exactly, and the last two steps
-// are equal rather than a whole and a tiny one.
+// The step towards something that is `remaining` away.  It arrives exactly, and the last steps are
+// equal: near the limit of stability a shorter one after every few feeds what swings between them.
 
 inline double step_towards(double remaining, double dt)
 {
-  constexpr double ROUNDING = 1e-9;
-  if (remaining <= (1.0 + ROUNDING) * dt) return remaining;
-  return std::min(dt, 0.5 * remaining);
+  constexpr double ROUNDING = 1e-9, EQUAL_STEPS = 16.0;
+  const double steps = std::ceil((1.0 - ROUNDING) * remaining / dt);
+  return steps > EQUAL_STEPS ? dt : remaining / std::max(1.0, steps);
 }
 
 // (15): a particle's own step in whole steps of now, rounded down, at least one

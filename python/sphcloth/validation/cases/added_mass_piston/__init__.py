@@ -57,7 +57,6 @@ PARAMETERS = (
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     Parameter("refined", 1.0, "1", "time step over that of the fluid", 1e-4, 2.0),
-    Parameter("wetted", 0.5, "1", "coefficient of the limit of wet vertices", 0.0, 1e3),
     *numerics(alpha=0.5, courant=0.5, support=3.0, disorder=0.0, density="continuity"),
 )
 

@@ -59,7 +59,7 @@ PARAMETERS = (
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
     *cloth.solver(1e-4, 0, method="substeps"),
-    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global", ceiling=1.0),
+    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global"),
 )
 
 QUANTITIES = (

@@ -42,7 +42,7 @@ PARAMETERS = (
     Parameter("drag", 6.4, "sqrt(g/side)", "rate of the drag", 0.1, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
     *cloth.solver(1e-3, 0, method="substeps"),
-    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global", ceiling=1.0),
+    *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global"),
 )
 
 QUANTITIES = (

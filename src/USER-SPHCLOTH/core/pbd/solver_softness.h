@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How soft a solver is that goes once through the constraints in each substep.
+//
+// What a sweep leaves of the error of a constraint is as if it had a compliance of about W h^2, h
+// the substep, W = sum_j w_j |grad_j C|^2 (Macklin et al., SCA 2019).  A softness that followed the
+// substep would feed the motion: what is stretched would give back more than it took.  So the
+// solver adds a compliance such that each constraint is a spring with a potential, whatever the
+// substeps are: as soft as in the longest substep L while it is unloaded, and ever harder as the
+// error x that the solver adds comes to the allowed one,
+//   W L^2 g(x),  g = 1/(1 + 9 (x/allowed)^4)^2,  but no less than a tenth of its own compliance.
+// The present substep h must be short enough for the hardest: h^2 <= L^2 g.
+
+#ifndef SPHCLOTH_CORE_PBD_SOLVER_SOFTNESS_H
+#define SPHCLOTH_CORE_PBD_SOLVER_SOFTNESS_H
+
+#include <algorithm>
+
+#include "core/util/simd.h"
+
+namespace sphcloth {
+
+// What one sweep leaves of constraints in a row that take all of their error is as if they had this
+// share of W h^2 as compliance: the next one in the sweep stretches every second one by all of it.
+inline constexpr double SINGLE_SWEEP_SOFTNESS = 0.5;
+
+// A load that is 100 times that of the unloaded softness brings a constraint to the allowed error,
+// and one of 1000 times to 1.3 of it.  From 1.6 on it hardens no further.
+inline constexpr double HARDENING = 9.0, MAX_OF_ALLOWED = 1.6,
+                        MAX_HARDENING = HARDENING * (MAX_OF_ALLOWED * MAX_OF_ALLOWED) *
+    (MAX_OF_ALLOWED * MAX_OF_ALLOWED);
+
+// of the own compliance of a constraint, and of one without a size, that of the allowed error
+inline constexpr double SHARE_OF_COMPLIANCE = 0.1, SHARE_WITHOUT_SIZE = 0.4;
+
+struct SolverSoftness {
+  double softness;    // W L^2 g/h^2, at least W
+  double steeper;    // -d(log g)/d(log x), where the load sets g
+  double error;    // that the solver adds, relative to the size
+};
+
+// x: error; w: W; own: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative to the
+// size, 0: no load hardens it; softest: of a rigid constraint over W L^2
+
+SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double own, double per_size,
+                                               double longest_sq, double per_allowed,
+                                               double softest)
+{
+  constexpr double TINY = 1e-300;    // where nothing can move
+  const double longest = w * longest_sq, rigid = softest * longest;
+  SolverSoftness s;
+  s.error = x * per_size * (rigid / (rigid + own + TINY));
+  const double y = s.error * per_allowed, harder = HARDENING * (y * y) * (y * y);
+  const double root = 1.0 / (1.0 + std::min(harder, MAX_HARDENING));
+  const bool hardens = per_allowed > 0.0, has_size = per_size > 0.0;
+  const double share = has_size
+      ? SHARE_OF_COMPLIANCE / SINGLE_SWEEP_SOFTNESS
+      : SHARE_WITHOUT_SIZE / SINGLE_SWEEP_SOFTNESS / (hardens ? per_allowed : 1.0);
+  const double by_load = hardens ? (has_size ? longest * root * root : 0.0) : longest;
+  const double least = std::min(longest, share * own);
+  s.softness = std::max(w, std::max(by_load, least));
+  const bool by_law = harder < MAX_HARDENING && by_load > std::max(w, least);
+  s.steeper = by_law ? 8.0 * (1.0 - root) : 0.0;
+  return s;
+}
+
+// What the solver adds to the errors of constraints
+
+struct SolverError {
+  double hardest = 1.0;    // the least softness, over that in the longest substep
+  double largest = 0.0;    // relative to the size of the constraint
+
+  void join(const SolverError &other)
+  {
+    hardest = std::min(hardest, other.hardest);
+    largest = std::max(largest, other.largest);
+  }
+};
+
+// The same from the load of a constraint, whatever the substep was that found it.  inv_dt_sq: 1/h^2
+// of that; longest_sq: L^2; allowed: 0: no load hardens it; softest: of a rigid constraint over
+// W L^2.
+
+struct LoadedSolver {
+  double inv_dt_sq, longest_sq, allowed, softest;
+
+  SolverError of(double load, double w, double compliance, double per_size) const
+  {
+    const double longest = softest * w * longest_sq;
+    if (allowed == 0.0) return {1.0, longest * load * per_size};
+    const bool has_size = per_size > 0.0;
+    const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
+    const double least = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
+    const double y = has_size ? strain_of(longest * load * per_size / allowed) : 0.0;
+    const double root = 1.0 / (1.0 + std::min(HARDENING * (y * y) * (y * y), MAX_HARDENING));
+    return {std::min(1.0, std::max(has_size ? root * root : 0.0, least)), y * allowed};
+  }
+
+ private:
+  // y with y (1 + 9 y^4)^2 = unloaded, the strain of the unloaded softness
+  static double strain_of(double unloaded)
+  {
+    const double most = MAX_OF_ALLOWED * (1.0 + MAX_HARDENING) * (1.0 + MAX_HARDENING);
+    if (unloaded > most) return unloaded / most * MAX_OF_ALLOWED;
+    double y = std::min(unloaded, MAX_OF_ALLOWED);
+    for (int n = 0; n < 30; n++) {    // by Newton's method, from above
+      const double q = HARDENING * (y * y) * (y * y), off = y * (1.0 + q) * (1.0 + q) - unloaded;
+      const double by = off / ((1.0 + q) * (1.0 + 9.0 * q));
+      y -= by;
+      if (by < 1e-3 * y) break;
+    }
+    return y;
+  }
+};
+
+}    // namespace sphcloth
+
+#endif

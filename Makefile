@@ -85,7 +85,7 @@ mutate-random: $(VENV)/strict
 	$(BIN)/python tests/mutate_random.py --seed $(SEED) --count $(COUNT) --folder build/mutants-$(SEED)-$(COUNT) \
 	  --json $(FOUND)/mutants.json
 
-# the logs of the examples on 1 and 4 ranks and of a nudged run; 'tests/reference_logs.py --check' compares them
+# the logs of the examples on 1 and 4 ranks and of nudged runs; 'tests/reference_logs.py --check' compares them
 reference-logs: $(VENV)/installed
 	$(BIN)/python tests/reference_logs.py
 

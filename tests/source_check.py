@@ -249,7 +249,7 @@ def site(folder: Path, tree: Path, lmp: Path, plugin: Path | None = None) -> dic
 def check_styles(tools: Tools, environment: dict[str, str], tests: Sequence[str]) -> None:
     """Run the tests of the styles."""
     side_by_side = ("-n", tools.jobs) if tools.jobs > 1 else ()
-    call(tools.python, "-m", "pytest", "-q", *side_by_side, *tests, cwd=ROOT, env=environment)
+    call(tools.python, "-m", "pytest", *side_by_side, *tests, cwd=ROOT, env=environment)
 
 
 def check_examples(tools: Tools, environment: dict[str, str], *examples: str) -> None:

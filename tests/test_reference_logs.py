@@ -8,14 +8,18 @@ import numpy as np
 import pytest
 import reference_logs
 from reference_logs import (
+    CHAOTIC,
     LOGS,
     NUDGED,
     RUNS,
     TIMES,
     apart,
+    chaotic,
     columns,
     compare,
+    event,
     log_of,
+    logs_of,
     nudged,
     off,
     rows_beside,
@@ -34,7 +38,7 @@ def examples(tmp_path_factory, monkeypatch):
         (folder / log.parent.name).mkdir(exist_ok=True)
         shutil.copy(log, folder / log.parent.name)
     monkeypatch.setattr(reference_logs, "EXAMPLES", folder)
-    log_of(EXAMPLE, NUDGED).unlink(missing_ok=True)
+    log_of(EXAMPLE, NUDGED[0]).unlink(missing_ok=True)
 
 
 @pytest.fixture
@@ -65,8 +69,14 @@ def test_reference_logs_are_like_themselves(example, which):
     if log.exists():
         share, where = apart(log, example)
         assert share <= 1.0 / TIMES, where
-    else:
-        assert which == NUDGED
+
+
+@pytest.mark.parametrize("example", RUNS)
+def test_an_example_has_its_logs_and_no_others(example):
+    folder = Path(__file__).parents[1] / "examples" / example
+    expected = {log_of(example, which).name for which in logs_of(example)}
+    assert {path.name for path in folder.glob("log.22Jul2025.*")} == expected
+    assert (len(expected) > 3) == (example in CHAOTIC)
 
 
 @pytest.mark.parametrize(("row", "allowed"), [(2, 0), (-1, 1)])
@@ -98,7 +108,7 @@ def test_what_a_nudge_changes_is_allowed_from_then_on(changed):
     """And a row before, as rows are far apart."""
     change = 100 * reference_logs.ALIKE[1] * scale("v_fluid")
     assert not compare(changed("v_fluid", 8, change), EXAMPLE, "1", alike=True)
-    shutil.copy(changed("v_fluid", 8, 0.11 * change), log_of(EXAMPLE, NUDGED))
+    shutil.copy(changed("v_fluid", 8, 0.11 * change), log_of(EXAMPLE, NUDGED[0]))
     for row in (7, 8, 12):
         assert compare(changed("v_fluid", row, change), EXAMPLE, "1", alike=True)
     assert not compare(changed("v_fluid", 6, change), EXAMPLE, "1", alike=True)
@@ -108,7 +118,7 @@ def test_what_a_nudge_changes_is_allowed_from_then_on(changed):
 
 def test_where_a_nudge_changes_the_number_of_rows_it_may_differ(tmp_path):
     short = shorter(log_of(EXAMPLE, "1"), tmp_path / "log.lammps")
-    shutil.copy(short, log_of(EXAMPLE, NUDGED))
+    shutil.copy(short, log_of(EXAMPLE, NUDGED[0]))
     assert apart(short, EXAMPLE)[0] <= 1.0
     for _ in range(TIMES - 1):
         shorter(short, short)
@@ -135,6 +145,24 @@ def test_where_steps_move_by_one_a_row_has_what_the_next_has():
     assert off(np.roll(poured, -1), known, beside[0.9]).max() > 1.0
 
 
+def test_where_logs_are_chaotic_an_event_may_come_at_any_time():
+    """A count may then differ by what events may, though all logs still have the same."""
+    late = np.array([[0, 0, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 1, 1]])
+    never = np.zeros((2, 8))
+    drifts = 1.0 + np.array([0, 0, 0, 2, 2, 2, 2, 2]) * np.array([[0.0], [reference_logs.ALIKE[1]]])
+    steady = np.tile(np.arange(8.0), (2, 1))
+    assert chaotic([drifts, steady, steady, steady]).tolist() == [False] * 2 + [True] * 6
+    assert not chaotic([drifts, *[steady] * 4]).any()
+    assert (event(late), event(9.5 * late), event(never), event(steady)) == (1, 9.5, 0, 0)
+    assert event(steady + 1e-12 * np.arange(2)[:, None]) == 0
+    beside, none = np.zeros(8, int), np.zeros(8)
+    early = np.array([0, 0, 1, 1, 1, 1, 1, 1])
+    assert off(early, late, beside, event(late) * np.ones(8)).max() <= 1.0
+    assert off(early, late, beside, none).max() > 1.0
+    assert off(early, never, beside, event(never) * np.ones(8)).max() > 1.0
+    assert off(TIMES * 1.1 * early, late, beside, event(late) * np.ones(8)).max() > 1.0
+
+
 @pytest.mark.parametrize("example", RUNS)
 def test_a_nudge_displaces_before_the_first_run(example):
     script = find_example(example).script.read_text()
@@ -146,13 +174,18 @@ def test_a_nudge_displaces_before_the_first_run(example):
     assert re.match(r"run\s", rest) and not re.search(r"^run\s", before, re.MULTILINE)
 
 
-def test_a_nudge_changes_digits_and_little_else(tmp_path):
+@pytest.mark.parametrize("which", NUDGED)
+def test_a_nudge_changes_digits_and_little_else(tmp_path, which):
     before = find_example("banner").script.read_text()
-    log = reference_logs.run_nudged("banner", tmp_path / "run")
+    log = reference_logs.run_nudged("banner", which, tmp_path / "run")
     assert find_example("banner").script.read_text() == before
     ours, reference = columns(log), columns(log_of("banner", "1"))
     assert ours["c_corner"] != reference["c_corner"]
     assert ours["c_corner"] == pytest.approx(reference["c_corner"], rel=1e-4)
+
+
+def test_nudges_differ():
+    assert len({nudged("run 1\n", which) for which in NUDGED}) == len(NUDGED)
 
 
 def test_a_script_without_a_run_is_no_use():

@@ -54,7 +54,8 @@ Scene lattice(int dim, int n, double disorder, double areal = 0.0, double gap = 
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)
       for (int k = 0; k < (dim == 3 ? n : 1); k++) {
-        Vector3d at = SPACING * Vector3d(i, j, k) + Vector3d(off(random), off(random), off(random));
+        Vector3d at = SPACING * Vector3d(i, j, k);
+        for (const int d : {2, 1, 0}) at[d] += off(random);    // arguments have no order
         if (dim == 2) at[2] = 0.0;
         if (areal > 0.0) at[0] += (i < n / 2 ? -gap : gap - 1.0) * SPACING;
         s.add(WATER, at, s.water_mass());

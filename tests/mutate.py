@@ -71,6 +71,7 @@ PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 STABILITY = "tests/styles/test_stability.py"
 OBSTACLES, SUBSTEPS = "tests/styles/test_obstacles.py", "tests/styles/test_substeps.py"
+FOLDED = "tests/styles/test_folded_sheets.py"
 
 BUGS = [
     Bug("sources: layers are not moved by their age", "fix_sph_emit.cpp",
@@ -212,6 +213,16 @@ BUGS = [
         "core/sph/force_loops.h",
         "lists.others(0, slot, other, acts.data())", "lists.others(1, slot, other, acts.data())",
         BLOCK),
+    Bug("sides: a line slips through between two triangles", "core/contact/sheet_layers.h",
+        "(ab > -room && bc > -room && ca > -room) || (ab < room && bc < room && ca < room)",
+        "(ab > room && bc > room && ca > room) || (ab < -room && bc < -room && ca < -room)", CORE),
+    Bug("sides: layers on which particles look from two sides are one",
+        "core/contact/sheet_layers.h",
+        "return face_one_sheet(i, j) || is_crossed(i, j);", "return true;",
+        f"{FOLDED}::test_each_pool_feels_itself_and_no_other_one"),
+    Bug("sides: lists that are renewed part other pairs", "core/contact/sheet_layers.h",
+        "positions = at_build.data();", "positions = x;",
+        f"{FOLDED}::test_each_pool_keeps_its_momentum"),
     Bug("contact: a particle is put out on the other side", "contact/particle_gaps.cpp",
         "side = height_over(start) >= 0.0 ? 1.0 : -1.0",
         "side = height_over(start) >= 0.0 ? -1.0 : 1.0", OBSTACLES),

@@ -6,6 +6,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "contact/find_layers.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -39,7 +40,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
   size_vector = 15;
   global_freq = 1;
   extvector = 0;
-  comm_forward = 1;
+  comm_forward = 4;
   dynamic_group_allow = 1;
   create_attribute = 1;
 
@@ -108,6 +109,13 @@ void FixClothContact::init()
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require(needed, wanted);
+  if (!rules.sides || view_distance == 0.0) return;
+  std::vector<const ClothTopology *> meshes;
+  for (const ContactSurface *sheet : find_sheets())
+    meshes.push_back(&sheet->triangles.mesh->topology());
+  // with a particle in the middle
+  in_layers = in_layers || have_layers(lmp, meshes, 2.0 * view_distance);
+  ghosts.require(ghosts_of_sides(), 0.0);
 }
 
 // Without water the group is that of the cloth.  An empty one is that of water to come.
@@ -162,6 +170,7 @@ void FixClothContact::pre_exchange()
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require_in_run(needed, wanted);
+  ghosts.require_in_run(ghosts_of_sides(), 0.0);
 }
 
 // A particle must see whole triangles.  Wanted is room for displacements until the next list build:
@@ -237,17 +246,14 @@ void FixClothContact::setup_post_neighbor()
                "data file needs an Angles section",
                label);
   store_positions();
-  if (rules.sides) find_sheets();
+  if (rules.sides) check_sheets();
   post_neighbor();
   for (MeshContact *contact : contacts) contact->check_start(options.untangle);
 }
 
-void FixClothContact::find_sheets()
+void FixClothContact::check_sheets()
 {
-  sheets.clear();
-  for (auto &surface : surfaces) sheets.push_back(surface.get());
-  for (auto &surface : obstacle_surfaces)
-    if (surface->triangles.is_open()) sheets.push_back(surface.get());
+  sheets = find_sheets();
   if (sheets.size() > sphcloth::MAX_SHEETS)
     error->all(FLERR,
                "{}: {} cloths and open obstacles have sides, the most are {}: give 'sides no'",
@@ -272,10 +278,21 @@ void FixClothContact::post_neighbor()
 void FixClothContact::find_sides()
 {
   side.assign(atom->nmax, 0);
+  sheet_layers.start(atom->nmax, view_distance);
   if (view_distance == 0.0) return;
   for (std::size_t sheet = 0; sheet < sheets.size(); sheet++)
-    sheets[sheet]->sides.find(view_distance, static_cast<int>(sheet), side);
+    sheets[sheet]->sides.find(view_distance, static_cast<int>(sheet), side, sheet_layers);
   comm->forward_comm(this);
+  if (!in_layers && ghosts.matters()) {
+    const int mine = std::any_of(side.begin(), side.end(),
+                                 [](sphcloth::Sides of) { return of & sphcloth::LAYERED; });
+    int any = 0;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    in_layers = any;
+  }
+  if (std::none_of(side.begin(), side.end(), [](sphcloth::Sides of) { return of != 0; })) return;
+  for (const ContactSurface *sheet : sheets) sheet->sides.add_triangles(sheet_layers);
+  sheet_layers.finish(atom->x[0], atom->nlocal + atom->nghost);
 }
 
 void FixClothContact::initial_integrate(int)
@@ -391,13 +408,19 @@ double FixClothContact::compute_vector(int n)
 
 int FixClothContact::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
 {
-  for (int k = 0; k < n; k++) buf[k] = side[sendlist[k]];
-  return n;
+  for (int k = 0; k < n; k++) {
+    *buf++ = side[sendlist[k]];
+    buf = std::copy_n(sheet_layers.nearest(sendlist[k]).data(), 3, buf);
+  }
+  return 4 * n;
 }
 
 void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 {
-  for (int k = 0; k < n; k++) side[first + k] = static_cast<sphcloth::Sides>(buf[k]);
+  for (int k = first; k < first + n; k++, buf += 4) {
+    side[k] = static_cast<sphcloth::Sides>(buf[0]);
+    sheet_layers.set_nearest(k, Eigen::Map<const Eigen::Vector3d>(buf + 1));
+  }
 }
 
 void FixClothContact::set_arrays(int i)
@@ -441,7 +464,7 @@ void FixClothContact::unpack_restart(int i, int nth)
 
 double FixClothContact::memory_usage()
 {
-  double bytes = 0.0;
+  double bytes = sheet_layers.bytes();
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   for (const MeshContact *contact : contacts) bytes += contact->memory_usage();

@@ -21,8 +21,11 @@ FixStyle(cloth/contact,FixClothContact);
 #include "fluid/side_source.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/particle_columns.h"
+#include "neighbor.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +75,7 @@ class FixClothContact : public Fix, public SideSource {
   int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const override { return side.data(); }
+  sphcloth::Parting *layers() override { return sheet_layers.any() ? &sheet_layers : nullptr; }
   // the boundary that it is to fluid, and the sides on which fluid is
   void *extract(const char *name, int &) override
   {
@@ -103,7 +107,9 @@ class FixClothContact : public Fix, public SideSource {
   std::vector<ContactSurface *> sheets;    // those that part the fluid: cloths and open obstacles
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
+  sphcloth::SheetLayers sheet_layers;
   double view_distance;
+  bool in_layers = false;    // has any sheet been found so, on any rank?
   int vertex_bits, particle_bits;    // group bits of the cloths and of the particles
 
   std::array<ParticleColumns *, 3> columns()
@@ -111,13 +117,33 @@ class FixClothContact : public Fix, public SideSource {
     return {&last_positions, &impulses, &excess_velocities};
   }
   std::array<double, 2> ghosts_needed_and_wanted();
+  // A particle must see the whole of the nearest triangle, if a neighbor may be on its other side;
+  // and where sheets lie in layers, all that may be between the two.
+  double ghosts_of_sides()
+  {
+    if (!rules.sides || view_distance == 0.0) return 0.0;
+    double longest = 0.0;
+    for (const ContactSurface *sheet : find_sheets())
+      longest = std::max(longest, sheet->triangles.mesh->topology().longest_edge());
+    if (in_layers) return longest + std::max(0.0, view_distance - rules.thickness);
+    return std::hypot(longest, std::max(0.0, view_distance - neighbor->skin - rules.thickness));
+  }
+  // those that have two sides
+  std::vector<ContactSurface *> find_sheets()
+  {
+    std::vector<ContactSurface *> found;
+    for (auto &surface : surfaces) found.push_back(surface.get());
+    for (auto &surface : obstacle_surfaces)
+      if (surface->triangles.is_open()) found.push_back(surface.get());
+    return found;
+  }
   void store_positions()
   {
     for (int i = 0; i < atom->nlocal; i++) last_positions.unpack(i, atom->x[i]);
   }
   void wrap_last_positions();
   void subtract_excess_velocities();
-  void find_sheets();
+  void check_sheets();
   void find_sides();
   void check_group(const std::vector<FixPBDCloth *> &cloths);
   void make_contacts(const std::vector<FixPBDCloth *> &cloths);

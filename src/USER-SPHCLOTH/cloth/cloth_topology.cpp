@@ -76,15 +76,21 @@ Eigen::Vector3d ClothTopology::from(int i, int vertex) const
   return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
 }
 
-// Each rank measures a part of the elements.
-
-void ClothTopology::measure()
+std::vector<double> ClothTopology::positions() const
 {
   std::vector<double> mine(3 * ids.size(), 0.0), x(mine.size());
   for (int i = 0; i < atom->nlocal; i++)
     if (const int vertex = index_of(atom->tag[i]); vertex >= 0)
       std::copy(atom->x[i], atom->x[i] + 3, &mine[3 * vertex]);
   MPI_Allreduce(mine.data(), x.data(), static_cast<int>(x.size()), MPI_DOUBLE, MPI_SUM, world);
+  return x;
+}
+
+// Each rank measures a part of the elements.
+
+void ClothTopology::measure()
+{
+  const std::vector<double> x = positions();
   const auto width_sq = [&](const auto &vertices) {
     double largest = 0.0;
     for (int a : vertices)

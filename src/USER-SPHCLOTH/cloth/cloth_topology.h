@@ -41,6 +41,8 @@ class ClothTopology : protected Pointers {
   ClothElements<3> triangles;
   ClothElements<4> hinges;    // wing, edge, edge, wing
 
+  // collective: x, y, z of all vertices, where the atoms are now
+  std::vector<double> positions() const;
   // collective: from the positions of the atoms, which must not be farther apart than half a
   // periodic box
   void measure();

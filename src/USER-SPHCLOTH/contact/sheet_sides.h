@@ -8,7 +8,7 @@
 
 #include "contact/moving_triangles.h"
 #include "contact/triangle_discs.h"
-#include "core/contact/sheet_sides.h"
+#include "core/contact/sheet_layers.h"
 
 #include <vector>
 
@@ -20,8 +20,10 @@ class SheetSides : protected Pointers {
 
   SheetSides(LAMMPS *lmp_, MovingTriangles &mesh_) : Pointers(lmp_), mesh(mesh_) {}
 
-  // of owned particles nearer than the cutoff, added to what is there
-  void find(double cutoff, int sheet, std::vector<sphcloth::Sides> &);
+  // Of owned particles nearer than the cutoff, added to what is there; and whether there is more
+  // than one layer.
+  void find(double cutoff, int sheet, std::vector<sphcloth::Sides> &, sphcloth::SheetLayers &);
+  void add_triangles(sphcloth::SheetLayers &) const;
 
   double memory_usage() const { return discs.bytes(); }
 
@@ -29,7 +31,14 @@ class SheetSides : protected Pointers {
   MovingTriangles &mesh;
   TriangleDiscs discs;
 
-  int side_at(const Vec3 &p, double cutoff);
+  // the nearest triangle, or -1 if all are far away; the side of it; and the vector
+  // from its nearest point
+  struct Nearest {
+    int triangle = -1, side = 0;
+    Vec3 from_sheet;
+  };
+  Nearest nearest_to(const Vec3 &p, double cutoff);
+  bool sees_another_layer(const Vec3 &p, const Nearest &, double cutoff);
 };
 
 }    // namespace LAMMPS_NS

@@ -26,6 +26,8 @@ class TriangleDiscs {
     grid.build(discs, distance);
   }
 
+  const sphcloth::Disc &operator[](int triangle) const { return discs[triangle]; }
+
   sphcloth::DiscGrid grid;
   double bytes() const { return grid.bytes() + sphcloth::bytes_of(discs); }
 

@@ -58,7 +58,10 @@ Particles FluidState::particles()
   p.f = atom->f[0];
   p.approach = approach.data();
   p.force_unit = 1.0 / force->ftm2v;
-  if (sides) p.sides = sides->sides();
+  if (sides) {
+    p.sides = sides->sides();
+    p.layers = sides->layers();
+  }
   p.active = active;
   p.active_column = active_column;
   return p;

@@ -16,6 +16,8 @@ class SideSource {
 
   // of all particles, owned and ghost
   virtual const sphcloth::Sides *sides() const = 0;
+  // null: none of them is near a sheet
+  virtual sphcloth::Parting *layers() = 0;
   // sheets matter up to this distance from a particle
   virtual void set_view_distance(double distance) = 0;
 

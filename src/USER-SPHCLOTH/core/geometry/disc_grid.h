@@ -14,6 +14,7 @@
 #include "core/util/simd.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -77,11 +78,25 @@ class DiscGrid {
     for (Size &size : sizes) size.visit_near(p, max, visit);
   }
 
+  // Behind a query, with the same distance: discs that may not lie along a plane, since the cosine
+  // between the normals is smaller than `min_cos`, or since they are farther off than `min_gap` and
+  // higher than aside, as seen from `origin`.  A few more may be among them.
+  const std::vector<int> &beside_plane(double max_distance, const Eigen::Vector3d &origin,
+                                       const Eigen::Vector3d &normal, double min_cos,
+                                       double min_gap)
+  {
+    found.clear();
+    for (const Size &size : sizes)
+      size.add_beside_plane(max_distance, origin, normal, min_cos, min_gap, found);
+    return found;
+  }
+
   double bytes() const
   {
-    double sum = 0.0;
+    double sum = bytes_of(found);
     for (const Size &s : sizes)
-      sum += bytes_of(s.members, s.first, s.items, s.x, s.y, s.z, s.disc, s.distance_sq);
+      sum += bytes_of(s.members, s.first, s.items, s.x, s.y, s.z, s.radius, s.disc, s.distance_sq) +
+          bytes_of(s.across[0], s.across[1], s.across[2]);
     return sum;
   }
 
@@ -93,7 +108,8 @@ class DiscGrid {
     CellGrid grid;
     double largest = 0.0;    // radius and room
     std::vector<int> first, items;
-    std::vector<double> x, y, z;    // in the order of the cells
+    std::vector<double> x, y, z, radius;    // in the order of the cells
+    std::array<std::vector<double>, 3> across;    // normals
     std::vector<Disc> disc;
     // of the last query: the cells, if any, and how far the centers in them are
     CellGrid::Cell lo, hi;
@@ -118,7 +134,8 @@ class DiscGrid {
         for (const int d : members) add(cell_of(d), d);
       };
       sort_into_buckets(grid.size(), for_each, first, items);
-      for (std::vector<double> *column : {&x, &y, &z, &distance_sq})
+      for (std::vector<double> *column :
+           {&x, &y, &z, &distance_sq, &radius, &across[0], &across[1], &across[2]})
         column->assign(items.size() + LANES, std::numeric_limits<double>::infinity());
       disc.resize(items.size());
       for (std::size_t n = 0; n < items.size(); n++) {
@@ -126,6 +143,8 @@ class DiscGrid {
         x[n] = disc[n].center[0];
         y[n] = disc[n].center[1];
         z[n] = disc[n].center[2];
+        radius[n] = disc[n].radius;
+        for (int d = 0; d < 3; d++) across[d][n] = disc[n].normal[d];
       }
     }
 
@@ -172,6 +191,37 @@ class DiscGrid {
             if (distance_sq[n] <= room * room && reaches(n, p, max_distance)) visit(items[n]);
     }
 
+    SPHCLOTH_MULTIVERSION void add_beside_plane(double max_distance, const Eigen::Vector3d &origin,
+                                                const Eigen::Vector3d &normal, double min_cos,
+                                                double min_gap, std::vector<int> &to) const
+    {
+      const double room = max_distance + largest, room_sq = room * room;
+      const double ox = origin[0], oy = origin[1], oz = origin[2];
+      const double ax = normal[0], ay = normal[1], az = normal[2];
+      for (int k = lo[2]; k <= hi[2]; k++)
+        for (int j = lo[1]; j <= hi[1]; j++)
+          for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
+            const double *cx = &x[n], *cy = &y[n], *cz = &z[n], *r = &radius[n];
+            const double *nx = &across[0][n], *ny = &across[1][n], *nz = &across[2][n];
+            const double *apart_sq = &distance_sq[n];
+            double beside[LANES], any = 0.0;
+#pragma omp simd reduction(+ : any)
+            for (int l = 0; l < LANES; l++) {
+              const double dx = cx[l] - ox, dy = cy[l] - oy, dz = cz[l] - oz;
+              const double height = std::fabs(nx[l] * dx + ny[l] * dy + nz[l] * dz);
+              const double reach = height + r[l];
+              const double aside_sq = dx * dx + dy * dy + dz * dz - height * height;
+              const double off = (height > min_gap) & (aside_sq < reach * reach) ? 1.0 : 0.0;
+              const double bent = nx[l] * ax + ny[l] * ay + nz[l] * az < min_cos ? 1.0 : 0.0;
+              beside[l] = apart_sq[l] <= room_sq ? off + bent : 0.0;
+              any += beside[l];
+            }
+            if (any == 0.0) continue;
+            for (int l = 0; l < std::min(LANES, end - n); l++)
+              if (beside[l] > 0.0) to.push_back(items[n + l]);
+          }
+    }
+
     // is a disc within `max_distance` of p?
     bool reaches(int n, const Eigen::Vector3d &p, double max_distance) const
     {
@@ -188,6 +238,7 @@ class DiscGrid {
   };
 
   std::vector<Size> sizes;    // of twice the radius each
+  std::vector<int> found;
 };
 
 }    // namespace sphcloth

@@ -68,6 +68,7 @@ struct Points {
   const int *type = nullptr;
   int n_owned = 0, n_all = 0, n_types = 0;
   const Sides *sides = nullptr;    // of all; null: there are no sheets that part neighbors
+  Parting *layers = nullptr;    // null: sides are enough
 };
 
 // one group of neighbors; LANES indices past the end are readable and valid
@@ -200,7 +201,6 @@ class CellLists {
   void build(const Points &p, const double *reach, const Near &near, std::vector<int> &n_near)
   {
     const int n_types = p.n_types;
-    sides = p.sides;
     sort_into_cells(p, reach);
     find_slots(p);
     lists.start(order.size(), n_types);
@@ -226,7 +226,6 @@ class CellLists {
              Due due)
   {
     const int n_types = p.n_types;
-    sides = p.sides;
     sort_into_cells(p, reach);
     find_sorted_indices(p.n_owned);
     for (int t = 1; t <= n_types; t++)
@@ -293,7 +292,7 @@ class CellLists {
   std::vector<int> candidate;    // of one particle
   std::vector<float> key;
   NeighborSpans lists;
-  const Sides *sides = nullptr;    // during a build
+  Points points;    // during a build
 
   // half of the reach of a type among its own or, without one, the minimum reach of others to it
 
@@ -346,6 +345,7 @@ class CellLists {
 
   void sort_into_cells(const Points &p, const double *reach)
   {
+    points = p;
     const double *x = p.x;
     const int *type = p.type, n_all = p.n_all;
     const double longest = *std::max_element(reach, reach + (p.n_types + 1) * (p.n_types + 1));
@@ -414,10 +414,10 @@ class CellLists {
   {
     if (reach == 0.0) return 0;
     const double cutoff = reach + slack;
-    const int n = candidates(slot, other, cutoff, same_type);
-    if (sides && sides[order[slot]]) leave_out_parted(sides[order[slot]], n);
-    return compact(key.data(), candidate.data(), n, static_cast<float>(cutoff * cutoff), key.data(),
-                   lists.room(n));
+    const auto cutoff_sq = static_cast<float>(cutoff * cutoff);
+    const int n = candidates(slot, other, cutoff, same_type), i = order[slot];
+    if (points.sides && points.sides[i]) leave_out_parted(i, n, cutoff_sq);
+    return compact(key.data(), candidate.data(), n, cutoff_sq, key.data(), lists.room(n));
   }
 
   const double *near_in(const Near &near, int slot, int n_types) const
@@ -435,11 +435,15 @@ class CellLists {
     return partition(key.data(), list, n, static_cast<float>(cutoff * cutoff), candidate.data());
   }
 
-  void leave_out_parted(Sides mine, int n)
+  void leave_out_parted(int i, int n, float cutoff_sq)
   {
-    for (int k = 0; k < n; k++)
-      if (key[k] < std::numeric_limits<float>::max() && parted(mine, sides[candidate[k]]))
+    const Sides *of = points.sides;
+    for (int k = 0; k < n; k++) {
+      const int j = candidate[k];
+      if (key[k] > cutoff_sq || !are_doubtful(of[i], of[j])) continue;
+      if (!points.layers || points.layers->part(i, j, of[i], of[j]))
         key[k] = std::numeric_limits<float>::max();
+    }
   }
 
   // all particles in the cells that the sphere around a particle touches, with the squared

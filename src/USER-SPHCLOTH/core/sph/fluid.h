@@ -82,6 +82,7 @@ struct Particles {
   double *approach = nullptr;    // of the fluid, what it finds if asked
   double force_unit = 1.0;    // of mass times acceleration
   const Sides *sides = nullptr;    // for new lists; null: there are no sheets
+  Parting *layers = nullptr;    // null: sides are enough
   double *const *active = nullptr;    // per particle a row, 0 in active_column: leave it alone
   int active_column = 0;
 
@@ -206,7 +207,7 @@ class Fluid {
  protected:
   Points points(const Particles &p) const
   {
-    return {p.x, p.type, p.n_owned, p.n_all, model.n_types, p.sides};
+    return {p.x, p.type, p.n_owned, p.n_all, model.n_types, p.sides, p.layers};
   }
 
   DualLists lists;

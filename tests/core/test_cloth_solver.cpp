@@ -163,13 +163,13 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
     BOOST_TEST(of_edge(LENGTH, 0.0, force).largest == y * STRAIN, close);
   }
   // no more from 1.6 of the strain on
-  const double most = 1.0 + 9.0 * std::pow(1.6, 4);
-  BOOST_TEST(of_edge(LENGTH, 0.0, 1e9).hardest == 1.0 / (most * most), close);
+  const double hardest = 1.0 + 9.0 * std::pow(1.6, 4);
+  BOOST_TEST(of_edge(LENGTH, 0.0, 1e9).hardest == 1.0 / (hardest * hardest), close);
   // W h^2/2 is a tenth of a compliance, if that is longer; 0.4 of the strain where there is no size
-  const double least = 0.1 * 0.5 / (0.5 * 4.0 * LONGEST_SQ);
-  BOOST_TEST(of_edge(LENGTH, 0.5, 1e9).hardest == least, close);
+  const double floor = 0.1 * 0.5 / (0.5 * 4.0 * LONGEST_SQ);
+  BOOST_TEST(of_edge(LENGTH, 0.5, 1e9).hardest == floor, close);
   BOOST_TEST(of_edge(LENGTH, 0.5, 0.0).hardest == 1.0, close);
-  BOOST_TEST(of_edge(0.0, 0.5, 0.0).hardest == 4.0 * STRAIN * least, close);
+  BOOST_TEST(of_edge(0.0, 0.5, 0.0).hardest == 4.0 * STRAIN * floor, close);
   // no strain is asked for
   BOOST_TEST(of_edge(LENGTH, 0.0, 1e9, 0.0).hardest == 1.0);
   BOOST_TEST(of_edge(LENGTH, 0.0, 2.0, 0.0).largest == UNLOADED * 2.0 / LENGTH, close);
@@ -186,8 +186,8 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
              close);
 }
 
-// Pulled slowly by a force and let go, in substeps that are ever other ones, an edge returns no more
-// than was put in.
+// Pulled slowly by a force and let go, in substeps that are ever other ones, an edge returns no
+// more than was put in.
 
 BOOST_AUTO_TEST_CASE(an_edge_that_hardens_returns_no_more_than_it_took)
 {
@@ -197,7 +197,7 @@ BOOST_AUTO_TEST_CASE(an_edge_that_hardens_returns_no_more_than_it_took)
   c.weigh(start.data());
   // 30 times what strains an edge of the softness in the longest substep by all of it
   constexpr double FORCE = 30.0 * ALLOWED * MASS / (0.75 * LONGEST * LONGEST), PERIOD = 0.6;
-  double hardest = 1.0, velocity = 0.0, work = 0.0, time = 0.0, largest = 0.0, least = 1.0;
+  double hardest = 1.0, velocity = 0.0, work = 0.0, time = 0.0, largest = 0.0, softest = 1.0;
   for (int n = 0; time < PERIOD; n++) {
     const double h = LONGEST * std::sqrt(hardest) * (n % 3 == 0 ? 0.4 : 0.9);
     const double force = FORCE * std::pow(std::sin(PI * time / PERIOD), 2);
@@ -213,7 +213,7 @@ BOOST_AUTO_TEST_CASE(an_edge_that_hardens_returns_no_more_than_it_took)
     project(c, 0, state);
     hardest =
         solver_error(c, {1.0 / (h * h), LONGEST * LONGEST, ALLOWED, 1.0 / SHARE - 0.5}).hardest;
-    least = std::min(least, hardest);
+    softest = std::min(softest, hardest);
     start[1].x += displacement[1].x;
     velocity = displacement[1].x / h;
     work += force * displacement[1].x;
@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(an_edge_that_hardens_returns_no_more_than_it_took)
   }
   BOOST_TEST(largest > 0.6 * ALLOWED);
   BOOST_TEST(largest < ALLOWED);
-  BOOST_TEST(least < 0.1);
+  BOOST_TEST(softest < 0.1);
   BOOST_TEST(hardest > 0.9);
   // of the energy of 0.5 F x what is left is motion
   BOOST_TEST(0.5 * MASS * velocity * velocity < 0.02 * FORCE * largest);

@@ -41,21 +41,34 @@ BOOST_AUTO_TEST_CASE(the_longest_step_has_as_many_as_usual)
   BOOST_TEST(length.longest() == 0.2 * DT);
 }
 
-BOOST_AUTO_TEST_CASE(a_load_shortens_them_at_once_and_its_growth_in_advance)
+BOOST_AUTO_TEST_CASE(a_load_shortens_them_in_steps_and_lengthens_them_slowly)
 {
   SubstepLength length;
   const auto strain = [](double of) { return [of](const SubstepLength &) { return of; }; };
   const double heavy = std::pow(3.0 / 9.0, 0.25);    // g is 1/16
   steps(length, 3, strain(0.0));
   BOOST_TEST(steps(length, 1, strain(heavy)) == 10);
-  // and half of that, since it was 1 before
-  BOOST_TEST(steps(length, 1, strain(heavy)) == std::ceil(40.0 * std::sqrt(2.0) - 0.1));
-  // longer by 1.5 % in a step
-  BOOST_TEST(steps(length, 10, strain(heavy)) > 45);
-  BOOST_TEST(steps(length, 20, strain(heavy)) == 40);
+  // half of the softness in each step
+  for (const double substeps : {15, 20, 29, 40, 40})
+    BOOST_TEST(steps(length, 1, strain(heavy)) == substeps);
   BOOST_TEST(steps(length, 30, strain(0.0)) > 20);
   BOOST_TEST(steps(length, 100, strain(0.0)) == 10);
   BOOST_TEST(length.longest() == 0.1 * DT);
+}
+
+// what hardens from step to step is hardened as much again in advance
+
+BOOST_AUTO_TEST_CASE(the_growth_of_a_load_is_extrapolated)
+{
+  SubstepLength length;
+  const auto found = [&](double hardest) {
+    length.found(hardest, 0.5);
+    return length.substeps(DT, 10);
+  };
+  length.substeps(DT, 10);
+  found(1.0);
+  BOOST_TEST(found(0.8) == std::ceil(10.0 / 0.8 - 0.1));
+  BOOST_TEST(found(0.8) == std::ceil(10.0 / std::sqrt(0.8 * 0.8 * 1.03) - 0.1));
 }
 
 BOOST_AUTO_TEST_CASE(what_is_held_apart_yields_until_it_is_soft)
@@ -75,6 +88,23 @@ BOOST_AUTO_TEST_CASE(what_is_held_apart_yields_until_it_is_soft)
   steps(length, 200, [](const SubstepLength &) { return 0.0; });
   BOOST_TEST(!length.is_held());
   BOOST_TEST(length.yield() == 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_start_that_is_strained_is_soft_until_it_shrinks)
+{
+  SubstepLength length;
+  length.begin(0.9);
+  BOOST_TEST(length.yield() == 1.0);
+  length.begin(10.0);
+  BOOST_TEST(steps(length, 100, [](const SubstepLength &) { return 10.0; }) <= 12);
+  BOOST_TEST(!length.is_held());
+  steps(length, 250, [](const SubstepLength &) { return 10.0; });
+  BOOST_TEST(length.is_held());
+  SubstepLength other;
+  other.begin(10.0);
+  steps(other, 200, [](const SubstepLength &) { return 0.5; });
+  BOOST_TEST(other.yield() == 1.0);
+  BOOST_TEST(!other.is_held());
 }
 
 BOOST_AUTO_TEST_CASE(a_load_that_no_hardening_bears_is_not_taken_for_held)

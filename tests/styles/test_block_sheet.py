@@ -62,7 +62,7 @@ def test_momentum_of_a_free_sheet_and_its_water(wall, limits):
 @pytest.mark.parametrize("wall", [False, True])
 def test_restart_at_an_output_time(wall, tmp_path):
     """The sheet gets its deferred impulse."""
-    begin = on_free_sheet(wall, "output 0.007 wetted 50 viscous 50 force 2")
+    begin = on_free_sheet(wall, "output 0.011 wetted 50 viscous 50 force 2")
     begin += "run_style sph/adaptive block\n"
     begin = begin.replace("timestep 0.001", "timestep 0.004").replace("c0 6 nu", "c0 24 nu")
     to_an_output_time = (

@@ -110,17 +110,22 @@ def test_halt_and_timeout_end_runs_where_they_say(style, place):
     assert lmp.get_thermo("time") == pytest.approx(ahead * 0.0141, rel=1e-15)
 
 
-def test_steps_before_an_output_time_are_balanced():
-    """No step is tiny, and the one after it grows from the one that was cut."""
+def test_steps_before_an_output_time_are_equal():
+    """As many as are needed, and the one after them grows from what the others allowed."""
     lmp = free_particles(options="output 0.025 growth 1.01", run="run 0")
     dts = []
     for _ in range(7):
         dts.append(lmp.extract_global("dt"))
         lmp.command("run 1 post no")
-    expected = [0.01, 0.0075, 0.0075, 0.01, 0.0075, 0.0075, 0.01]
-    np.testing.assert_allclose(dts, expected, rtol=1e-12)
-    assert lmp.get_thermo("time") == pytest.approx(0.06, rel=1e-12)
-    assert steps_by_limit(lmp) == {CEILING: 3, OUTPUT: 4}
+    np.testing.assert_allclose(dts, 7 * [0.025 / 3], rtol=1e-12)
+    assert lmp.get_thermo("time") == pytest.approx(7 * 0.025 / 3, rel=1e-12)
+    assert steps_by_limit(lmp) == {OUTPUT: 7}
+    # one of 20 is not equal yet, and shorter by less than a tenth is not set by the output time
+    lmp = free_particles(options="output 0.197", run="run 1 post no")
+    assert lmp.extract_global("dt") == 0.01
+    lmp.command("run 10 post no")
+    assert lmp.extract_global("dt") == pytest.approx(0.157 / 16, rel=1e-12)
+    assert steps_by_limit(lmp) == {CEILING: 11}
 
 
 def test_the_next_row_is_that_of_an_output_time_or_beyond_the_run():

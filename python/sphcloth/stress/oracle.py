@@ -266,9 +266,9 @@ def stretch(e: Evidence) -> tuple[float, float]:
 def energy_may_grow(e: Evidence) -> bool:
     """Whether the scene is one of those that may gain energy, see docs/evidence/reliability.md.
 
-    Individual steps do not keep energy; edges that are rigid, or stiffer than a number of iterations
-    can make them, may return more than they stored where steps vary; and so may whole steps of a
-    sheet that is much lighter than what lies on it.
+    Individual steps do not keep energy; edges that are rigid, or stiffer than a number of
+    iterations can make them, may return more than they stored where steps vary; and so may whole
+    steps of a sheet that is much lighter than what lies on it.
     """
     s = e.scene
     if s.scheme == "individual" or s.sheet == "none":

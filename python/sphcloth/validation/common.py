@@ -48,7 +48,9 @@ def numerics(
         Parameter("delta", delta, "1", "diffusion of the density, with continuity", 0.0, 1.0),
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
-        Parameter("courant", courant, "1", "step of constant over smoothing length / c0", 0.01, 1.6),
+        Parameter(
+            "courant", courant, "1", "step of constant over smoothing length / c0", 0.01, 1.6
+        ),
         *schemes.parameters(scheme),
     )
 

@@ -141,8 +141,8 @@ template <std::size_t N> double ClothConstraints::share_of(const std::array<int,
   return 1.0 / max;
 }
 
-// An edge without a length is as long as its load and its compliance make it, and one that is welded
-// as others are.
+// An edge without a length is as long as its load and its compliance make it, and one that is
+// welded as others are.
 
 double ClothConstraints::size_of(const Spring &spring, const Kind<2> &) const
 {

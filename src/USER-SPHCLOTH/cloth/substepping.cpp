@@ -54,6 +54,16 @@ void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCo
   if (!follows_load()) length.follow(substep_dt());
 }
 
+// of all ranks
+
+double Substepping::strain_at_start() const
+{
+  const double mine = largest_error(constraints.distance, vertices.start.data());
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
 void Substepping::end_step()
 {
   started = true;
@@ -117,6 +127,7 @@ void Substepping::substep(int n, const std::vector<Substepping *> &cloths)
 void Substepping::begin_substep(int n)
 {
   const double dt = substep_dt();
+  if (follows_load() && !started && n == 0) length.begin(strain_at_start() / options.strain);
   if (options.damping > 0.0) damp();    // before the forces: weight is not damped
   // from velocities at the time of the positions to those of half a step later
   apply_forces((options.from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v);

@@ -125,6 +125,7 @@ class Substepping : protected Pointers {
   template <std::size_t N>
   sphcloth::SolverError error_of(const sphcloth::Constraints<N> &, double allowed,
                                  double share) const;
+  double strain_at_start() const;
   double allowed_strain() const { return options.strain * length.yield(); }
 };
 

@@ -40,12 +40,13 @@ namespace {
     double compliance, offset;
   };
 
-  SPHCLOTH_INLINE EdgeSpring edge_spring(double before, double w, double own, double taken,
+  SPHCLOTH_INLINE EdgeSpring edge_spring(double before, double w, double material, double taken,
                                          const SolverSoftness &s)
   {
     const double by_share = taken * s.softness;
-    const double a = std::max(own, by_share) + SINGLE_SWEEP_SOFTNESS * (s.softness - w);
-    const double hardens = (by_share > own ? by_share : 0.0) + SINGLE_SWEEP_SOFTNESS * s.softness;
+    const double a = std::max(material, by_share) + SINGLE_SWEEP_SOFTNESS * (s.softness - w);
+    const double hardens =
+        (by_share > material ? by_share : 0.0) + SINGLE_SWEEP_SOFTNESS * s.softness;
     const double steeper = a + s.steeper * std::min(a, hardens);
     const double tangent = steeper > 0.0 ? a / steeper : 1.0;
     return {a * tangent, before * (1.0 - tangent)};
@@ -78,15 +79,15 @@ namespace {
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const double length = std::sqrt(e.x[l] * e.x[l] + e.y[l] * e.y[l] + e.z[l] * e.z[l]);
-        const double deviation = length - rest[l], own = compliance[l] * s.inv_dt_sq;
+        const double deviation = length - rest[l], material = compliance[l] * s.inv_dt_sq;
         const double x = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
         const bool hard = k[l] >= 1.0;
         const SolverSoftness softness =
-            solver_softness(x, d.w[l], own, per_size[l], longest_sq, per_allowed, softest);
+            solver_softness(x, d.w[l], material, per_size[l], longest_sq, per_allowed, softest);
         const double taken = k[l] * inv_share - 1.0;
-        const EdgeSpring of_hard = edge_spring(x, d.w[l], own, taken, softness);
+        const EdgeSpring of_hard = edge_spring(x, d.w[l], material, taken, softness);
         const EdgeSpring spring{hard ? of_hard.compliance
-                                     : std::max(own, taken * longest_sq * d.w[l]),
+                                     : std::max(material, taken * longest_sq * d.w[l]),
                                 hard ? of_hard.offset : 0.0};
         const double target = rest[l] + spring.offset;
         const DistanceStep by = START
@@ -160,12 +161,12 @@ namespace {
         const double lever = weight - MIN_LEVER * w * steepest;
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double error = angle_difference(h.angle, rest[l]);
-        const double own = compliance[l] * s.inv_dt_sq;
+        const double material = compliance[l] * s.inv_dt_sq;
         const SolverSoftness of_solver =
-            solver_softness(error, weight, own, per_size[l], longest_sq, per_allowed, softest);
+            solver_softness(error, weight, material, per_size[l], longest_sq, per_allowed, softest);
         const bool hard = step_ratio >= 1.0;
         const double soft = hard ? of_solver.softness : longest_sq * weight;
-        const double softness = std::max(own, (k[l] * inv_share - 1.0) * soft);
+        const double softness = std::max(material, (k[l] * inv_share - 1.0) * soft);
         const double step =
             multiplier_step(error, weight, step_ratio, softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
@@ -292,7 +293,8 @@ namespace {
     return largest;
   }
 
-  template <std::size_t N> SolverError largest_error(const Constraints<N> &c, const LoadedSolver &s)
+  template <std::size_t N>
+  SolverError error_under_load(const Constraints<N> &c, const LoadedSolver &s)
   {
     SolverError found;
     for (int m = 0; m < c.size(); m++) {
@@ -320,12 +322,12 @@ namespace {
 
 SolverError solver_error(const Constraints<2> &c, const LoadedSolver &s)
 {
-  return largest_error(c, s);
+  return error_under_load(c, s);
 }
 
 SolverError solver_error(const Constraints<4> &c, const LoadedSolver &s)
 {
-  return largest_error(c, s);
+  return error_under_load(c, s);
 }
 
 void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)
@@ -367,6 +369,18 @@ double residual(const Constraints<2> &c, const Vertex *p, double inv_dt_sq, doub
 double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
 {
   return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
+}
+
+double largest_error(const Constraints<2> &c, const Vertex *p)
+{
+  double largest = 0.0;
+  for (int m = 0; m < c.size(); m++) {
+    if (!c.hard[m] || c.compliance[m] > 0.0 || c.weight[m] == 0.0) continue;
+    const double error = error_of(c, p, m);
+    if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
+    largest = std::max(largest, std::fabs(error) * c.per_size[m]);
+  }
+  return largest;
 }
 
 double elastic_energy(const Constraints<2> &c, const Vertex *p, int n_owned)

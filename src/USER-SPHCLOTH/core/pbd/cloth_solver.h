@@ -125,11 +125,11 @@ struct ClothState {
   double inv_dt_sq = 0.0;    // times a compliance: an inverse mass
   // part of its error that one projection may take: 1, or less where a stiffer one is not stable
   double max_edge_share = 1.0, max_hinge_share = 1.0;
-  // square of the longest substep, which the solver of unloaded constraints is as soft as, over that
-  // of the present one
+  // square of the longest substep, which the solver of unloaded constraints is as soft as, over
+  // that of the present one
   double longest_sq = 1.0;
-  // error that the solver may add to the size of a constraint, which hardens on the way there; 0: it
-  // is as soft under any load
+  // error that the solver may add to the size of a constraint, which hardens on the way there; 0:
+  // it is as soft under any load
   double max_edge_error = 0.0, max_hinge_error = 0.0;
 };
 
@@ -159,6 +159,9 @@ double residual(const Constraints<4> &, const Vertex *p, double inv_dt_sq);
 using OnHeld = std::function<void(int, const Vec3 &)>;
 void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);
+
+// of hard constraints that can move, |C| over the size; of those that only pull, where they do
+double largest_error(const Constraints<2> &, const Vertex *p);
 
 // C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
 double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);

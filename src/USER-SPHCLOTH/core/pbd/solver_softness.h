@@ -38,17 +38,17 @@ struct SolverSoftness {
   double error;    // that the solver adds, relative to the size
 };
 
-// x: error; w: W; own: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative to the
-// size, 0: no load hardens it; softest: of a rigid constraint over W L^2
+// x: error; w: W; material: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative
+// to the size, 0: no load hardens it; softest: of a rigid constraint over W L^2
 
-SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double own, double per_size,
+SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double material, double per_size,
                                                double longest_sq, double per_allowed,
                                                double softest)
 {
   constexpr double TINY = 1e-300;    // where nothing can move
   const double longest = w * longest_sq, rigid = softest * longest;
   SolverSoftness s;
-  s.error = x * per_size * (rigid / (rigid + own + TINY));
+  s.error = x * per_size * (rigid / (rigid + material + TINY));
   const double y = s.error * per_allowed, harder = HARDENING * (y * y) * (y * y);
   const double root = 1.0 / (1.0 + std::min(harder, MAX_HARDENING));
   const bool hardens = per_allowed > 0.0, has_size = per_size > 0.0;
@@ -56,9 +56,9 @@ SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double own, d
       ? SHARE_OF_COMPLIANCE / SINGLE_SWEEP_SOFTNESS
       : SHARE_WITHOUT_SIZE / SINGLE_SWEEP_SOFTNESS / (hardens ? per_allowed : 1.0);
   const double by_load = hardens ? (has_size ? longest * root * root : 0.0) : longest;
-  const double least = std::min(longest, share * own);
-  s.softness = std::max(w, std::max(by_load, least));
-  const bool by_law = harder < MAX_HARDENING && by_load > std::max(w, least);
+  const double floor = std::min(longest, share * material);
+  s.softness = std::max(w, std::max(by_load, floor));
+  const bool by_law = harder < MAX_HARDENING && by_load > std::max(w, floor);
   s.steeper = by_law ? 8.0 * (1.0 - root) : 0.0;
   return s;
 }
@@ -89,18 +89,18 @@ struct LoadedSolver {
     if (allowed == 0.0) return {1.0, longest * load * per_size};
     const bool has_size = per_size > 0.0;
     const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
-    const double least = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
+    const double floor = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
     const double y = has_size ? strain_of(longest * load * per_size / allowed) : 0.0;
     const double root = 1.0 / (1.0 + std::min(HARDENING * (y * y) * (y * y), MAX_HARDENING));
-    return {std::min(1.0, std::max(has_size ? root * root : 0.0, least)), y * allowed};
+    return {std::min(1.0, std::max(has_size ? root * root : 0.0, floor)), y * allowed};
   }
 
  private:
   // y with y (1 + 9 y^4)^2 = unloaded, the strain of the unloaded softness
   static double strain_of(double unloaded)
   {
-    const double most = MAX_OF_ALLOWED * (1.0 + MAX_HARDENING) * (1.0 + MAX_HARDENING);
-    if (unloaded > most) return unloaded / most * MAX_OF_ALLOWED;
+    const double end = MAX_OF_ALLOWED * (1.0 + MAX_HARDENING) * (1.0 + MAX_HARDENING);
+    if (unloaded > end) return unloaded / end * MAX_OF_ALLOWED;
     double y = std::min(unloaded, MAX_OF_ALLOWED);
     for (int n = 0; n < 30; n++) {    // by Newton's method, from above
       const double q = HARDENING * (y * y) * (y * y), off = y * (1.0 + q) * (1.0 + q) - unloaded;

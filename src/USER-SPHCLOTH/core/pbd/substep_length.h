@@ -23,6 +23,14 @@ class SubstepLength {
     return std::ceil(dt / (state.longest * std::sqrt(state.hardness)) - SPARED);
   }
 
+  // before the first step: the strain that edges have, over the one that is allowed
+  void begin(double strain)
+  {
+    if (strain <= 1.0) return;
+    state.yield = strain / SOFT;
+    state.phase = STRAINED;
+  }
+
   // Of the last step: how soft the hardest constraint was, over that of the longest substep, and
   // the strain over the one that was allowed then.
   void found(double hardest, double strain)
@@ -60,24 +68,27 @@ class SubstepLength {
   State state;
 
  private:
-  static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0;
+  static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0, STRAINED = 4.0;
+  static constexpr double SOFT = 1.0 / 3.0;    // of the allowed strain: an edge is hardly harder
 
-  // A load that grows hardens in the coming step as it did in the last one.  Substeps become longer
-  // slowly: the sheet is the calmer the less they vary.
+  // A load that grows hardens in the coming step as it did in the last one.  In a step the hardness
+  // doubles at the utmost, since what is stretched already would pull as much harder, and substeps
+  // become longer slowly: the sheet is the calmer the less they vary.
   double expected() const
   {
     constexpr double FASTEST = 0.5, RELAXES = 1.03;
     const double grows = std::clamp(state.hardest / state.hardest_before, FASTEST, 1.0);
-    return std::min(state.hardest * grows, state.hardness * RELAXES);
+    return std::clamp(state.hardest * grows, state.hardness * FASTEST, state.hardness * RELAXES);
   }
 
-  // Where edges harden no further for many steps, more is allowed from step to step,
+  // Edges that are strained at the start are as soft as if they were allowed to be, until they
+  // shrink.  Where edges harden no further for many steps, more is allowed from step to step,
   // until the constraints are soft again.  A load stretches them by as much more, then that was of
   // no use.
 
   void watch(double strain)
   {
-    constexpr double PATIENCE = 30.0, CHANGE = 1.03, SOFT = 1.0 / 3.0, GROWS = 1.25;
+    constexpr double STEPS_ABOVE = 30.0, CHANGE = 1.03, GROWS = 1.25, AT_REST = 300.0;
     State &s = state;
     if (s.phase == YIELDS) {
       s.yield *= CHANGE;
@@ -85,10 +96,16 @@ class SubstepLength {
       if (strain < SOFT) s.phase = HELD;
       return;
     }
-    s.steps = strain > MAX_OF_ALLOWED ? s.steps + 1.0 : 0.0;
-    if (s.phase != HELD || strain < SOFT * SOFT) s.yield = std::max(1.0, s.yield / CHANGE);
+    const bool yields_still = s.phase == HELD || s.phase == STRAINED;
+    s.steps = strain > MAX_OF_ALLOWED || s.phase == STRAINED ? s.steps + 1.0 : 0.0;
+    if (!yields_still || strain < SOFT * SOFT) s.yield = std::max(1.0, s.yield / CHANGE);
+    if (s.phase == STRAINED) {
+      if (s.steps > AT_REST) s.phase = HELD;
+      if (strain * s.yield < 1.0) s.phase = BORNE;
+      return;
+    }
     if (s.steps == 0.0 && s.yield == 1.0) s.phase = BORNE;
-    if (s.steps < PATIENCE || s.phase == OVERLOADED) return;
+    if (s.steps < STEPS_ABOVE || s.phase == OVERLOADED) return;
     s.phase = YIELDS;
     s.strain_then = strain * s.yield;
   }

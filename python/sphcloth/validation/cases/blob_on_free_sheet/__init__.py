@@ -53,7 +53,7 @@ PARAMETERS = (
     Parameter("order", "forward", "1", "of a sweep", choices=("forward", "symmetric")),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),
     Parameter("refined", 1.0, "1", "all time steps over what they would be", 1e-3, 1.0),
-    *numerics(alpha=0.1, courant=0.5, support=2.0, disorder=0.0, scheme="global"),
+    *numerics(alpha=0.1, courant=0.5, support=2.0, disorder=0.0),
 )
 
 QUANTITIES = (

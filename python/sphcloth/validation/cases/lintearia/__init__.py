@@ -58,6 +58,7 @@ PARAMETERS = (
     Parameter("settle", 6.0, "sqrt(L/g)", "time to rest", 1.0, 1e3),
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
+    Parameter("strain", 1e-3, "1", "largest strain that the solver adds", 1e-5, 0.1),
     *cloth.solver(1e-4, 0, method="substeps"),
     *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global"),
 )

@@ -41,7 +41,7 @@ PARAMETERS = (
     Parameter("time", 3.0, "sqrt(side/g)", "time of rest without drag", 0.5, 1e3),
     Parameter("drag", 6.4, "sqrt(g/side)", "rate of the drag", 0.1, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
-    *cloth.solver(1e-3, 0, method="substeps"),
+    *cloth.solver(3e-5, 0, method="substeps"),
     *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global"),
 )
 

@@ -8,7 +8,6 @@
 #ifndef SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 #define SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>

@@ -35,8 +35,11 @@ inline constexpr double SHARE_OF_COMPLIANCE = 0.1, SHARE_WITHOUT_SIZE = 0.4;
 struct SolverSoftness {
   double softness;    // W L^2 g/h^2, at least W
   double steeper;    // -d(log g)/d(log x), where the load sets g
-  double error;    // that the solver adds, relative to the size
 };
+
+// 1/sqrt(g) - 1, of an error over the allowed one
+
+SPHCLOTH_INLINE double hardening(double y) { return HARDENING * (y * y) * (y * y); }
 
 // x: error; w: W; material: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative
 // to the size, 0: no load hardens it; softest: of a rigid constraint over W L^2
@@ -48,8 +51,8 @@ SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double materi
   constexpr double TINY = 1e-300;    // where nothing can move
   const double longest = w * longest_sq, rigid = softest * longest;
   SolverSoftness s;
-  s.error = x * per_size * (rigid / (rigid + material + TINY));
-  const double y = s.error * per_allowed, harder = HARDENING * (y * y) * (y * y);
+  const double error = x * per_size * (rigid / (rigid + material + TINY));
+  const double harder = hardening(error * per_allowed);
   const double root = 1.0 / (1.0 + std::min(harder, MAX_HARDENING));
   const bool hardens = per_allowed > 0.0, has_size = per_size > 0.0;
   const double share = has_size
@@ -91,7 +94,7 @@ struct LoadedSolver {
     const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
     const double floor = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
     const double y = has_size ? strain_of(longest * load * per_size / allowed) : 0.0;
-    const double root = 1.0 / (1.0 + std::min(HARDENING * (y * y) * (y * y), MAX_HARDENING));
+    const double root = 1.0 / (1.0 + std::min(hardening(y), MAX_HARDENING));
     return {std::min(1.0, std::max(has_size ? root * root : 0.0, floor)), y * allowed};
   }
 
@@ -103,7 +106,7 @@ struct LoadedSolver {
     if (unloaded > end) return unloaded / end * MAX_OF_ALLOWED;
     double y = std::min(unloaded, MAX_OF_ALLOWED);
     for (int n = 0; n < 30; n++) {    // by Newton's method, from above
-      const double q = HARDENING * (y * y) * (y * y), off = y * (1.0 + q) * (1.0 + q) - unloaded;
+      const double q = hardening(y), off = y * (1.0 + q) * (1.0 + q) - unloaded;
       const double by = off / ((1.0 + q) * (1.0 + 9.0 * q));
       y -= by;
       if (by < 1e-3 * y) break;

@@ -323,7 +323,7 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
     for value, name in meant.items():
         assert run.last(value) == run.last(f"v_{name}") is not None
-    by_limit = {"velocity": 8, "force": 4, "wetted": 361, "max": 89, "output": 2}
+    by_limit = {"velocity": 10, "force": 20, "wetted": 353, "max": 85}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
     step = "fix step fluid sph/integrate global until 0.5"

@@ -186,6 +186,35 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
              close);
 }
 
+// Most of many constraints are passed over: none that is harder, or has a larger error.
+
+BOOST_AUTO_TEST_CASE(the_hardest_of_many_constraints_is_found)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> exponent(-3.0, 3.0), share(0.0, 1.0);
+  const auto vertex = vertices<2>({Vec3(0, 0, 0), Vec3(1, 0, 0)}, {1.0, 3.0});
+  for (const double allowed : {0.0, 0.01})
+    for (int repeat = 0; repeat < 200; repeat++) {
+      const LoadedSolver solver{4.0, 9.0, allowed, 0.75};
+      Constraints<2> c;
+      c.clear(1, 2);
+      for (int m = 0; m < 30; m++) {
+        const double compliance = share(random) < 0.5 ? 0.0 : std::pow(10.0, exponent(random));
+        c.add({0, 1}, {1.0, 1.0, compliance, FREE}, 1.0, share(random) < 0.2 ? 0.0 : 0.2);
+      }
+      c.close_color();
+      c.weigh(vertex.data());
+      SolverError all;
+      for (int m = 0; m < 30; m++) {
+        c.lambda[m] = 1e-4 * std::pow(10.0, exponent(random));
+        all.join(solver.of(c.lambda[m] * 4.0, c.weight[m], c.compliance[m], c.per_size[m]));
+      }
+      const SolverError found = solver_error(c, solver);
+      BOOST_TEST(found.hardest == all.hardest, boost::test_tools::tolerance(1e-6));
+      BOOST_TEST(found.largest == all.largest, boost::test_tools::tolerance(1e-6));
+    }
+}
+
 // Pulled slowly by a force and let go, in substeps that are ever other ones, an edge returns no
 // more than was put in.
 

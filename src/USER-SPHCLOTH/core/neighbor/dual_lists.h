@@ -402,11 +402,10 @@ class DualLists {
                                          static_cast<float>(near * near), spare.data());
   }
 
-  SPHCLOTH_MULTIVERSION int greatest(const NeighborSpan &near, const int *value) const
+  int greatest(const NeighborSpan &near, const int *value) const
   {
     const int *of = near.of;
     int max_value = std::numeric_limits<int>::min();
-#pragma omp simd reduction(max : max_value)
     for (int k = 0; k < near.n; k++) max_value = std::max(max_value, value[of[k]]);
     return max_value;
   }

@@ -52,59 +52,111 @@ namespace {
     return {a * tangent, before * (1.0 - tangent)};
   }
 
-  template <bool START>
-  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int color, const ClothState &s)
-  {
-    const Vertex *start = s.start, *displacement = s.displacement;
-    Vertex *moved = s.change ? s.change : s.displacement;
-    const double inv_share = 1.0 / s.max_edge_share;
-    const double softest = inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS;
-    const double longest_sq = std::max(1.0, s.longest_sq);
-    const double per_allowed = s.max_edge_error > 0.0 ? 1.0 / s.max_edge_error : 0.0;
-    for (int m = c.begin[color]; m < c.begin[color + 1]; m += WIDE) {
+  // What all edges of a sweep have in common
+
+  struct EdgeSweep {
+    double inv_dt_sq, inv_share, softest, longest_sq, per_allowed;
+
+    explicit EdgeSweep(const ClothState &s) :
+        inv_dt_sq(s.inv_dt_sq), inv_share(1.0 / s.max_edge_share),
+        softest(inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS), longest_sq(std::max(1.0, s.longest_sq)),
+        per_allowed(s.max_edge_error > 0.0 ? 1.0 / s.max_edge_error : 0.0)
+    {
+    }
+  };
+
+  // A group of edges in columns: at the start of the substep and so far; once projected, what their
+  // ends are moved by.  One loop over all of it would not be vectors, three are.
+
+  struct EdgeGroup {
+    Column start, now;
+
+    SPHCLOTH_INLINE void read(const Constraints<2> &c, int m, const Vertex *at_start,
+                              const Vertex *displacement)
+    {
       const int *one = &c.slot[0][m], *two = &c.slot[1][m];
-      Rows before, now;
+      Rows before, so_far;
       for (int l = 0; l < WIDE; l++) {
         const Row &way1 = row(displacement[one[l]]), &way2 = row(displacement[two[l]]);
-        before.of[l] = row(start[one[l]]) - row(start[two[l]]);
-        now.of[l] = before.of[l] + (way1 - way2);
-        take_last(now.of[l], way1 + way2);
+        before.of[l] = row(at_start[one[l]]) - row(at_start[two[l]]);
+        so_far.of[l] = before.of[l] + (way1 - way2);
+        take_last(so_far.of[l], way1 + way2);
       }
-      Column e, d, step;
-      before.to(e);
-      now.to(d);
+      before.to(start);
+      so_far.to(now);
+    }
+
+    template <bool START> SPHCLOTH_INLINE void project(Constraints<2> &c, int m, const EdgeSweep &s)
+    {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
       double *lambda = &c.lambda[m];
+      alignas(64) double error[WIDE], softness[WIDE], steeper[WIDE], target[WIDE], spring[WIDE];
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double length = std::sqrt(e.x[l] * e.x[l] + e.y[l] * e.y[l] + e.z[l] * e.z[l]);
-        const double deviation = length - rest[l], material = compliance[l] * s.inv_dt_sq;
-        const double x = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
-        const bool hard = k[l] >= 1.0;
-        const SolverSoftness softness =
-            solver_softness(x, d.w[l], material, per_size[l], longest_sq, per_allowed, softest);
-        const double taken = k[l] * inv_share - 1.0;
-        const EdgeSpring of_hard = edge_spring(x, d.w[l], material, taken, softness);
-        const EdgeSpring spring{hard ? of_hard.compliance
-                                     : std::max(material, taken * longest_sq * d.w[l]),
-                                hard ? of_hard.offset : 0.0};
-        const double target = rest[l] + spring.offset;
+        const double length =
+            std::sqrt(start.x[l] * start.x[l] + start.y[l] * start.y[l] + start.z[l] * start.z[l]);
+        const double deviation = length - rest[l];
+        error[l] = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
+        const SolverSoftness of =
+            solver_softness(error[l], now.w[l], compliance[l] * s.inv_dt_sq, per_size[l],
+                            s.longest_sq, s.per_allowed, s.softest);
+        softness[l] = of.softness;
+        steeper[l] = of.steeper;
+      }
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const double material = compliance[l] * s.inv_dt_sq, taken = k[l] * s.inv_share - 1.0;
+        const EdgeSpring hard =
+            edge_spring(error[l], now.w[l], material, taken, {softness[l], steeper[l]});
+        const double of_share = std::max(material, taken * s.longest_sq * now.w[l]);
+        spring[l] = k[l] >= 1.0 ? hard.compliance : of_share;
+        target[l] = rest[l] + (k[l] >= 1.0 ? hard.offset : 0.0);
+      }
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
         const DistanceStep by = START
-            ? distance_step_along(d.x[l], d.y[l], d.z[l], e.x[l], e.y[l], e.z[l], d.w[l], target,
-                                  k[l], spring.compliance, lambda[l], max_lambda[l])
-            : distance_step(d.x[l], d.y[l], d.z[l], d.w[l], target, k[l], spring.compliance,
+            ? distance_step_along(now.x[l], now.y[l], now.z[l], start.x[l], start.y[l], start.z[l],
+                                  now.w[l], target[l], k[l], spring[l], lambda[l], max_lambda[l])
+            : distance_step(now.x[l], now.y[l], now.z[l], now.w[l], target[l], k[l], spring[l],
                             lambda[l], max_lambda[l]);
         lambda[l] += by.lambda;
-        step.put(l, by.x, by.y, by.z);
+        now.put(l, by.x, by.y, by.z);
       }
+    }
+
+    SPHCLOTH_INLINE void move(const Constraints<2> &c, int m, const Vertex *displacement,
+                              Vertex *moved) const
+    {
+      const int *one = &c.slot[0][m], *two = &c.slot[1][m];
       Rows by;
-      by.from(step);
+      by.from(now);
       for (int l = 0; l < WIDE; l++) {
         const double w1 = displacement[one[l]].w, w2 = displacement[two[l]].w;
         row(moved[one[l]]) += w1 * by.of[l];
         row(moved[two[l]]) -= w2 * by.of[l];
       }
+    }
+  };
+
+  // A constraint is a long chain, one number waiting for the other.  In loops that only read, only
+  // project or only move, a processor begins with the next group before it has ended the last.
+
+  constexpr int BATCH = 4;
+
+  template <bool START>
+  SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int color, const ClothState &s)
+  {
+    const Vertex *start = s.start, *displacement = s.displacement;
+    Vertex *moved = s.change ? s.change : s.displacement;
+    const EdgeSweep sweep(s);
+    const int end = c.begin[color + 1];
+    for (int m = c.begin[color]; m < end; m += BATCH * WIDE) {
+      EdgeGroup group[BATCH];
+      const int n = std::min(BATCH, (end - m) / WIDE);
+      for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, displacement);
+      for (int g = 0; g < n; g++) group[g].template project<START>(c, m + g * WIDE, sweep);
+      for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, displacement, moved);
     }
   }
 
@@ -197,12 +249,8 @@ namespace {
     }
   };
 
-  // A hinge is a long chain, one number waiting for the other.  In loops that only read, only
-  // project or only move, a processor begins with the next group before it has ended the last.
-
   SPHCLOTH_MULTIVERSION void project_hinges(Constraints<4> &c, int color, const ClothState &s)
   {
-    constexpr int BATCH = 4;
     const Vertex *start = s.start, *displacement = s.displacement;
     Vertex *moved = s.change ? s.change : s.displacement;
     const int end = c.begin[color + 1];
@@ -297,10 +345,13 @@ namespace {
   SolverError error_under_load(const Constraints<N> &c, const LoadedSolver &s)
   {
     SolverError found;
+    double known = 0.0;
     for (int m = 0; m < c.size(); m++) {
       if (!c.hard[m] || c.weight[m] == 0.0) continue;
-      const double load = std::fabs(c.lambda[m]) * s.inv_dt_sq;
-      found.join(s.of(load, c.weight[m], c.compliance[m], c.per_size[m]));
+      const double load = std::fabs(c.lambda[m]) * s.inv_dt_sq, size = c.per_size[m];
+      if (size > 0.0 && s.unloaded_error(load, c.weight[m], size) <= known) continue;
+      found.join(s.of(load, c.weight[m], c.compliance[m], size));
+      known = s.without_news(found);
     }
     return found;
   }

@@ -14,6 +14,7 @@
 #define SPHCLOTH_CORE_PBD_SOLVER_SOFTNESS_H
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/util/simd.h"
 
@@ -88,14 +89,29 @@ struct LoadedSolver {
 
   SolverError of(double load, double w, double compliance, double per_size) const
   {
-    const double longest = softest * w * longest_sq;
-    if (allowed == 0.0) return {1.0, longest * load * per_size};
+    if (allowed == 0.0) return {1.0, unloaded_error(load, w, per_size)};
     const bool has_size = per_size > 0.0;
     const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
     const double floor = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
-    const double y = has_size ? strain_of(longest * load * per_size / allowed) : 0.0;
+    const double y = has_size ? strain_of(unloaded_error(load, w, per_size) / allowed) : 0.0;
     const double root = 1.0 / (1.0 + std::min(hardening(y), MAX_HARDENING));
     return {std::min(1.0, std::max(has_size ? root * root : 0.0, floor)), y * allowed};
+  }
+
+  // the error that the unloaded softness would leave
+  double unloaded_error(double load, double w, double per_size) const
+  {
+    return softest * w * longest_sq * load * per_size;
+  }
+
+  // a constraint with a size and no more unloaded error than this changes nothing in what was found
+  double without_news(const SolverError &found) const
+  {
+    constexpr double ROOM = 0.99;    // strain_of() is not exact
+    if (allowed == 0.0) return found.largest;
+    const double q = 1.0 / std::sqrt(found.hardest) - 1.0;
+    const double y = std::min(found.largest / allowed, std::pow(q / HARDENING, 0.25));
+    return ROOM * allowed * y * (1.0 + hardening(y)) * (1.0 + hardening(y));
   }
 
  private:

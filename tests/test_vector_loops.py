@@ -1,0 +1,132 @@
+"""Loops that are marked as vectors are compiled as vectors.
+
+A compiler leaves a marked loop scalar without a word where it finds a branch in it, and the results
+stay the same: only the time tells.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src/USER-SPHCLOTH"
+MARK = "#pragma omp simd"
+CORE_TESTS = ROOT / "tests/core"
+KERNEL = SOURCE / "core/sph/fluid_wendland_c2.cpp"
+# the files that have such loops, and what to compile for them
+UNITS = {
+    "core/pbd/cloth_solver.cpp": (SOURCE / "core/pbd/cloth_solver.cpp",),
+    "core/sph/pair_columns.h": (KERNEL,),
+    "core/neighbor/dual_lists.h": (KERNEL,),
+    "core/neighbor/cell_lists.h": (SOURCE / "core/sph/fluid.cpp",),
+    "contact/candidate_pairs.cpp": (SOURCE / "contact/candidate_pairs.cpp",),
+    "core/timestep/step_limits.h": (CORE_TESTS / "test_step_limits.cpp",),
+    "core/geometry/disc_grid.h": (
+        CORE_TESTS / "test_disc_grid.cpp",
+        CORE_TESTS / "test_sheet_layers.cpp",
+    ),
+    "core/geometry/hull_columns.h": (CORE_TESTS / "test_hull_columns.cpp",),
+    "core/contact/sheet_layers.h": (CORE_TESTS / "test_sheet_layers.cpp",),
+}
+# a function inside such a loop, in which the compiler's report places it
+INLINED = {"core/timestep/step_limits.h": "StepState operator[](int k) const"}
+FLAGS = (
+    *("-std=c++17", "-O3", "-DNDEBUG", "-march=x86-64-v3", "-DSPHCLOTH_SINGLE_TARGET"),
+    *("-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-fopt-info-vec-optimized"),
+    *("-DLAMMPS_SMALLBIG", "-DSPHCLOTH_LAMMPS_VERSION=20250722"),
+)
+
+
+def marked_loops(text: str) -> list[range]:
+    """Return the lines of each marked loop, from 1 on."""
+    lines = text.splitlines()
+    loops = []
+    for n, line in enumerate(lines):
+        if not line.startswith(MARK):
+            continue
+        depth, end = 0, n + 1
+        while True:
+            depth += lines[end].count("{") - lines[end].count("}")
+            if depth == 0 and lines[end].rstrip().endswith((";", "}")):
+                break
+            end += 1
+        loops.append(range(n + 1, end + 2))
+    return loops
+
+
+def includes() -> list[str]:
+    """Return the folders of headers that the build takes: Eigen's, Boost's, LAMMPS's and MPI's."""
+
+    def located(what: str) -> list[str]:
+        command = [sys.executable, str(ROOT / "cmake/locate.py"), what]
+        return subprocess.check_output(command, text=True).strip().split(";")
+
+    _, lammps, mpi, _ = located("lammps")
+    eigen, boost = f"{located('eigen')[0]}/include/eigen3", f"{located('boost')[0]}/include"
+    folders = (str(ROOT / "src/wheel-headers"), eigen, boost, lammps, mpi)
+    return [word for folder in folders for word in ("-isystem", folder)]
+
+
+@cache
+def report(unit: Path) -> str:
+    """Return what the compiler tells of its vectors."""
+    compiler = shutil.which("g++")
+    if compiler is None:
+        pytest.skip("no g++ here, whose report this reads")
+    done = subprocess.run(
+        [compiler, *FLAGS, f"-I{SOURCE}", *includes(), "-c", unit, "-o", "/dev/null"],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return done.stderr
+
+
+def vector_lines(unit: Path, name: str) -> set[int]:
+    """Return the lines of a file at which the compiler tells of a loop of vectors."""
+    told = rf"^\S*{re.escape(name)}:(\d+):\d+: optimized: loop vectorized"
+    return {int(each[1]) for each in re.finditer(told, report(unit), re.M)}
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_marked_loops_are_vectors(name: str) -> None:
+    lines = set().union(*(vector_lines(unit, name) for unit in UNITS[name]))
+    text = (SOURCE / name).read_text()
+    loops = marked_loops(text)
+    if name in INLINED:
+        line = text[: text.index(INLINED[name])].count("\n") + 1
+        loops = [range(line, loop[-1] + 1) for loop in loops]
+    scalar = [loop[0] for loop in loops if not lines & {*loop}]
+    assert not scalar, f"{name}: not compiled as vectors: the loops of lines {scalar}"
+
+
+def test_every_marked_loop_is_looked_at() -> None:
+    marked = {
+        str(path.relative_to(SOURCE))
+        for path in SOURCE.rglob("*.*")
+        if marked_loops(path.read_text())
+    }
+    assert marked == {*UNITS}
+
+
+def test_a_branch_is_seen(tmp_path: Path) -> None:
+    """The report is of the loop that is asked about."""
+    unit = tmp_path / "loops.cpp"
+    unit.write_text(
+        "void loops(double *a, const double *b, int *n) {\n"
+        f"{MARK}\n"
+        "  for (int i = 0; i < 64; i++) a[i] += b[i];\n"
+        f"{MARK}\n"
+        "  for (int i = 0; i < 64; i++) {\n"
+        "    while (b[i] > n[0]) n[0]++;\n"
+        "  }\n"
+        "}\n"
+    )
+    one, other = marked_loops(unit.read_text())
+    lines = vector_lines(unit, "loops.cpp")
+    assert lines & {*one} and not lines & {*other}

@@ -9,7 +9,7 @@ namespace sphcloth {
 
 namespace {
 
-  constexpr int WIDE = GROUP<double>;
+  constexpr int WIDE = CONSTRAINT_GROUP, HALF = GROUP<double>;
 
   // Rows and columns.  In memory a vertex is a row: x, y, z and w.  A group of constraints is
   // projected in columns: x of each, y of each, and so on.  Only differences of vertices are
@@ -26,8 +26,14 @@ namespace {
   struct Rows {
     Row of[WIDE];
 
-    SPHCLOTH_INLINE void to(Column &c) const { to_columns(of, c.x, c.y, c.z, c.w); }
-    SPHCLOTH_INLINE void from(const Column &c) { to_rows(c.x, c.y, c.z, of); }
+    SPHCLOTH_INLINE void to(Column &c) const
+    {
+      for (int l = 0; l < WIDE; l += HALF) to_columns(of + l, c.x + l, c.y + l, c.z + l, c.w + l);
+    }
+    SPHCLOTH_INLINE void from(const Column &c)
+    {
+      for (int l = 0; l < WIDE; l += HALF) to_rows(c.x + l, c.y + l, c.z + l, of + l);
+    }
   };
 
   SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
@@ -142,7 +148,7 @@ namespace {
   // A constraint is a long chain, one number waiting for the other.  In loops that only read, only
   // project or only move, a processor begins with the next group before it has ended the last.
 
-  constexpr int BATCH = 4;
+  constexpr int BATCH = 2;
 
   template <bool START>
   SPHCLOTH_MULTIVERSION void project_distances(Constraints<2> &c, int color, const ClothState &s)

@@ -27,6 +27,9 @@ struct Vertex {
 
 using Vertices = AlignedVector<Vertex>;
 
+// Two vectors of constraints: while a processor waits for the one it computes the other.
+inline constexpr int CONSTRAINT_GROUP = 2 * GROUP<double>;
+
 // Constraints of N vertices sorted by color.  Every color is filled up to whole groups with
 // constraints of a vertex that has no mass, `idle`.
 
@@ -64,7 +67,7 @@ template <std::size_t N> class Constraints {
   {
     std::array<int, N> vertices;
     vertices.fill(idle);
-    while (size() % GROUP<double> != 0) add(vertices, {0.0, 0.0, 0.0, 0.0});
+    while (size() % CONSTRAINT_GROUP != 0) add(vertices, {0.0, 0.0, 0.0, 0.0});
     begin.push_back(size());
   }
   // once, when all have been added: of vertices the w are read

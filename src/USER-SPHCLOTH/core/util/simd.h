@@ -26,6 +26,13 @@
 #define SPHCLOTH_MULTIVERSION
 #endif
 
+// vectors of rows, on any processor
+#ifdef __has_builtin
+#if __has_builtin(__builtin_shufflevector)
+#define SPHCLOTH_SHUFFLES
+#endif
+#endif
+
 #if defined(__GNUC__)
 #define SPHCLOTH_INLINE inline __attribute__((always_inline))
 #define SPHCLOTH_LAMBDA __attribute__((always_inline))    // behind the parameters of a lambda
@@ -156,7 +163,7 @@ typedef double Row __attribute__((vector_size(32), aligned(8), may_alias));
 
 SPHCLOTH_INLINE void to_columns(const Row *rows, double *x, double *y, double *z, double *w)
 {
-#ifdef SPHCLOTH_X86_TARGETS
+#ifdef SPHCLOTH_SHUFFLES
   const auto put = [](double *column, const Row &r) { *reinterpret_cast<Row *>(column) = r; };
   const Row xy02 = __builtin_shufflevector(rows[0], rows[2], 0, 1, 4, 5);
   const Row xy13 = __builtin_shufflevector(rows[1], rows[3], 0, 1, 4, 5);
@@ -180,7 +187,7 @@ SPHCLOTH_INLINE void to_columns(const Row *rows, double *x, double *y, double *z
 
 SPHCLOTH_INLINE void to_rows(const double *x, const double *y, const double *z, Row *rows)
 {
-#ifdef SPHCLOTH_X86_TARGETS
+#ifdef SPHCLOTH_SHUFFLES
   const auto get = [](Row &r, const double *column) { r = *reinterpret_cast<const Row *>(column); };
   Row cx, cy, cz;
   get(cx, x);
@@ -204,7 +211,7 @@ SPHCLOTH_INLINE void to_rows(const double *x, const double *y, const double *z, 
 
 SPHCLOTH_INLINE void take_last(Row &row, const Row &last)
 {
-#ifdef SPHCLOTH_X86_TARGETS
+#ifdef SPHCLOTH_SHUFFLES
   row = __builtin_shufflevector(row, last, 0, 1, 2, 7);
 #else
   row[3] = last[3];

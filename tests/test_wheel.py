@@ -51,6 +51,20 @@ def test_it_has_a_plugin_examples_and_the_right_requirement(wheel):
     )
 
 
+@pytest.mark.parametrize(
+    ("tags", "runs"),
+    [
+        ("manylinux_2_27_x86_64.manylinux_2_28_x86_64", True),
+        ("manylinux_2_27_aarch64", True),
+        ("manylinux_2_28_aarch64", True),
+        ("manylinux_2_31_aarch64", False),
+        ("linux_aarch64", False),
+    ],
+)
+def test_a_wheel_for_older_libraries_runs_on_newer_ones(tags, runs):
+    assert make_wheels.runs_on(f"sphcloth-0.1.0-py3-none-{tags}.whl", "manylinux_2_28") == runs
+
+
 def test_updates_of_a_release_fit_and_other_releases_do_not():
     fits = Requirement(make_wheels.fits()).specifier
     for release in WHEELS.values():

@@ -18,8 +18,9 @@ YIELDING = {
     "MPIR_CVAR_ENABLE_HEAVY_YIELD": "1",
 }
 
-# Open MPI, releases 4 and 5, starts no more ranks than cores unless told to
+# Open MPI, releases 4 and 5: it starts no more ranks than cores unless told to, and its ranks poll
 CROWDED = {
+    "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":OVERSUBSCRIBE",
 }

@@ -339,7 +339,8 @@ BOOST_AUTO_TEST_CASE(place_in_a_group_does_not_matter_and_groups_are_filled_up)
   c.close_color();
   c.add({0, 13}, {0.6, 1.0, 0.0, FREE});
   c.close_color();
-  BOOST_CHECK(c.size() == 2 * CONSTRAINT_GROUP && c.colors() == 2 && c.begin[1] == CONSTRAINT_GROUP);
+  BOOST_CHECK(c.size() == 2 * CONSTRAINT_GROUP && c.colors() == 2 &&
+              c.begin[1] == CONSTRAINT_GROUP);
   project(c, 0, {p.data(), displacement.data(), false, nullptr, 1.0});
   for (int m = 0; m < 7; m++) {
     Alone<2> one({position(p[2 * m]), position(p[2 * m + 1])}, {p[2 * m].w, p[2 * m + 1].w},

@@ -58,15 +58,16 @@ namespace {
     return {a * tangent, before * (1.0 - tangent)};
   }
 
-  // What all edges of a sweep have in common
+  // What all constraints of a kind have in common in a sweep.  share: of its error that one takes;
+  // allowed: error that the solver may add
 
-  struct EdgeSweep {
+  struct Sweep {
     double inv_dt_sq, inv_share, softest, longest_sq, per_allowed;
 
-    explicit EdgeSweep(const ClothState &s) :
-        inv_dt_sq(s.inv_dt_sq), inv_share(1.0 / s.max_edge_share),
+    Sweep(const ClothState &s, double share, double allowed) :
+        inv_dt_sq(s.inv_dt_sq), inv_share(1.0 / share),
         softest(inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS), longest_sq(std::max(1.0, s.longest_sq)),
-        per_allowed(s.max_edge_error > 0.0 ? 1.0 / s.max_edge_error : 0.0)
+        per_allowed(allowed > 0.0 ? 1.0 / allowed : 0.0)
     {
     }
   };
@@ -92,7 +93,7 @@ namespace {
       so_far.to(now);
     }
 
-    template <bool START> SPHCLOTH_INLINE void project(Constraints<2> &c, int m, const EdgeSweep &s)
+    template <bool START> SPHCLOTH_INLINE void project(Constraints<2> &c, int m, const Sweep &s)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
@@ -155,7 +156,7 @@ namespace {
   {
     const Vertex *start = s.start, *displacement = s.displacement;
     Vertex *moved = s.change ? s.change : s.displacement;
-    const EdgeSweep sweep(s);
+    const Sweep sweep(s, s.max_edge_share, s.max_edge_error);
     const int end = c.begin[color + 1];
     for (int m = c.begin[color]; m < end; m += BATCH * WIDE) {
       EdgeGroup group[BATCH];
@@ -194,15 +195,11 @@ namespace {
       rows_1.to(e1);
     }
 
-    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, const ClothState &s)
+    SPHCLOTH_INLINE void project(Constraints<4> &c, int m, const Sweep &s)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
       double *lambda = &c.lambda[m];
-      const double inv_share = 1.0 / s.max_hinge_share;
-      const double softest = inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS;
-      const double longest_sq = std::max(1.0, s.longest_sq);
-      const double per_allowed = s.max_hinge_error > 0.0 ? 1.0 / s.max_hinge_error : 0.0;
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
         const HingeShape h =
@@ -220,11 +217,11 @@ namespace {
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double error = angle_difference(h.angle, rest[l]);
         const double material = compliance[l] * s.inv_dt_sq;
-        const SolverSoftness of_solver =
-            solver_softness(error, weight, material, per_size[l], longest_sq, per_allowed, softest);
+        const SolverSoftness of_solver = solver_softness(error, weight, material, per_size[l],
+                                                         s.longest_sq, s.per_allowed, s.softest);
         const bool hard = step_ratio >= 1.0;
-        const double soft = hard ? of_solver.softness : longest_sq * weight;
-        const double softness = std::max(material, (k[l] * inv_share - 1.0) * soft);
+        const double soft = hard ? of_solver.softness : s.longest_sq * weight;
+        const double softness = std::max(material, (k[l] * s.inv_share - 1.0) * soft);
         const double step =
             multiplier_step(error, weight, step_ratio, softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
@@ -259,12 +256,13 @@ namespace {
   {
     const Vertex *start = s.start, *displacement = s.displacement;
     Vertex *moved = s.change ? s.change : s.displacement;
+    const Sweep sweep(s, s.max_hinge_share, s.max_hinge_error);
     const int end = c.begin[color + 1];
     for (int m = c.begin[color]; m < end; m += BATCH * WIDE) {
       HingeGroup group[BATCH];
       const int n = std::min(BATCH, (end - m) / WIDE);
       for (int g = 0; g < n; g++) group[g].read(c, m + g * WIDE, start, displacement);
-      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, s);
+      for (int g = 0; g < n; g++) group[g].project(c, m + g * WIDE, sweep);
       for (int g = 0; g < n; g++) group[g].move(c, m + g * WIDE, displacement, moved);
     }
   }

@@ -14,7 +14,7 @@ VARIANTS = {
     "corners": ["--set", "hold=corners", "--set", "pinned=0.1"],
     "two sources, other sheet": [
         *("--set", "sources=2", "--set", "apart=0.25", "--set", "size=0.8", "--set", "hold=sides"),
-        *("--set", "areal=8.0", "--set", "scheme=constant", "--set", "dt=1e-4"),
+        *("--set", "areal=8.0", "--set", "scheme=constant", "--set", "dt=4e-4"),
     ],
 }
 

@@ -20,11 +20,14 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 SPHCLOTH = Path(sys.executable).parent / "sphcloth"
 
 
-def run(example: str, out: Path, *settings: str) -> tuple[dict, ThermoTable]:
-    """Run an example of size tiny on two ranks; return its summary and its log."""
+def run(example: str, out: Path, *settings: str, ranks: int = 1) -> tuple[dict, ThermoTable]:
+    """Run an example of size tiny; return its summary and its log.
+
+    Ranks that share a core with other tests wait for each other: two take ten times as long.
+    """
     done = subprocess.run(
         [
-            *(SPHCLOTH, "run", example, "--size", "tiny", "--ranks", "2", "--out", out),
+            *(SPHCLOTH, "run", example, "--size", "tiny", "--ranks", str(ranks), "--out", out),
             *("--no-pictures", *(word for setting in settings for word in ("--set", setting))),
         ],
         capture_output=True,
@@ -102,7 +105,7 @@ def test_a_shower_runs_off_a_shirt(tmp_path):
 
 
 def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):
-    summary, log = run("two_resolutions", tmp_path)
+    summary, log = run("two_resolutions", tmp_path, ranks=2)
     assert summary["poured"] == 172
     assert log["v_contacts"][-1] > 0
     every_step = (log["v_fluid"][1:] * np.diff(log["Step"])).sum()

@@ -20,6 +20,10 @@ static constexpr int ALL = ClothConstraints::ALL;
 // of hinges, in radians, over the strain of edges
 static constexpr double ANGLE_OVER_STRAIN = 5.0;
 
+// What a projection of hinges for several substeps may leave, of their compliance; what damping
+// may take away at once, of the stretching motion
+static constexpr double MAX_HINGE_SOFTNESS = 0.01, MAX_DAMPING = 0.02;
+
 int Substepping::wanted_substeps(double dt)
 {
   if (!follows_load()) return usual_substeps();
@@ -34,6 +38,19 @@ int Substepping::wanted_substeps(double dt)
                      "compliance, a larger 'strain', more 'iterations', or a shorter step",
                      options.strain, wanted));
   return static_cast<int>(wanted);
+}
+
+// A projection that stands for several substeps leaves a hinge as soft as in one of that length
+// (core/pbd/solver_softness.h).
+
+void Substepping::measure_hinges()
+{
+  const double mine = constraints.bending.min_compliance_per_weight();
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+  longest_of_hinges = uses(ClothSolver::SUBSTEPS) && !options.symmetric_sweeps
+      ? std::sqrt(MAX_HINGE_SOFTNESS / SINGLE_SWEEP_SOFTNESS * all / force->ftm2v)
+      : 0.0;
 }
 
 // once
@@ -52,6 +69,8 @@ void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCo
   step_dt = dt;
   n_substeps = substeps;
   if (!follows_load()) length.follow(substep_dt());
+  hinge_groups = SubstepGroups(substeps, dt, longest_of_hinges);
+  damping_groups = SubstepGroups(substeps, options.damping * dt, MAX_DAMPING);
 }
 
 // of all ranks
@@ -68,9 +87,9 @@ void Substepping::end_step()
 {
   started = true;
   if (!follows_load()) return;
-  const SolverError edges = error_of(constraints.distance, allowed_strain(), max_edge_share());
-  const SolverError hinges =
-      error_of(constraints.bending, ANGLE_OVER_STRAIN * allowed_strain(), max_hinge_share());
+  const SolverError edges = error_of(constraints.distance, allowed_strain(), max_edge_share(), 1);
+  const SolverError hinges = error_of(constraints.bending, ANGLE_OVER_STRAIN * allowed_strain(),
+                                      max_hinge_share(), hinge_groups.last_size());
   const double mine[2] = {-std::min(edges.hardest, hinges.hardest), edges.largest};
   double all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
@@ -80,10 +99,12 @@ void Substepping::end_step()
 // of this rank's constraints, from the multipliers of the last sweep
 
 template <std::size_t N>
-SolverError Substepping::error_of(const Constraints<N> &c, double allowed, double share) const
+SolverError Substepping::error_of(const Constraints<N> &c, double allowed, double share,
+                                  int substeps) const
 {
   const double longest_sq = std::pow(length.longest(), 2) * force->ftm2v;
-  return solver_error(c, {inv_dt_sq(), longest_sq, allowed, 1.0 / share - SINGLE_SWEEP_SOFTNESS});
+  return solver_error(
+      c, {inv_dt_sq(substeps), longest_sq, allowed, 1.0 / share - SINGLE_SWEEP_SOFTNESS});
 }
 
 // The last couplings of all cloths come last, and together: what couples cloths is the last of
@@ -128,12 +149,16 @@ void Substepping::begin_substep(int n)
 {
   const double dt = substep_dt();
   if (follows_load() && !started && n == 0) length.begin(strain_at_start() / options.strain);
-  if (options.damping > 0.0) damp();    // before the forces: weight is not damped
+  // before the forces: weight is not damped
+  if (const int together = damping_groups.done_in(n); options.damping > 0.0 && together)
+    damp(together);
   // from velocities at the time of the positions to those of half a step later
   apply_forces((options.from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v);
   predict(n == n_substeps - 1);
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
-  std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
+  hinges_for = hinge_groups.done_in(n);
+  if (hinges_for)
+    std::fill(constraints.bending.lambda.begin(), constraints.bending.lambda.end(), 0.0);
   sweeps = 0;
 }
 
@@ -144,7 +169,7 @@ void Substepping::end_substep()
   if (holders->wanted()) {
     const Vertex *start = options.from_start ? vertices.start.data() : nullptr;
     holders->add_pull(constraints.distance, start, dt, n_substeps);
-    holders->add_pull(constraints.bending, start, dt, n_substeps);
+    if (hinges_for) holders->add_pull(constraints.bending, start, dt, n_substeps * hinges_for);
   }
   set_velocities();
 }
@@ -187,9 +212,9 @@ void Substepping::set_velocities()
 
 // Takes the stretching motion out of the edges (line 29), at the rate that the user gave.
 
-void Substepping::damp()
+void Substepping::damp(int substeps)
 {
-  const double share = -std::expm1(-options.damping * substep_dt());
+  const double share = -std::expm1(-options.damping * substep_dt() * substeps);
   Vertex *v = vertices.v.data();
   vertices.halo.forward_velocities(ALL, v);
   for (int c = 0; c < constraints.edge_colors(); c++) {
@@ -235,7 +260,7 @@ bool Substepping::is_done()
 
 void Substepping::gauss_seidel(const ClothState &state)
 {
-  const int n = constraints.distance.colors() + constraints.bending.colors();
+  const int n = constraints.distance.colors() + (hinges_for ? constraints.bending.colors() : 0);
   for (int c = 0; c < n; c++) project_color(c, state);
   for (int c = n - 1; options.symmetric_sweeps && c >= 0; c--) project_color(c, state);
 }
@@ -251,7 +276,11 @@ void Substepping::project_color(int c, const ClothState &state)
     vertices.halo.forward_displacements(constraints.channel_of_edge_color(c), displacement,
                                         substep_dt());
   } else {
-    project(constraints.bending, hinge, state);
+    ClothState longer = state;
+    longer.inv_dt_sq = inv_dt_sq(hinges_for);
+    longer.longest_sq /= hinges_for * hinges_for;
+    longer.part_of_way = 1.0 / hinges_for;
+    project(constraints.bending, hinge, longer);
     vertices.halo.forward_displacements(constraints.channel_of_hinge_color(hinge), displacement,
                                         substep_dt());
   }
@@ -273,9 +302,9 @@ void Substepping::jacobi(const ClothState &state)
 
 // A compliance times this is an inverse mass, in all systems of units.
 
-double Substepping::inv_dt_sq() const
+double Substepping::inv_dt_sq(double substeps) const
 {
-  const double dt = substep_dt();
+  const double dt = substeps * substep_dt();
   return 1.0 / (dt * dt * force->ftm2v);
 }
 
@@ -283,15 +312,18 @@ double Substepping::residual() const
 {
   const double by = inv_dt_sq();
   const Vertex *p = vertices.p.data();
-  return std::max(sphcloth::residual(constraints.distance, p, by, constraints.mean_length()),
-                  sphcloth::residual(constraints.bending, p, by));
+  const double of_edges =
+      sphcloth::residual(constraints.distance, p, by, constraints.mean_length());
+  // those that were projected for several substeps are where they have moved to since
+  if (!hinge_groups.are_single()) return of_edges;
+  return std::max(of_edges, sphcloth::residual(constraints.bending, p, by));
 }
 
 double Substepping::unconverged() const
 {
   if (!uses(ClothSolver::SUBSTEPS)) return 0.0;
   const double allowed = follows_load() ? allowed_strain() : 0.0;
-  return error_of(constraints.distance, allowed, max_edge_share()).largest;
+  return error_of(constraints.distance, allowed, max_edge_share(), 1).largest;
 }
 
 // force times length: the unit of energy in all systems of units

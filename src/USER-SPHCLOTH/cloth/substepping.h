@@ -11,6 +11,7 @@
 #include "cloth/cloth_vertices.h"
 #include "cloth/holder_forces.h"
 #include "cloth/solver_coupling.h"
+#include "core/pbd/substep_groups.h"
 #include "core/pbd/substep_length.h"
 #include "pointers.h"
 
@@ -51,6 +52,8 @@ class Substepping : protected Pointers {
 
   bool uses(ClothSolver one) const { return options.solver == one; }
   int usual_substeps() const { return uses(ClothSolver::SUBSTEPS) ? options.iterations : 1; }
+  // after each list build: how soft the hinges are.  Collective.
+  void measure_hinges();
   // how many substeps the next step takes, of dt, under the load of the last one
   int wanted_substeps(double dt);
 
@@ -96,10 +99,13 @@ class Substepping : protected Pointers {
   int n_substeps = 1;
   int sweeps = 0;    // of the last substep
   sphcloth::SubstepLength length;
+  double longest_of_hinges = 0.0;    // time that one projection may stand for
+  sphcloth::SubstepGroups hinge_groups, damping_groups;
+  int hinges_for = 1;    // so many substeps are hinges projected in this one; 0: not at all
   bool warned = false;
   bool started = false;    // velocities are those of half a step ago, see direction start
 
-  double inv_dt_sq() const;
+  double inv_dt_sq(double substeps = 1.0) const;
   void begin_substep(int n);
   void sweep();
   bool is_done();
@@ -107,7 +113,7 @@ class Substepping : protected Pointers {
   void apply_forces(double dt);
   void predict(bool last);
   void set_velocities();
-  void damp();
+  void damp(int substeps);
   void gauss_seidel(const sphcloth::ClothState &);
   void project_color(int color, const sphcloth::ClothState &);
   void jacobi(const sphcloth::ClothState &);
@@ -123,8 +129,8 @@ class Substepping : protected Pointers {
   bool converged() const;
   void warn(const std::string &of);
   template <std::size_t N>
-  sphcloth::SolverError error_of(const sphcloth::Constraints<N> &, double allowed,
-                                 double share) const;
+  sphcloth::SolverError error_of(const sphcloth::Constraints<N> &, double allowed, double share,
+                                 int substeps) const;
   double strain_at_start() const;
   double allowed_strain() const { return options.strain * length.yield(); }
 };

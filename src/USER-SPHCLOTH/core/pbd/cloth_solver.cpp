@@ -62,12 +62,12 @@ namespace {
   // allowed: error that the solver may add
 
   struct Sweep {
-    double inv_dt_sq, inv_share, softest, longest_sq, per_allowed;
+    double inv_dt_sq, inv_share, softest, longest_sq, per_allowed, part_of_way;
 
     Sweep(const ClothState &s, double share, double allowed) :
         inv_dt_sq(s.inv_dt_sq), inv_share(1.0 / share),
         softest(inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS), longest_sq(std::max(1.0, s.longest_sq)),
-        per_allowed(allowed > 0.0 ? 1.0 / allowed : 0.0)
+        per_allowed(allowed > 0.0 ? 1.0 / allowed : 0.0), part_of_way(s.part_of_way)
     {
     }
   };
@@ -221,13 +221,16 @@ namespace {
                                                          s.longest_sq, s.per_allowed, s.softest);
         const bool hard = step_ratio >= 1.0;
         const double soft = hard ? of_solver.softness : s.longest_sq * weight;
-        const double softness = std::max(material, (k[l] * s.inv_share - 1.0) * soft);
+        // what acts for several substeps is a force, and not softer for what the force will move
+        const double own = s.part_of_way < 1.0 ? material - weight : material;
+        const double softness = std::max(own, (k[l] * s.inv_share - 1.0) * soft);
         const double step =
             multiplier_step(error, weight, step_ratio, softness, lambda[l], max_lambda[l]);
         lambda[l] += step;
-        a.put(l, step * h.ax, step * h.ay, step * h.az);
-        e2.put(l, step * x2, step * y2, step * z2);
-        b.put(l, step * h.bx, step * h.by, step * h.bz);
+        const double way = s.part_of_way * step;
+        a.put(l, way * h.ax, way * h.ay, way * h.az);
+        e2.put(l, way * x2, way * y2, way * z2);
+        b.put(l, way * h.bx, way * h.by, way * h.bz);
       }
     }
 

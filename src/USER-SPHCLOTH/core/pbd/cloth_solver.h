@@ -8,8 +8,10 @@
 #ifndef SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 #define SPHCLOTH_CORE_PBD_CLOTH_SOLVER_H
 
+#include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/pbd/constraints.h"
@@ -80,6 +82,15 @@ template <std::size_t N> class Constraints {
     }
   }
 
+  // the smallest compliance over W, of all that can move; 0 if a stiffness k says how soft one is
+  double min_compliance_per_weight() const
+  {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int m = 0; m < size(); m++)
+      if (weight[m] > 0.0) smallest = std::min(smallest, hard[m] ? compliance[m] / weight[m] : 0.0);
+    return smallest;
+  }
+
   // k of soft constraints such that they stay the springs that k is in a reference step.  ratio:
   // the square of that step over the square of the present one.
   void rescale_stiffness(double ratio)
@@ -127,6 +138,9 @@ struct ClothState {
   double inv_dt_sq = 0.0;    // times a compliance: an inverse mass
   // part of its error that one projection may take: 1, or less where a stiffer one is not stable
   double max_edge_share = 1.0, max_hinge_share = 1.0;
+  // part of the way that a projection asks for, where it acts for several substeps: the velocity
+  // makes the rest
+  double part_of_way = 1.0;
   // square of the longest substep, which the solver of unloaded constraints is as soft as, over
   // that of the present one
   double longest_sq = 1.0;

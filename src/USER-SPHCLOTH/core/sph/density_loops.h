@@ -52,8 +52,8 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_densities(const Particles &p, b
         const double equal = model.mass[other];
         const double each = is_fluid(other) ? whole.rho0_ratio : whole.rho0;
         const Neighborhood of{i, near, pair(t, other), masses(p, near, other)};
-        rho += whole.kernel.w *
-            each * (equal > 0.0 ? equal * shape_sum<false>(of, c) : shape_sum<true>(of, c));
+        rho += whole.kernel.w * each *
+            (equal > 0.0 ? equal * shape_sum<false>(of, c) : shape_sum<true>(of, c));
       }
       p.rho[i] = rho;
     }
@@ -69,7 +69,7 @@ template <class K, class P> void FluidLoops<K, P>::gather(const Particles &p, bo
 // The share of space of a particle of a wall or a sheet
 
 template <class K, class P>
-void FluidLoops<K, P>::volumes(const Particles &, int type, double *volume)
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::sum_volumes(int type, double *volume)
 {
   const PairTerms &whole = model.pair(type, type);
   const Terms among_each_other = in_loops(whole);

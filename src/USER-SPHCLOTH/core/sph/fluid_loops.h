@@ -37,7 +37,7 @@ template <class K, class P> class FluidLoops : public Fluid {
     records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0);
     f_unit = std::pow(records.unit, -(model.dimension + 1));
   }
-  void volumes(const Particles &, int type, double *volume) override;
+  void volumes(const Particles &, int type, double *volume) override { sum_volumes(type, volume); }
   void gather(const Particles &, bool sum) override;
   void density_gradients(const Particles &p, double *gradient) override
   {
@@ -104,6 +104,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   // density_loops.h; virtual functions cannot be multiversioned, so others do their work
   template <bool WEIGHTED> double shape_sum(const Neighborhood &, Columns &) const;
   void sum_densities(const Particles &, bool sum);
+  void sum_volumes(int type, double *volume);
   static double weight(const Particles &, int i, int j, const KernelScale &);
 
   // force_loops.h

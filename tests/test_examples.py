@@ -107,6 +107,7 @@ def test_a_shower_runs_off_a_shirt(tmp_path):
 def test_coarse_water_takes_fewer_updates_than_steps(tmp_path):
     summary, log = run("two_resolutions", tmp_path, ranks=2)
     assert summary["poured"] == 172
+    assert sum(summary["step_set_by"].values()) == pytest.approx(summary["steps"], abs=1)
     assert log["v_contacts"][-1] > 0
     every_step = (log["v_fluid"][1:] * np.diff(log["Step"])).sum()
     assert log["v_updates"][-1] < every_step

@@ -13,6 +13,7 @@ from rich.console import Console
 from sphcloth import metrics, plots
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
+from sphcloth.fix_values import set_by
 from sphcloth.log import ThermoTable
 from sphcloth.metrics.intersections import REMEDY, most_met
 from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
@@ -47,6 +48,7 @@ class Summary:
         compressed: share of the water, of all frames, that is denser than at rest by more than 1 %.
         momentum_defect: largest sum of the internal forces over the total weight.
         contact_share: part of the wall time that contact with the cloth took.
+        step_set_by: steps by the limit that set them; empty with constant steps.
         particle_updates: number of times a fluid particle was stepped.
         updates_per_second: the same per second of wall time in the loop.
         pictures: all PNG files, the contact sheet and the plot first.
@@ -68,6 +70,7 @@ class Summary:
     compressed: float | None
     momentum_defect: float | None
     contact_share: float | None
+    step_set_by: dict[str, int]
     particle_updates: float | None
     updates_per_second: float | None
     pictures: list[str]
@@ -109,6 +112,8 @@ class Summary:
             ("particle updates", text(self.particle_updates, "{:.3e}")),
             ("particle updates per second", text(self.updates_per_second, "{:.3e}")),
         ]
+        if self.step_set_by:
+            rows.insert(-2, ("the step is set by", set_by(self.step_set_by)))
         if self.layers:
             met = "edges of cloth through triangles"
             without = f"not looked for: {REMEDY}"
@@ -162,6 +167,7 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         compressed=water.compressed,
         momentum_defect=_largest(table, "v_momentum"),
         contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
+        step_set_by=evidence.commands.steps_by_limit,
         particle_updates=updates,
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
         pictures=[] if frames is None else draw(trajectory, scene_roles, table, folder, frames),

@@ -17,7 +17,7 @@ from sphcloth.advice.probe import Probe
 from sphcloth.advice.unused import unused
 from sphcloth.cli import app
 from sphcloth.errors import UserError
-from sphcloth.fix_values import FIX_OF, LIMITS, NUMBERS
+from sphcloth.fix_values import FIX_OF, LIMITS, NUMBERS, SET_BY, set_by
 
 # a column of water, 12 particles wide and 24 high, collapses in a corner
 COLUMN = {
@@ -120,6 +120,13 @@ def topics(advice: Advice) -> dict[str, str]:
     return {each.topic: each.line for each in [*advice.needs, *advice.unused] if each.line}
 
 
+def test_what_sets_the_step_is_said_in_words() -> None:
+    """By their share; a limit that set one step in a thousand is left out."""
+    told = set_by({"velocity": 2, "wetted": 400, "force": 500, "output": 98})
+    assert told == "accuracy (force) 50%, stability at the sheet 40%, output 10%"
+    assert {*LIMITS, "min", "growth", "fluctuation", "output"} == {*SET_BY}
+
+
 def test_what_a_fix_says_is_no_command(tmp_path: Path) -> None:
     log = tmp_path / "log.lammps"
     log.write_text(
@@ -138,7 +145,7 @@ def test_a_scene_that_is_set_up_well_gets_no_advice(tmp_path: Path) -> None:
     assert advice.run.whole and advice.run.steps == 300
     assert before.read_text() == text and list(tmp_path.iterdir()) == [before]
     facts = {each.topic: each.measured for each in advice.facts}
-    assert "set by acoustic" in facts["time step"]
+    assert "set by stability of the water" in facts["time step"]
     assert "c0 = 50" in facts["sound, type 1"]
 
 
@@ -323,7 +330,7 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
     for value, name in meant.items():
         assert run.last(value) == run.last(f"v_{name}") is not None
-    by_limit = {"velocity": 10, "force": 20, "wetted": 353, "max": 85}
+    by_limit = {"velocity": 12, "force": 19, "wetted": 359, "max": 85}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
     step = "fix step fluid sph/integrate global until 0.5"

@@ -12,6 +12,7 @@ from sphcloth.advice.commands import Fix, Fluid
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding
 from sphcloth.fix_values import LIMITS
+from sphcloth.fix_values import set_by as in_words
 
 # a limit that sets most of the steps is worth a word
 MOSTLY = 0.5
@@ -63,9 +64,8 @@ def facts(run: Evidence) -> list[Finding]:
 
 def _steps(run: Evidence) -> Iterator[Finding]:
     set_by = run.commands.steps_by_limit
-    total, mean = sum(set_by.values()), run.time / run.steps
-    shares = [f"{name} {count / total:.0%}" for name, count in set_by.items()]
-    how = f"set by {', '.join(shares)}" if shares else "constant"
+    mean = run.time / run.steps
+    how = f"set by {in_words(set_by)}" if set_by else "constant"
     yield Finding("time step", f"mean {mean:.3g}, {how}")
 
 

@@ -32,12 +32,13 @@ void ClothOptions::read(ArgReader &args)
       solving.tolerance = args.positive(keyword);
     else if (keyword == "reference")
       reference = args.positive(keyword);
-    else if (keyword == "pin")
-      pinbit = read_held(args, keyword);
-    else if (keyword == "velocity")
+    else if (keyword == "pin") {
+      pin_group = read_held(args, keyword);
+      pinbit = group->bitmask[pin_group];
+    } else if (keyword == "velocity")
       pin_motion.read(args);
     else if (keyword == "attach")
-      attachbit = read_held(args, keyword);
+      attachbit = group->bitmask[read_held(args, keyword)];
     else if (keyword == "damping")
       solving.damping = args.at_least("damping rate", 0.0);
     else if (keyword == "rest")
@@ -87,5 +88,5 @@ int ClothOptions::read_held(ArgReader &args, const std::string &keyword)
         fmt::format("it has no vertex of group {}: choose among the cloth's vertices or leave "
                     "the keyword away",
                     group->names[igroup]));
-  return group->bitmask[held];
+  return held;
 }

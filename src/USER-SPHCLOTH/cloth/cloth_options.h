@@ -16,7 +16,7 @@ class ClothOptions : protected Pointers {
  public:
   Substepping::Options solving;
   double reference = 0.0;    // step for which k holds, 0: not given
-  int pinbit = 0;            // 0: nothing is pinned
+  int pin_group = 0, pinbit = 0;    // bit 0: nothing is pinned
   int attachbit = 0;    // vertices that another fix integrates, with the pull of the cloth on them
   PinMotion pin_motion;
   std::string rest_property;    // with the rest positions; empty: they are where vertices are now

@@ -25,7 +25,7 @@ void HeldVertices::stop_pins()
 void HeldVertices::move_pins(const VertexHalo &halo)
 {
   if (!options.pin_motion) return;
-  options.pin_motion.evaluate(cloth->igroup);
+  options.pin_motion.evaluate(options.pin_group);
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     if (!is_pinned(i)) continue;

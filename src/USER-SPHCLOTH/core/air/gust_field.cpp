@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double PI = 3.14159265358979323846;
-constexpr int WAVE_NUMBERS = 32;
+constexpr int WAVE_NUMBERS = 16;
 // where there is little of the energy below and above, times the length
-constexpr double LOWEST = 0.02, HIGHEST = 500.0;
+constexpr double LOWEST = 0.03, HIGHEST = 300.0;
 
 // splitmix64
 

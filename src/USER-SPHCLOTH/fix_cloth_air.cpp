@@ -77,12 +77,33 @@ void FixClothAir::init()
     auto mesh = std::make_unique<AirMesh>(lmp, cloth, in_group);
     if (!mesh->empty()) cloths.push_back({cloth, std::move(mesh), {}});
   }
+  refuse_vertices_of_others();
   if (cloths.empty())
     error->all(
         FLERR,
         "{}: group {} holds no triangle of a cloth: give the group of a fix pbd/cloth that is "
         "defined before, whose cloth has triangles (create_cloth makes them)",
         label, group->names[igroup]);
+}
+
+// Each would take the push of the other for something that goes on in the next step.
+
+void FixClothAir::refuse_vertices_of_others()
+{
+  for (Fix *fix : modify->get_fix_list()) {
+    if (fix == this || !dynamic_cast<FixClothAir *>(fix)) continue;
+    int mine = 0, any = 0;
+    for (const Cloth &cloth : cloths)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (cloth.fix->has_vertex(i) && atom->mask[i] & groupbit && atom->mask[i] & fix->groupbit)
+          mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    if (any)
+      error->all(FLERR,
+                 "{}: group {} has vertices of fix {} cloth/air, too: give each vertex one fix "
+                 "cloth/air",
+                 label, group->names[igroup], fix->id);
+  }
 }
 
 void FixClothAir::post_neighbor()

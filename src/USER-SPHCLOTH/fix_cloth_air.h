@@ -82,6 +82,7 @@ class FixClothAir : public Fix {
   {
     return {motion[column][i], motion[column + 1][i], motion[column + 2][i]};
   }
+  void refuse_vertices_of_others();
   void load(Cloth &);
   void apply(const Cloth &);
   void end_step(const Cloth &);

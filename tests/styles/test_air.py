@@ -278,6 +278,10 @@ ERRORS = {
         START + "fix a water cloth/air density 1\nrun 0",
         r"fix a cloth/air: group water holds no triangle of a cloth: give the group of a fix pbd",
     ),
+    "twice": (
+        AIR + "\nfix b cloth cloth/air density 1\nrun 0",
+        r"group cloth has vertices of fix . cloth/air, too: give each vertex one fix cloth/air",
+    ),
     "behind": (
         SMALL_SHEET + "fix a cloth cloth/air density 1\nfix s cloth pbd/cloth\nrun 0",
         r"fix a cloth/air: fix s pbd/cloth is defined behind: define it before",

@@ -21,6 +21,8 @@ KERNEL = SOURCE / "core/sph/fluid_wendland_c2.cpp"
 # the files that have such loops, and what to compile for them
 UNITS = {
     "core/pbd/cloth_solver.cpp": (SOURCE / "core/pbd/cloth_solver.cpp",),
+    "core/air/air_loads.cpp": (SOURCE / "core/air/air_loads.cpp",),
+    "core/air/gust_field.cpp": (SOURCE / "core/air/gust_field.cpp",),
     "core/sph/pair_columns.h": (KERNEL,),
     "core/neighbor/dual_lists.h": (KERNEL,),
     "core/neighbor/cell_lists.h": (SOURCE / "core/sph/fluid.cpp",),

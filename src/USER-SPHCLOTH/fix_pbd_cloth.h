@@ -73,6 +73,8 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
     holders.add_impulse(i, impulse);
   }
 
+  bool is_attached(int i) const { return held.is_attached(i); }
+
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
   // Until then the first of these cloths solves all of them, substep by substep; it is an error if

@@ -15,6 +15,7 @@
 #include "compute_sph_step.h"
 #include "create_cloth.h"
 #include "dihedral_pbd.h"
+#include "fix_cloth_air.h"
 #include "fix_cloth_contact.h"
 #include "fix_pbd_cloth.h"
 #include "fix_sph_drain.h"
@@ -113,6 +114,8 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "pbd/cloth", "position-based dynamics of cloth");
   plugin.creator.v2 = &create_with_args<FixClothContact>;
   add("fix", "cloth/contact", "contact of particles with cloth");
+  plugin.creator.v2 = &create_with_args<FixClothAir>;
+  add("fix", "cloth/air", "wind and drag on cloth");
   plugin.creator.v2 = &create_with_args<FixSPHIntegrate>;
   add("fix", "sph/integrate", "time stepping of SPH particles");
   plugin.creator.v2 = &create_with_args<FixSPHEmit>;

@@ -13,6 +13,7 @@ import pytest
 from rich.console import Console
 
 from sphcloth.bench.activity import Steps, bench_activity, usual_steps
+from sphcloth.bench.air import bench_air
 from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.layers import bench_layers
 from sphcloth.bench.messages import Cluster, Counter, Sent, expect
@@ -121,6 +122,15 @@ def test_layers_from_end_to_end() -> None:
     assert result["contact_us"]["alone"]["value"] < result["contact_us"]["pile"]["value"]
     assert result["apart_over_alone"]["value"] > 0
     assert "contact that touches nothing" in said.getvalue()
+
+
+def test_air_from_end_to_end() -> None:
+    said = io.StringIO()
+    result = bench_air(1, 10, 5, Console(file=said, width=200))
+    assert result["vertices"] == 11 * 15
+    # so few steps say nothing of the cost
+    assert set(result["more"]) == {"wind", "wind and gusts"}
+    assert "more than without air" in said.getvalue()
 
 
 def test_a_look_from_end_to_end() -> None:

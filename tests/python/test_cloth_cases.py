@@ -27,6 +27,8 @@ SMALL = {
     "rest-angle": {"hinges": "5", "time": "0.3", "model": "compliance"},
     "pinned-weight": {"across": "12", "time": "2"},
     "stiffness": {"cells": "6", "dt": "2e-3"},
+    "wind-pendulum": {"rows": "2", "columns": "1", "fastest": "5", "rest": "3", "air": "1.0"},
+    "terminal-velocity": {"cells": "2", "light": "0.02", "areal": "0.1", "gravity": "5"},
 }
 # what such a small case must do worse
 LOOSE = {"folded-chain": {"fall": 0.1}, "cantilever": {"drop": 0.03}}

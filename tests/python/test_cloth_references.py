@@ -16,6 +16,8 @@ from sphcloth.references.chain import LinkedPendulum
 from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.references.pendulum import pendulum_period
 from sphcloth.references.rest_angle import hinge_angles
+from sphcloth.references.terminal_velocity import FallingSheet
+from sphcloth.references.wind_pendulum import WindPendulum
 from sphcloth.references.xpbd_oscillator import Oscillator
 from sphcloth.validation import cloth
 
@@ -246,3 +248,38 @@ def test_frames_near_a_number_leave_the_step_as_it_is(time: float, largest: floa
     assert frames <= 400
     step = cloth.stepping(time, largest, frames)["dt"]
     assert min(time, largest) * 0.99 < step <= largest * (1 + 1e-9)
+
+
+# wind-pendulum and terminal-velocity
+
+
+def test_drag_balances_weight_at_the_angle_of_the_wind_pendulum() -> None:
+    sheet = WindPendulum(4.0, 0.2, 1.2, 1.17, 0.05, G)
+    across = 0.5 * 1.2 * 1.17 * (4.0 * math.cos(sheet.angle)) ** 2
+    assert across == pytest.approx(0.2 * G * math.sin(sheet.angle), rel=1e-12)
+    # with the pull along the sheet all forces balance
+    pull = sheet.pressure - [0.0, 0.2 * G]
+    assert pull @ [math.cos(sheet.angle), math.sin(sheet.angle)] == pytest.approx(0, abs=1e-12)
+    gale = WindPendulum(1e3, 0.2, 1.2, 1.17, 0.0, G)
+    assert math.degrees(gale.angle) == pytest.approx(90, abs=0.2)
+
+
+def test_a_plate_swings_to_its_angle_at_rest() -> None:
+    sheet = WindPendulum(4.0, 0.2, 1.2, 1.17, 0.0, G)
+    angles = sheet.swing(0.5, np.linspace(0, 5, 6))
+    assert angles[-1] == pytest.approx(sheet.angle, rel=1e-6)
+    # at first m/2 L theta'' = rho/2 C_n A/2 U^2 (1/3 + 2/3)
+    early = sheet.swing(0.5, np.array([0.0, 1e-3]))[-1]
+    turn = 0.5 * 1.2 * 1.17 * 16.0 / 0.2 / 0.5
+    assert early == pytest.approx(0.5 * turn * 1e-6, rel=0.05)
+
+
+def test_a_sheet_falls_freely_at_first_and_evenly_at_last() -> None:
+    sheet = FallingSheet(0.2, 1.2, 1.17, G)
+    assert sheet.terminal**2 == pytest.approx(2 * 0.2 * G / (1.2 * 1.17))
+    times = np.array([1e-3, 10.0, 11.0])
+    assert sheet.fall(times)[0] == pytest.approx(0.5 * G * 1e-6, rel=1e-4)
+    assert np.diff(sheet.fall(times))[1] == pytest.approx(sheet.terminal, rel=1e-9)
+    h = 1e-5
+    slope = (sheet.fall(times[:1] + h) - sheet.fall(times[:1] - h)) / (2 * h)
+    assert slope == pytest.approx(sheet.velocity(times[:1]), rel=1e-6)

@@ -61,6 +61,13 @@ COMPLIANT = replace(
     fixes=DROP.fixes.replace("iterations 5", "iterations 5 solver gs direction start"),
     steps=20,
 )
+COMPLIANT = replace(
+    COMPLIANT,
+    fixes=COMPLIANT.fixes
+    + "variable breeze equal 20[m/s]-300[m/s^2]*time\n"
+    + "fix air cloth cloth/air density 1.2[kg/m^3] wind v_breeze 0 -10[m/s] &\n"
+    + "  gust 5[m/s] 0.5[m] 11 normal 1.3 tangential 0.02\n",
+)
 # the sheet itself is the boundary of the water
 SHEET_AS_WALL = replace(
     DROP_SCENE,
@@ -70,7 +77,14 @@ SHEET_AS_WALL = replace(
     steps=50,
 )
 # impulses of ghosts are added in the order in which they come, another one behind a restart
-BLOCK = replace(DROP, fixes=DROP.fixes + "run_style sph/adaptive block\n", steps=20, exact_on=1)
+BLOCK = replace(
+    DROP,
+    fixes=DROP.fixes
+    + "fix air cloth cloth/air density 1.2[kg/m^3] wind 5[m/s] 0 3[m/s]\n"
+    + "run_style sph/adaptive block\n",
+    steps=20,
+    exact_on=1,
+)
 
 # a jittered block of water between six planes, of which one comes down and one slides
 TANK = Scene(
@@ -141,7 +155,10 @@ ROUND = Scene(
     + "  group cloth pin rim pins\n",
     forces=stiffness("0.9") + "timestep 1e-3[s]\n",
     settings=no_other_bonds() + "pair_style zero 0.3[m]\npair_coeff * *\n" + neighbor("0.03[m]"),
-    fixes=gravity(g="9.81[N/kg]") + "fix sheet cloth pbd/cloth pin pins damping 1[1/s]\n",
+    fixes=gravity(g="9.81[N/kg]")
+    + "fix sheet cloth pbd/cloth pin pins damping 1[1/s]\n"
+    + "variable gale atom 5[m/s]-20[1/s]*y\n"
+    + "fix air cloth cloth/air density 1.2[kg/m^3] wind v_gale 0 1[m/s]\n",
     steps=10,
 )
 
@@ -192,6 +209,7 @@ class Entry:
 
 
 SHEET = {"f_sheet[1]": "N", "f_sheet[2]": "N", "f_sheet[3]": "N", "f_sheet[4]": ""}
+AIR = {"f_air[1]": "N", "f_air[3]": "N", "f_air[4]": "J/s", "f_air[5]": "J", "f_air[6]": "m^2"}
 CLOTH = "fix s cloth pbd/cloth\n"
 
 ENTRIES = (
@@ -238,6 +256,15 @@ ENTRIES = (
         commands=(CLOTH + "fix x water cloth/contact 0.01",),
     ),
     Entry("fix", "cloth/contact", "sheet as wall", counts={"f_contact[1]": ""}),
+    Entry(
+        "fix",
+        "cloth/air",
+        "compliant drop",
+        output=AIR,
+        commands=("fix x cloth cloth/air density 1.2",),
+    ),
+    Entry("fix", "cloth/air", "block steps", output=AIR),
+    Entry("fix", "cloth/air", "round sheet", output=AIR),
     Entry(
         "fix",
         "sph/integrate",

@@ -25,6 +25,7 @@ sphcloth bench peers --rounds 3 --json peers.json
 def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
     """Return name -> function, usual number of rounds, particles across and steps."""
     from sphcloth.bench.activity import bench_activity
+    from sphcloth.bench.air import bench_air
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
     from sphcloth.bench.layers import bench_layers
@@ -44,6 +45,7 @@ def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
         "peers": (bench_peers, 1, 20, 18),
         "size": (bench_size, 5, 100, 30),
         "activity": (bench_activity, 5, 32, 400),
+        "air": (bench_air, 5, 50, 200),
     }
 
 
@@ -53,7 +55,7 @@ def bench(
         typer.Argument(
             metavar="NAME",
             help="What to measure: pair, cloth, coupling, layers, watch, messages, peers, size, "
-            "activity.",
+            "activity, air.",
         ),
     ],
     rounds: Annotated[
@@ -68,7 +70,7 @@ def bench(
             min=8,
             max=400,
             help="Particles along an edge of the water (of the largest for size), vertices along a "
-            "side (cloth), edges (layers).",
+            "side (cloth), edges (layers, air).",
             show_default="by what is measured, 20 to 160",
         ),
     ] = None,

@@ -32,6 +32,8 @@ from sphcloth.references.poiseuille import PoiseuilleStart
 from sphcloth.references.rest_angle import hinge_angles
 from sphcloth.references.standing_wave import StandingWave
 from sphcloth.references.taylor_green import TaylorGreen
+from sphcloth.references.terminal_velocity import FallingSheet
+from sphcloth.references.wind_pendulum import WindPendulum
 from sphcloth.references.xpbd_oscillator import Oscillator
 
 __all__ = [
@@ -39,6 +41,7 @@ __all__ = [
     "Column",
     "CouetteStart",
     "EllipticDrop",
+    "FallingSheet",
     "FilledSheet",
     "HangingChain",
     "HangingPolygon",
@@ -55,6 +58,7 @@ __all__ = [
     "TaitColumn",
     "TaylorGreen",
     "TurnedJet",
+    "WindPendulum",
     "hinge_angles",
     "pendulum_period",
 ]

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// fix cloth/air: wind and drag on the triangles of cloth.
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(cloth/air,FixClothAir);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_CLOTH_AIR_H
+#define LMP_FIX_CLOTH_AIR_H
+
+#include "fix.h"
+
+#include "air/air_mesh.h"
+#include "air/air_options.h"
+#include "air/water_beside.h"
+#include "lammps_util/particle_columns.h"
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixPBDCloth;
+
+class FixClothAir : public Fix {
+ public:
+  FixClothAir(class LAMMPS *, int, char **);
+  ~FixClothAir() override;
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override { post_neighbor(); }
+  void post_neighbor() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int) override;
+  void initial_integrate(int) override;
+  void post_integrate() override;
+  double compute_vector(int) override;
+
+  void grow_arrays(int nmax) override { motion.grow(nmax); }
+  void copy_arrays(int i, int j, int) override { motion.copy(i, j); }
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override { return 1 + N_COLUMNS; }
+  int maxsize_restart() override { return 1 + N_COLUMNS; }
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+ private:
+  using Vec3 = Eigen::Vector3d;
+  struct Record;    // in restart files
+  struct Cloth {
+    FixPBDCloth *fix;
+    std::unique_ptr<AirMesh> mesh;
+    std::vector<Vec3> velocity;    // of owned vertices, before the step
+  };
+
+  std::string label;
+  AirOptions options;
+  WaterBeside water;
+  std::vector<Cloth> cloths;
+  // of the last step, per atom: mean velocity of a vertex, and what it gained of that by all but
+  // the air; not a number before the first
+  enum Column { VELOCITY, GAIN = 3, N_COLUMNS = 6 };
+  ParticleColumns motion;
+  double last_dt = 0.0;
+
+  // of the last step, this rank's part: impulse, work, area; work since the fix was made, of all
+  // that this rank has seen
+  Vec3 impulse = Vec3::Zero();
+  double step_work = 0.0, area = 0.0, work = 0.0;
+
+  Vec3 kept(int column, int i) const
+  {
+    return {motion[column][i], motion[column + 1][i], motion[column + 2][i]};
+  }
+  void refuse_vertices_of_others();
+  void load(Cloth &);
+  void apply(const Cloth &);
+  void end_step(const Cloth &);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

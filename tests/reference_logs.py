@@ -33,7 +33,17 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 TINY = {
     name: ("tiny", {})
     for name in (
-        *("chair", "cloth_on_water", "curtain", "hammock", "pour", "shower", "stack", "towel"),
+        *(
+            "balloon",
+            "chair",
+            "cloth_on_water",
+            "curtain",
+            "hammock",
+            "pour",
+            "shower",
+            "stack",
+            "towel",
+        ),
         "two_resolutions",
     )
 }

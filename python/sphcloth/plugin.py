@@ -20,6 +20,7 @@ STYLES = (
     ("dihedral", "pbd"),
     ("fix", "pbd/cloth"),
     ("fix", "cloth/contact"),
+    ("fix", "cloth/gas"),
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),

@@ -179,6 +179,11 @@ void FixClothGas::begin_chambers()
   }
 }
 
+void FixClothGas::post_neighbor()
+{
+  chambers.collect([this](int i) { return inverse_mass(i); });
+}
+
 double FixClothGas::inverse_mass(int i) const
 {
   for (const ContactMesh *cloth : cloths)
@@ -200,7 +205,7 @@ void FixClothGas::evaluate(Phase phase)
 
   std::vector<GasChambers::Frame> frames;
   for (const Chamber &chamber : states) frames.push_back(chamber.frame);
-  const auto volumes = chambers.measure(frames, [this](int i) { return inverse_mass(i); });
+  const auto volumes = chambers.measure(frames);
   std::vector<double> push;
   for (std::size_t c = 0; c < states.size(); c++) {
     follow(states[c], volumes[c], phase);

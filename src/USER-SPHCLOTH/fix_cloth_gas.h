@@ -29,7 +29,7 @@ class FixClothGas : public Fix {
   void init() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void pre_exchange() override { chambers.require_ghosts_in_run(); }
-  void post_neighbor() override { chambers.collect(); }
+  void post_neighbor() override;
   void setup(int) override { evaluate(Phase::AGAIN); }
   void post_force(int) override { evaluate(Phase::STEP); }
   void min_setup(int) override { evaluate(Phase::MINIMIZE); }

@@ -237,11 +237,11 @@ int GasChambers::owned(int vertex) const
 
 int GasChambers::slot_of(int chamber, int vertex) const
 {
-  const auto it = std::lower_bound(slots.begin(), slots.end(), Slot{chamber, vertex, -1});
+  const auto it = std::lower_bound(slots.begin(), slots.end(), Slot{chamber, vertex, -1, 0.0});
   return static_cast<int>(it - slots.begin());
 }
 
-void GasChambers::collect()
+void GasChambers::collect(const std::function<double(int)> &inverse_mass)
 {
   triangles.clear();
   slots.clear();
@@ -256,11 +256,13 @@ void GasChambers::collect()
     here.chamber = surface.part[m];
     here.shift = &shifts[t[0]];
     here.counted = counted;
+    const Vec3 offset = position(i, *here.shift) - Vec3(atom->x[i]);
+    std::copy(offset.data(), offset.data() + 3, here.offset);
     for (int k = 0; k < 3; k++) {
       here.atom[k] = k ? mesh.image_here(t[k], i) : i;
       const int mine = owned(t[k]);
       here.slot[k] = mine < 0 ? -1 : t[k];
-      if (mine >= 0) slots.push_back({here.chamber, t[k], mine});
+      if (mine >= 0) slots.push_back({here.chamber, t[k], mine, inverse_mass(mine)});
     }
     triangles.push_back(here);
   }
@@ -293,8 +295,7 @@ Eigen::Vector3d GasChambers::position(int i, const Periods &shift) const
   return x + lattice(shift);
 }
 
-std::vector<GasChambers::Volume>
-GasChambers::measure(const std::vector<Frame> &at, const std::function<double(int)> &inverse_mass)
+std::vector<GasChambers::Volume> GasChambers::measure(const std::vector<Frame> &at)
 {
   constexpr int N = sizeof(Volume) / sizeof(double);
   std::vector<double> mine(static_cast<std::size_t>(N * count()), 0.0), all(mine.size());
@@ -313,7 +314,7 @@ GasChambers::measure(const std::vector<Frame> &at, const std::function<double(in
     const double *v = atom->v[i];
     double *sums = &mine[N * slots[s].chamber];
     sums[1] += gradient[s].dot(Vec3(v[0], v[1], v[2]));
-    sums[2] += inverse_mass(i) * gradient[s].squaredNorm();
+    sums[2] += slots[s].inverse_mass * gradient[s].squaredNorm();
   }
   MPI_Allreduce(mine.data(), all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, world);
   std::vector<Volume> volumes;
@@ -332,7 +333,8 @@ double GasChambers::add_triangle(const Triangle &t, const Frame &at, const Vec3 
   for (const int slot : t.slot)
     if (slot >= 0) gradient[slot] += area / 3.0;
   if (!t.counted) return 0.0;
-  const Vec3 middle = position(t.atom[0], *t.shift) - Vec3(at.origin) + (a + b) / 3.0;
+  const Vec3 here = domain->box_change ? position(t.atom[0], *t.shift) : first + Vec3(t.offset);
+  const Vec3 middle = here - Vec3(at.origin) + (a + b) / 3.0;
   if (!wraps[t.chamber].any()) return middle.dot(area) / 3.0;
   return (middle - middle.dot(along) * along).dot(area) / 2.0;
 }

@@ -47,8 +47,8 @@ class GasChambers : protected Pointers {
   void gather(int groupbit, bool warns);
   void require_ghosts();    // from init()
   void require_ghosts_in_run();    // from pre_exchange()
-  // this rank's part, after each list build
-  void collect();
+  // this rank's part, after each list build; masses are those of then
+  void collect(const std::function<double(int)> &inverse_mass);
 
   int count() const { return static_cast<int>(frames.size()); }
   tagint first_id(int chamber) const { return mesh.ids[surface.first[chamber]]; }
@@ -60,8 +60,7 @@ class GasChambers : protected Pointers {
     double mobility;    // sum of |dV/dx|^2 / m over the vertices that move
   };
   // collective
-  std::vector<Volume> measure(const std::vector<Frame> &,
-                              const std::function<double(int)> &inverse_mass);
+  std::vector<Volume> measure(const std::vector<Frame> &);
   // forces on the vertices, after measure(), each the gradient of a volume times this
   void push(const std::vector<double> &by_chamber) const;
   double bytes() const;
@@ -72,11 +71,13 @@ class GasChambers : protected Pointers {
     int slot[3];    // at first a vertex; -1: owned by another rank
     int chamber;
     const std::array<int, 3> *shift;    // of the first one
+    double offset[3];    // from where it is to where the surface is, unless the box changes
     bool counted;    // here, and by no other rank
   };
   struct Slot {    // of a vertex that this rank owns, in a chamber; sums go by them, whatever the
     // order of the atoms
     int chamber, vertex, atom;
+    double inverse_mass;
     bool operator<(const Slot &b) const
     {
       return chamber != b.chamber ? chamber < b.chamber : vertex < b.vertex;

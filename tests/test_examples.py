@@ -162,6 +162,7 @@ def test_a_stack_of_sheets_catches_a_jet(tmp_path):
 @pytest.mark.parametrize(
     ("example", "mesh", "scripts"),
     [
+        ("balloon", "balloon", ["balloon/make_balloon.py"]),
         ("shower", "shirt", ["shower/make_shirt.py"]),
         ("chair", "chair", ["shower/make_shirt.py", "chair/make_chair.py"]),
     ],

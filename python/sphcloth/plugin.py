@@ -21,6 +21,7 @@ STYLES = (
     ("fix", "pbd/cloth"),
     ("fix", "cloth/contact"),
     ("fix", "cloth/air"),
+    ("fix", "cloth/gas"),
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),

@@ -17,6 +17,7 @@
 #include "dihedral_pbd.h"
 #include "fix_cloth_air.h"
 #include "fix_cloth_contact.h"
+#include "fix_cloth_gas.h"
 #include "fix_pbd_cloth.h"
 #include "fix_sph_drain.h"
 #include "fix_sph_emit.h"
@@ -118,6 +119,8 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "cloth/air", "wind and drag on cloth");
   plugin.creator.v2 = &create_with_args<FixSPHIntegrate>;
   add("fix", "sph/integrate", "time stepping of SPH particles");
+  plugin.creator.v2 = &create_with_args<FixClothGas>;
+  add("fix", "cloth/gas", "gas in chambers of cloth");
   plugin.creator.v2 = &create_with_args<FixSPHEmit>;
   add("fix", "sph/emit", "source of SPH particles");
   plugin.creator.v2 = &create_with_args<FixSPHDrain>;

@@ -69,8 +69,9 @@ def test_an_unknown_case_and_no_case(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     assert call(monkeypatch, "hydrostatics") == 2
-    assert "choose from added-mass-piston, blob-on-free-sheet, cantilever" in " ".join(
-        capsys.readouterr().err.split()
+    assert (
+        "choose from added-mass-piston, balloon, blob-on-free-sheet, bulge, cantilever"
+        in " ".join(capsys.readouterr().err.split())
     )
     assert call(monkeypatch) == 2
 

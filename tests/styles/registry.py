@@ -7,6 +7,8 @@ of restart, ranks, newton, units and wrong words.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+from gas_scenes import commands, icosphere
 from scenes import (
     FLUID,
     MAKE_FLOW,
@@ -162,6 +164,43 @@ ROUND = Scene(
     steps=10,
 )
 
+# a gas holds the sheet from below, more and more
+LIFT = replace(
+    BLOCK,
+    fixes=BLOCK.fixes.replace(
+        "run_style",
+        "variable lift equal 300[Pa]*(1+step/100)\n"
+        "fix lift cloth cloth/gas pressure v_lift toward 0 0 1\nrun_style",
+    ),
+)
+TILTED = np.array([[1, 0.2, -0.1], [0, 1, 0.1], [0, 0, 1]])
+
+
+def inside(x: np.ndarray) -> np.ndarray:
+    """Return the images that are in the tilted box."""
+    return x - np.floor(np.linalg.solve(TILTED, x.T)).T @ TILTED.T
+
+
+# two of them across the faces of a tilted box, which are pumped up until a valve opens
+BALLOONS = Scene(
+    make=header()
+    + "region box prism 0 1 0 1 0 1 0.2 -0.1 0.1 units box\ncreate_box 1 box bond/types 1 &\n"
+    + "  angle/types 1 extra/bond/per/atom 8 extra/angle/per/atom 8\nmass * 0.01\n"
+    + "pair_style zero 0.9\npair_coeff * *\nneighbor 0.1 bin\n"
+    + commands(inside(icosphere(0, 0.3)[0] + 0.05), icosphere()[1])
+    + commands(inside(icosphere(0, 0.25)[0] + 0.6), icosphere()[1], 13)
+    + "velocity all create 1 123 loop all\nvelocity all scale 1\n"
+    + "velocity all ramp vx -1 1 z 0 1 units box\nwrite_data balloons.data nocoeff\n",
+    atoms=header() + "read_data balloons.data\n",
+    forces="bond_style pbd\nbond_coeff 1 compliance 1e-3[m/N]\nangle_style zero\nangle_coeff *\n"
+    + "timestep 1e-3[s]\n",
+    settings="pair_style zero 0.4[m]\npair_coeff * *\n" + neighbor("0.03[m]", "0.5[m]"),
+    fixes="fix sheet all pbd/cloth\n"
+    + "fix gas all cloth/gas polytropic 1.4 1e4[Pa] 9900[Pa] inflow 0.02[m^3/s] valve 500[Pa]\n",
+    steps=30,
+    exact_on=0,  # LAMMPS turns positions into shares of a tilted box and back
+)
+
 SCENES = {
     "drop": DROP,
     "rain": RAIN,
@@ -172,6 +211,8 @@ SCENES = {
     "pour": POUR,
     "flow": FLOW,
     "round sheet": ROUND,
+    "lifted drop": LIFT,
+    "balloons": BALLOONS,
 }
 
 # ---------------------------------------------------------------------- styles
@@ -254,6 +295,25 @@ ENTRIES = (
         output={"f_contact[4]": "m"},
         counts={"f_contact[1]": ""},
         commands=(CLOTH + "fix x water cloth/contact 0.01",),
+    ),
+    Entry("fix", "cloth/gas", "lifted drop", output={"f_lift": "J", "f_lift[1]": "Pa"}),
+    Entry(
+        "fix",
+        "cloth/gas",
+        "balloons",
+        output={
+            "f_gas": "J",
+            "f_gas[1]": "Pa",
+            "f_gas[2]": "m^3",
+            "f_gas[3]": "m^3",
+            "f_gas[4]": "J",
+            "f_gas[2][1]": "Pa",
+        },
+        counts={"f_gas[5]": ""},
+        commands=(
+            "fix x cloth cloth/gas pressure 1",
+            "fix x cloth cloth/gas polytropic 1.4 1 0",
+        ),
     ),
     Entry("fix", "cloth/contact", "sheet as wall", counts={"f_contact[1]": ""}),
     Entry(

@@ -69,6 +69,9 @@ STYLES = {
     "contact": ("fix f water cloth/contact", "", [["0.01", "0.1"]], {
         "friction": [NUMBER], "restitution": [SHARE], "sides": [YES], "wall": [YES],
         "obstacle": [GROUP]}),
+    "gas": ("fix f cloth cloth/gas", "", [["pressure"], NUMBER], {
+        "toward": [NUMBER] * 3, "inflow": [NUMBER], "valve": [NUMBER], "burst": [NUMBER],
+        "close": [YES]}),
     "step": ("fix f water sph/integrate", "", [["constant", "global"]], {
         **{name: [NUMBER] for name in LIMITS},
         "ratio": [["2", "4"]], "gain": [["2.5"]], "waking": [YES], "growth": [["1.5"]],

@@ -13,7 +13,9 @@ the head of each module. Parameters for which there is no such scene raise
 from __future__ import annotations
 
 from sphcloth.references.added_mass_piston import Piston
+from sphcloth.references.balloon import BreathingShell
 from sphcloth.references.blob_on_free_sheet import Collision
+from sphcloth.references.bulge import Bulge
 from sphcloth.references.cantilever import HeavyElastica
 from sphcloth.references.catenary import HangingPolygon
 from sphcloth.references.chain import LinkedPendulum
@@ -21,6 +23,7 @@ from sphcloth.references.couette import CouetteStart
 from sphcloth.references.dam_break import Column
 from sphcloth.references.filled_sheet import FilledSheet
 from sphcloth.references.hanging_chain import HangingChain
+from sphcloth.references.hencky import PressurizedMembrane, PressurizedNet
 from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.references.jet import Jet
 from sphcloth.references.jet_on_sheet import TurnedJet
@@ -37,6 +40,8 @@ from sphcloth.references.wind_pendulum import WindPendulum
 from sphcloth.references.xpbd_oscillator import Oscillator
 
 __all__ = [
+    "BreathingShell",
+    "Bulge",
     "Collision",
     "Column",
     "CouetteStart",
@@ -54,6 +59,8 @@ __all__ = [
     "Oscillator",
     "Piston",
     "PoiseuilleStart",
+    "PressurizedMembrane",
+    "PressurizedNet",
     "StandingWave",
     "TaitColumn",
     "TaylorGreen",

@@ -117,7 +117,7 @@ void ClothTopology::measure()
   widest = std::sqrt(all[1]);
 }
 
-void ClothTopology::gather(int groupbit)
+void ClothTopology::gather(int groupbit, Leaving leaving)
 {
   const int nlocal = atom->nlocal;
   std::vector<tagint> mine;
@@ -126,16 +126,16 @@ void ClothTopology::gather(int groupbit)
   ids = allgather(mine, comm->nprocs, world);
   std::sort(ids.begin(), ids.end());
 
-  gather_elements(edges, "bond", [&](int i, auto add) {
+  gather_elements(edges, "bond", leaving, [&](int i, auto add) {
     for (int m = 0; m < atom->num_bond[i]; m++)
       add({atom->tag[i], atom->bond_atom[i][m]}, atom->bond_type[i][m]);
   });
-  gather_elements(triangles, "angle", [&](int i, auto add) {
+  gather_elements(triangles, "angle", leaving, [&](int i, auto add) {
     for (int m = 0; m < atom->num_angle[i]; m++)
       add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
           std::min(atom->angle_type[i][m], 1));    // its type says nothing: two would be one twice
   });
-  gather_elements(hinges, "dihedral", [&](int i, auto add) {
+  gather_elements(hinges, "dihedral", leaving, [&](int i, auto add) {
     for (int m = 0; m < atom->num_dihedral[i]; m++)
       add({atom->dihedral_atom1[i][m], atom->dihedral_atom2[i][m], atom->dihedral_atom3[i][m],
            atom->dihedral_atom4[i][m]},
@@ -144,16 +144,20 @@ void ClothTopology::gather(int groupbit)
 }
 
 template <std::size_t N, class Collect>
-void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what, Collect collect)
+void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what, Leaving leaving,
+                                    Collect collect)
 {
-  // elements of owned atoms with at least one vertex in the cloth, as N IDs and a type
+  // elements of owned atoms with at least one vertex in the cloth, or all, as N IDs and a type
   std::vector<tagint> mine;
   for (int i = 0; i < atom->nlocal; i++)
     collect(i, [&](const std::array<tagint, N> &members, int type) {
       if (type <= 0) return;    // switched off by LAMMPS
-      bool any = false;
-      for (tagint id : members) any = any || index_of(id) >= 0;
-      if (!any) return;
+      bool any = false, all = true;
+      for (tagint id : members) {
+        any = any || index_of(id) >= 0;
+        all = all && index_of(id) >= 0;
+      }
+      if (!any || (!all && leaving == Leaving::LEFT_OUT)) return;
       mine.insert(mine.end(), members.begin(), members.end());
       mine.push_back(type);
     });

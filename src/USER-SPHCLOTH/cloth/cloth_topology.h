@@ -32,9 +32,10 @@ class ClothTopology : protected Pointers {
   ClothTopology(LAMMPS *lmp_, std::string owner_) : Pointers(lmp_), owner(std::move(owner_)) {}
 
   // collective: collects what the atoms of the group carry; an element that leaves the group is
-  // an error
+  // an error, or left out
 
-  void gather(int groupbit);
+  enum class Leaving { REFUSED, LEFT_OUT };
+  void gather(int groupbit, Leaving = Leaving::REFUSED);
 
   std::vector<tagint> ids;    // of the vertices, ascending
   ClothElements<2> edges;
@@ -64,7 +65,7 @@ class ClothTopology : protected Pointers {
   double longest = 0.0, widest = 0.0;
 
   template <std::size_t N, class Collect>
-  void gather_elements(ClothElements<N> &, const char *, Collect);
+  void gather_elements(ClothElements<N> &, const char *, Leaving, Collect);
 };
 
 }    // namespace LAMMPS_NS

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
 #include "core/pbd/substep_groups.h"
 
 #include <boost/test/unit_test.hpp>

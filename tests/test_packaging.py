@@ -204,3 +204,14 @@ def test_the_check_of_sources_runs_the_blocks_that_say_so():
 
 def test_the_script_that_a_wheel_runs_first_is_short():
     assert check_wheel.short_script().endswith("run 20\n")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "busy", "load", "slow"),
+    [
+        *((59, 59, 1.0, False), (61, 20, 1.0, True), (61, 20, 2.0, True)),
+        *((61, 20, 2.1, False), (200, 59, 9.0, False), (200, 61, 9.0, True)),
+    ],
+)
+def test_a_wheel_is_not_slow_for_what_else_a_machine_does(seconds, busy, load, slow):
+    assert check_wheel.too_long(seconds, busy, load, cores=2) == slow

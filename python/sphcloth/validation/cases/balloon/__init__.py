@@ -129,7 +129,7 @@ def _plot(run: Run, shell: BreathingShell, path: Path) -> None:
 
 CASE = Case(
     "balloon",
-    "a light shell that breathes on its gas: p V^n and the motion of a spherical shell",
+    "a shell that breathes on its gas: p V^n, spherical motion",
     PARAMETERS,
     QUANTITIES,
     measure,

@@ -146,7 +146,7 @@ def _plot(runs: Mapping[str, Refinement], arcs: Mapping[str, Bulge], path: Path)
 
 CASE = Case(
     "bulge",
-    "a strip between clamped edges, bulged by a pressure: a circular arc",
+    "a clamped strip bulged by a pressure: a circular arc",
     PARAMETERS,
     QUANTITIES,
     measure,

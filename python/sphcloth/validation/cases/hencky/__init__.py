@@ -147,7 +147,7 @@ def _plot(runs: Mapping[str, tuple[Run, PressurizedMembrane | PressurizedNet]], 
 
 CASE = Case(
     "hencky",
-    "a circular membrane bulged by a pressure: Hencky's solution, and a net of springs",
+    "a circular membrane under pressure: Hencky, net of springs",
     PARAMETERS,
     QUANTITIES,
     measure,

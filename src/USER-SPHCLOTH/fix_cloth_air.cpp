@@ -67,13 +67,7 @@ void FixClothAir::init()
     if (atom->mask[i] & groupbit) mine.push_back(atom->tag[i]);
   std::vector<tagint> in_group = allgather(mine, comm->nprocs, world);
   std::sort(in_group.begin(), in_group.end());
-  bool behind = false;
-  for (Fix *fix : modify->get_fix_list()) {
-    behind = behind || fix == this;
-    auto *cloth = dynamic_cast<FixPBDCloth *>(fix);
-    if (!cloth) continue;
-    if (behind)
-      error->all(FLERR, "{}: fix {} pbd/cloth is defined behind: define it before", label, fix->id);
+  for (FixPBDCloth *cloth : cloths_before(lmp, this, label)) {
     auto mesh = std::make_unique<AirMesh>(lmp, cloth, in_group);
     if (!mesh->empty()) cloths.push_back({cloth, std::move(mesh), {}});
   }

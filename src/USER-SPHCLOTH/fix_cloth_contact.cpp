@@ -77,17 +77,8 @@ void FixClothContact::init()
   obstacle_surfaces.clear();
   sheets.clear();
   vertex_bits = 0;
-  std::vector<FixPBDCloth *> cloths;
-  bool behind = false;
-  for (Fix *fix : modify->get_fix_list()) {
-    behind = behind || fix == this;
-    auto *cloth = dynamic_cast<FixPBDCloth *>(fix);
-    if (!cloth) continue;
-    if (behind)
-      error->all(FLERR, "{}: fix {} pbd/cloth is defined behind: define it before", label, fix->id);
-    cloths.push_back(cloth);
-    vertex_bits |= cloth->groupbit;
-  }
+  const std::vector<FixPBDCloth *> cloths = cloths_before(lmp, this, label);
+  for (const FixPBDCloth *cloth : cloths) vertex_bits |= cloth->groupbit;
   check_group(cloths);
   for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth));
   if (surfaces.empty() && options.obstacle_groups.empty())

@@ -90,6 +90,23 @@ FixPBDCloth *FixPBDCloth::find(LAMMPS *lmp, const std::string &asking, const std
   return fix;
 }
 
+std::vector<FixPBDCloth *> LAMMPS_NS::cloths_before(LAMMPS *lmp, const Fix *fix,
+                                                    const std::string &asking)
+{
+  std::vector<FixPBDCloth *> cloths;
+  bool behind = false;
+  for (Fix *each : lmp->modify->get_fix_list()) {
+    behind = behind || each == fix;
+    auto *cloth = dynamic_cast<FixPBDCloth *>(each);
+    if (!cloth) continue;
+    if (behind)
+      lmp->error->all(FLERR, "{}: fix {} pbd/cloth is defined behind: define it before", asking,
+                      cloth->id);
+    cloths.push_back(cloth);
+  }
+  return cloths;
+}
+
 int FixPBDCloth::setmask()
 {
   return POST_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | (options.attachbit ? PRE_REVERSE : 0);

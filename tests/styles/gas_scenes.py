@@ -2,49 +2,23 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
-GOLDEN = (1 + 5**0.5) / 2
+from sphcloth.meshing.surface import Surface
 
 
 def icosphere(level: int = 0, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices and outward triangles of an icosahedron, each triangle cut in four."""
-    x = [(0, a, b * GOLDEN) for a in (-1, 1) for b in (-1, 1)]
-    x = np.array([np.roll(p, k) for p in x for k in range(3)], dtype=float)
-    x /= np.linalg.norm(x[0])
-    near = 1.1 * min(np.linalg.norm(x[0] - p) for p in x[1:])
-    faces = [
-        f
-        for f in combinations(range(12), 3)
-        if all(np.linalg.norm(x[i] - x[j]) < near for i, j in combinations(f, 2))
-    ]
-    faces = [f if np.linalg.det(x[list(f)]) > 0 else f[::-1] for f in faces]
-    for _ in range(level):
-        vertices, middle, finer = list(x), {}, []
-        for face in faces:
-            mid = []
-            for i, j in zip(face, np.roll(face, -1), strict=True):
-                key = (min(i, j), max(i, j))
-                if key not in middle:
-                    middle[key] = len(vertices)
-                    between = vertices[i] + vertices[j]
-                    vertices.append(between / np.linalg.norm(between))
-                mid.append(middle[key])
-            (a, b, c), (ab, bc, ca) = face, mid
-            finer += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-        x, faces = np.array(vertices), finer
-    return radius * x, np.array(faces)
+    sphere = trimesh.creation.icosphere(level, radius)
+    return np.array(sphere.vertices), np.array(sphere.faces)
 
 
 def edges_of(faces: np.ndarray) -> np.ndarray:
     """Return each edge of the triangles once."""
-    return np.unique(
-        np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1),
-        axis=0,
-    )
+    return Surface.of(np.zeros((faces.max() + 1, 3)), faces).edges
 
 
 def volume(x: np.ndarray, faces: np.ndarray) -> float:

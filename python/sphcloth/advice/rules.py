@@ -11,8 +11,7 @@ import numpy as np
 from sphcloth.advice.commands import Fix, Fluid
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding
-from sphcloth.fix_values import LIMITS
-from sphcloth.fix_values import set_by as in_words
+from sphcloth.fix_values import LIMITS, set_by
 
 # a limit that sets most of the steps is worth a word
 MOSTLY = 0.5
@@ -63,9 +62,8 @@ def facts(run: Evidence) -> list[Finding]:
 
 
 def _steps(run: Evidence) -> Iterator[Finding]:
-    set_by = run.commands.steps_by_limit
-    mean = run.time / run.steps
-    how = f"set by {in_words(set_by)}" if set_by else "constant"
+    steps, mean = run.commands.steps_by_limit, run.time / run.steps
+    how = f"set by {set_by(steps)}" if steps else "constant"
     yield Finding("time step", f"mean {mean:.3g}, {how}")
 
 
@@ -108,11 +106,11 @@ def needs(run: Evidence, speed: float | None, stretch: float) -> list[Proposal]:
 
 def _limit(run: Evidence) -> Iterator[Proposal]:
     """The limit that sets most steps, and how many particles it comes from."""
-    stepper, set_by = run.commands.stepper, run.commands.steps_by_limit
-    total = sum(set_by.values())
+    stepper, by_limit = run.commands.stepper, run.commands.steps_by_limit
+    total = sum(by_limit.values())
     if not total:
         return
-    name, steps = max(set_by.items(), key=lambda each: each[1])
+    name, steps = max(by_limit.items(), key=lambda each: each[1])
     if steps < MOSTLY * total:
         return
     measured, shared = f"{name} set {steps} of {total} steps", _limited(run, stepper, name)

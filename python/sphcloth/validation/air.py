@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -67,9 +66,7 @@ def run_for(
 
 def ranks(values: Mapping[str, Value], runner: Runner, run: Callable[[Runner, str], Run]) -> float:
     """Return how far vertices of runs on 2, 4, ... ranks end from those of a run on one, m."""
-    counts = [1]
-    while 2 * counts[-1] <= values["most_ranks"]:
-        counts.append(2 * counts[-1])
-    alone, *others = (run(dataclasses.replace(runner, ranks=n), f"ranks_{n}") for n in counts)
+    on_ranks = runner.on_ranks(values["most_ranks"])
+    alone, *others = (run(each, label) for label, each in on_ranks.items())
     ends = [alone.trajectory[-1].positions - each.trajectory[-1].positions for each in others]
     return max((float(np.max(np.abs(end))) for end in ends), default=0.0)

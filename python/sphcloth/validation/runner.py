@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -67,6 +67,11 @@ class Runner:
     def picture(self) -> Path:
         """Where the case draws what it has found."""
         return self.out / f"{self.name}.png"
+
+    def on_ranks(self, most: int) -> dict[str, Runner]:
+        """Return runners on 1, 2, 4 ... ranks up to `most`, by the label of their run."""
+        counts = [2**n for n in range(most.bit_length())]
+        return {f"ranks_{count}": replace(self, ranks=count) for count in counts}
 
     def run(self, label: str, t_end: float, variables: Mapping[str, Value]) -> Run:
         """Run the script once.

@@ -45,12 +45,11 @@ int Substepping::wanted_substeps(double dt)
 
 void Substepping::measure_hinges()
 {
+  if (!single_sweeps()) return;
   const double mine = constraints.bending.min_compliance_per_weight();
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-  longest_of_hinges = uses(ClothSolver::SUBSTEPS) && !options.symmetric_sweeps
-      ? std::sqrt(MAX_HINGE_SOFTNESS / SINGLE_SWEEP_SOFTNESS * all / force->ftm2v)
-      : 0.0;
+  longest_of_hinges = std::sqrt(MAX_HINGE_SOFTNESS / SINGLE_SWEEP_SOFTNESS * all / force->ftm2v);
 }
 
 // once

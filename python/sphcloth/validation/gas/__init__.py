@@ -79,19 +79,6 @@ class GasMesh:
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def edges_of(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return each edge of the triangles once."""
-    pairs = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    return np.unique(np.sort(pairs, axis=1), axis=0)
-
-
-def areas_at_vertices(x: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return a third of the area of the triangles at each vertex."""
-    a, b, c = (x[triangles[:, k]] for k in range(3))
-    thirds = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6
-    return np.bincount(triangles.ravel(), np.repeat(thirds, 3), len(x))
-
-
 def volume(x: NDArray[np.float64], triangles: NDArray[np.int64]) -> float:
     """Return what a closed mesh encloses, or an open one with the cone to the origin."""
     return float(np.linalg.det(x[triangles]).sum() / 6)

@@ -10,10 +10,11 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from sphcloth.meshing.surface import Surface
 from sphcloth.references.balloon import BreathingShell
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.gas import GasMesh, areas_at_vertices, edges_of, run, volume
+from sphcloth.validation.gas import GasMesh, run, volume
 from sphcloth.validation.refinement import Refinement, order_quantities
 from sphcloth.validation.runner import Run, Runner
 
@@ -79,13 +80,13 @@ def _shell(values: Mapping[str, Value]) -> BreathingShell:
 def _mesh(values: Mapping[str, Value], shell: BreathingShell, cut: int) -> GasMesh:
     """Return a mesh of a sphere; vertices have the mass of the area around them."""
     sphere = trimesh.creation.icosphere(int(np.log2(cut)), shell.radius)
-    x, triangles = np.array(sphere.vertices), np.array(sphere.faces)
-    masses = shell.areal * areas_at_vertices(x, triangles)
+    surface = Surface.of(sphere.vertices, sphere.faces)
+    x, edges = surface.vertices, surface.edges
+    masses = shell.areal * surface.lumped(surface.areas)
     speed = shell.speed * x / shell.radius
     held = np.zeros(len(x), dtype=bool)
-    edges = edges_of(triangles)
     soft = np.full(len(edges), COMPLIANCE)
-    return GasMesh(x, triangles, edges, soft, masses, held, speed)
+    return GasMesh(x, surface.triangles, edges, soft, masses, held, speed)
 
 
 def _run(

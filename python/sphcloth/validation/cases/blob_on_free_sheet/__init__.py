@@ -180,19 +180,8 @@ def _least(impact: Impact) -> float:
 
 def _ranks(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Return how far runs on 2, 4, ... ranks end from that on one, over radius and speed."""
-    counts = [1]
-    while 2 * counts[-1] <= values["most_ranks"]:
-        counts.append(2 * counts[-1])
-    runs = [
-        _impact(
-            values,
-            dataclasses.replace(runner, ranks=count),
-            COMPARED,
-            90.0,
-            label=f"ranks_{count}",
-        )
-        for count in counts
-    ]
+    on_ranks = runner.on_ranks(values["most_ranks"])
+    runs = [_impact(values, each, COMPARED, 90.0, label=label) for label, each in on_ranks.items()]
     alone, speed = runs[0], COMPARED * values["sound"]
     distance, energy = [0.0], [0.0]
     for other in runs[1:]:

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
+from sphcloth.meshing.surface import Surface
 from sphcloth.references.hencky import PressurizedMembrane, PressurizedNet
 from sphcloth.validation import cloth, compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.gas import GasMesh, areas_at_vertices, edges_of, run
+from sphcloth.validation.gas import GasMesh, run
 from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
@@ -83,32 +84,21 @@ def _mesh(values: Mapping[str, Value], rings: int) -> GasMesh:
     rim = values["radius"] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     flat = np.concatenate([inner, rim])
     triangles = Delaunay(flat).simplices.astype(np.int64)
-    a, b, c = (flat[triangles[:, k]] for k in range(3))
-    (u, v), (s, t) = (b - a).T, (c - a).T
-    turn = u * t - v * s
-    triangles = triangles[np.abs(turn) > 1e-9 * edge**2]
-    x = np.column_stack([flat, np.zeros(len(flat))])
-    masses = values["areal"] * areas_at_vertices(x, triangles)
-    edges = edges_of(triangles)
-    soft = 1 / (values["modulus"] * _weights(x, triangles, edges))
-    return GasMesh(x, triangles, edges, soft, masses, np.arange(len(x)) >= len(inner))
+    surface = Surface.of(np.column_stack([flat, np.zeros(len(flat))]), triangles)
+    surface = surface.select(surface.areas > 0.5e-9 * edge**2)
+    x, edges = surface.vertices, surface.edges
+    masses = values["areal"] * surface.lumped(surface.areas)
+    soft = 1 / (values["modulus"] * _weights(surface))
+    return GasMesh(x, surface.triangles, edges, soft, masses, np.arange(len(x)) >= len(inner))
 
 
-def _weights(
-    x: NDArray[np.float64], triangles: NDArray[np.int64], edges: NDArray[np.int64]
-) -> NDArray[np.float64]:
+def _weights(surface: Surface) -> NDArray[np.float64]:
     """Return stiffnesses of edges over the modulus: area of the triangles at each / its length^2.
 
     Of equilateral triangles the net is isotropic, of others about so.
     """
-    a, b, c = (x[triangles[:, k]] for k in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    number = {tuple(edge): k for k, edge in enumerate(edges)}
-    found = np.zeros(len(edges))
-    for t, area in zip(triangles, areas, strict=True):
-        for k in range(3):
-            found[number[tuple(sorted((t[k], t[k - 1])))]] += area
-    return found / np.sum((x[edges[:, 0]] - x[edges[:, 1]]) ** 2, axis=1)
+    areas = np.bincount(surface.edge_of_half_edge, np.repeat(surface.areas, 3))
+    return areas / surface.edge_lengths**2
 
 
 def _run(

@@ -76,6 +76,7 @@ WRONG = {
     ("fix", "pbd/cloth"): "fix x cloth pbd/cloth nonsense 1",
     ("fix", "cloth/contact"): "fix x water cloth/contact 0.01 nonsense 1",
     ("fix", "cloth/air"): "fix x cloth cloth/air density 1.2 nonsense 1",
+    ("fix", "cloth/pores"): "fix x water cloth/pores 1 darcy 1 nonsense 1",
     ("fix", "cloth/gas"): "fix x cloth cloth/gas pressure 1 nonsense 1",
     ("fix", "sph/integrate"): "fix x water sph/integrate global nonsense 1",
     ("fix", "sph/emit"): "fix x water sph/emit 9 1 0.1 nonsense 1",

@@ -90,6 +90,8 @@ REFUSED = re.compile(
 @pytest.mark.parametrize("page", [*PAGES, TUTORIAL], ids=lambda page: str(page.relative_to(ROOT)))
 def test_words_are_american_and_of_the_field(page: Path) -> None:
     prose = re.sub(r"<!-- table.*?<!-- end -->", "", prose_of(page), flags=re.DOTALL)
+    if page.name == "references.md":
+        prose = re.sub(r"\*[^*\n]+\*", "", prose)  # titles are as they were published
     assert not REFUSED.findall(re.sub(r"`[^`\n]+`", "", prose))
 
 

@@ -21,8 +21,8 @@ LICENSE_LINE = "SPDX-License-Identifier: GPL-2.0-or-later"
 # the styles, which are flat. So core/ includes nothing of LAMMPS or outside of core/.
 FLOORS = [
     *("core/util", "core/geometry", "core/timestep", "core/contact"),
-    *("core/neighbor", "core/sph", "core/pbd", "core/air"),
-    *("lammps_util", "cloth", "contact", "fluid", "stepping", "air", ""),
+    *("core/neighbor", "core/sph", "core/pbd", "core/air", "core/pores"),
+    *("lammps_util", "cloth", "contact", "fluid", "stepping", "air", "pores", ""),
 ]
 
 # whole words, in code and comments; CONTRIBUTING has those of the field in their place

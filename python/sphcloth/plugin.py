@@ -22,6 +22,7 @@ STYLES = (
     ("fix", "cloth/contact"),
     ("fix", "cloth/air"),
     ("fix", "cloth/gas"),
+    ("fix", "cloth/pores"),
     ("fix", "sph/integrate"),
     ("fix", "sph/emit"),
     ("fix", "sph/drain"),

@@ -97,6 +97,12 @@ void FixClothContact::init()
     for (std::size_t k = 0; k < obstacle_surfaces.size(); k++)
       walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles);
   }
+  pore_distance = 0.0;
+  require_ghosts();
+}
+
+void FixClothContact::require_ghosts()
+{
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require(needed, wanted);
@@ -184,7 +190,7 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
   const int steps = std::max({1, neighbor->every, neighbor->delay});
   const double displacement = std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
                                        std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
-  double needed = longest + std::max(rules.thickness, walls ? walls->reach() : 0.0),
+  double needed = longest + reach_of_triangles(),
          wanted = longest + rules.thickness + neighbor->skin + displacement;
   if (meets_cloth()) {
     double of_cloth = 0.0, of_obstacles = 0.0;
@@ -237,25 +243,21 @@ void FixClothContact::setup_post_neighbor()
                "data file needs an Angles section",
                label);
   store_positions();
-  if (rules.sides) check_sheets();
-  post_neighbor();
-  for (MeshContact *contact : contacts) contact->check_start(options.untangle);
-}
-
-void FixClothContact::check_sheets()
-{
-  sheets = find_sheets();
+  sheets.clear();
+  if (rules.sides) sheets = find_sheets();
   if (sheets.size() > sphcloth::MAX_SHEETS)
     error->all(FLERR,
                "{}: {} cloths and open obstacles have sides, the most are {}: give 'sides no'",
                label, sheets.size(), sphcloth::MAX_SHEETS);
   for (ContactSurface *sheet : sheets) sheet->triangles.check_winding();
+  post_neighbor();
+  for (MeshContact *contact : contacts) contact->check_start(options.untangle);
 }
 
 void FixClothContact::post_neighbor()
 {
   wrap_last_positions();
-  const double distance = std::max(rules.thickness, walls ? walls->reach() : 0.0);
+  const double distance = reach_of_triangles();
   for_all_surfaces([distance](ContactSurface &s) { s.triangles.rebuild(distance); });
   if (joined) joined->triangles.rebuild(std::max(distance, options.cloth_rules.thickness));
   for (MeshContact *contact : contacts) contact->rebuild();

@@ -84,6 +84,22 @@ class FixClothContact : public Fix, public SideSource {
     if (what == SideSource::EXTRACT && rules.sides) return static_cast<SideSource *>(this);
     return nullptr;
   }
+  // From init() of a fix that is defined behind: triangles of these types let particles of these
+  // groups through, which see them from this distance.  Returns the meshes that have any.
+  std::vector<MovingTriangles *> let_through(int first_type, int last_type, int bits,
+                                             double distance)
+  {
+    std::vector<MovingTriangles *> found;
+    for_all_surfaces([&](ContactSurface &surface) {
+      if (surface.triangles.let_through(first_type, last_type, bits))
+        found.push_back(&surface.triangles);
+    });
+    if (found.empty()) return found;
+    if (joined) joined->triangles.let_through(first_type, last_type, bits);
+    pore_distance = std::max(pore_distance, distance + neighbor->skin);
+    require_ghosts();
+    return found;
+  }
   // the cutoff of pair_style sph/tait
   void set_view_distance(double distance) override { view_distance = distance; }
 
@@ -108,7 +124,7 @@ class FixClothContact : public Fix, public SideSource {
   std::unique_ptr<MeshBoundary> walls;
   std::vector<sphcloth::Sides> side;
   sphcloth::SheetLayers sheet_layers;
-  double view_distance;
+  double view_distance, pore_distance = 0.0;
   bool in_layers = false;    // has any sheet been found so, on any rank?
   int vertex_bits, particle_bits;    // group bits of the cloths and of the particles
 
@@ -116,6 +132,11 @@ class FixClothContact : public Fix, public SideSource {
   {
     return {&last_positions, &impulses, &excess_velocities};
   }
+  double reach_of_triangles() const
+  {
+    return std::max({rules.thickness, walls ? walls->reach() : 0.0, pore_distance});
+  }
+  void require_ghosts();
   std::array<double, 2> ghosts_needed_and_wanted();
   // A particle must see the whole of the nearest triangle, if a neighbor may be on its other side;
   // and where sheets lie in layers, all that may be between the two.
@@ -143,7 +164,6 @@ class FixClothContact : public Fix, public SideSource {
   }
   void wrap_last_positions();
   void subtract_excess_velocities();
-  void check_sheets();
   void find_sides();
   void check_group(const std::vector<FixPBDCloth *> &cloths);
   void make_contacts(const std::vector<FixPBDCloth *> &cloths);

@@ -77,6 +77,10 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
 
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
+  void register_first_coupling(SolverCoupling *coupling)
+  {
+    couplings.insert(couplings.begin(), coupling);
+  }
   // Until then the first of these cloths solves all of them, substep by substep; it is an error if
   // their solvers differ.
   static void solve_together(const std::vector<FixPBDCloth *> &);

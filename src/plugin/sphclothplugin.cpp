@@ -18,6 +18,7 @@
 #include "fix_cloth_air.h"
 #include "fix_cloth_contact.h"
 #include "fix_cloth_gas.h"
+#include "fix_cloth_pores.h"
 #include "fix_pbd_cloth.h"
 #include "fix_sph_drain.h"
 #include "fix_sph_emit.h"
@@ -121,6 +122,8 @@ SPHCLOTH_EXPORT void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
   add("fix", "sph/integrate", "time stepping of SPH particles");
   plugin.creator.v2 = &create_with_args<FixClothGas>;
   add("fix", "cloth/gas", "gas in chambers of cloth");
+  plugin.creator.v2 = &create_with_args<FixClothPores>;
+  add("fix", "cloth/pores", "fluid that goes through cloth");
   plugin.creator.v2 = &create_with_args<FixSPHEmit>;
   add("fix", "sph/emit", "source of SPH particles");
   plugin.creator.v2 = &create_with_args<FixSPHDrain>;

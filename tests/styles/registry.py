@@ -181,6 +181,15 @@ def inside(x: np.ndarray) -> np.ndarray:
     return x - np.floor(np.linalg.solve(TILTED, x.T)).T @ TILTED.T
 
 
+# gauze below a drop: some of the water is behind it in the end
+GAUZE = replace(
+    DROP_SCENE,
+    forces=DROP_SCENE.forces.replace("2 2 boundary", "2 2 none").replace("0.002[s]", "1e-3[s]"),
+    fixes=DROP_SCENE.fixes
+    + "fix pores fluid cloth/pores 1 darcy 50[Pa*s/m] forchheimer 50[kg/m^3] &\n"
+    + "  medium 1e-7[m^2] 1e-4[m] 0.1 screen 0.1 2e-3[m]\n",
+    steps=40,
+)
 # two of them across the faces of a tilted box, which are pumped up until a valve opens
 BALLOONS = Scene(
     make=header()
@@ -212,6 +221,7 @@ SCENES = {
     "flow": FLOW,
     "round sheet": ROUND,
     "lifted drop": LIFT,
+    "gauze": GAUZE,
     "balloons": BALLOONS,
 }
 
@@ -313,6 +323,23 @@ ENTRIES = (
         commands=(
             "fix x cloth cloth/gas pressure 1",
             "fix x cloth cloth/gas polytropic 1.4 1 0",
+        ),
+    ),
+    Entry(
+        "fix",
+        "cloth/pores",
+        "gauze",
+        output={
+            "f_pores[1]": "N",
+            "f_pores[2]": "N",
+            "f_pores[3]": "N",
+            "f_pores[5]": "",
+            "f_pores[6]": "m^3",
+            "f_pores[7]": "J",
+        },
+        commands=(
+            CLOTH + "fix c water cloth/contact 0.01\nfix x water cloth/pores 1",
+            CLOTH + "fix c water cloth/contact 0.01\nfix x water cloth/pores 1 darcy 1",
         ),
     ),
     Entry("fix", "cloth/contact", "sheet as wall", counts={"f_contact[1]": ""}),

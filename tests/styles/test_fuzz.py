@@ -69,6 +69,9 @@ STYLES = {
     "contact": ("fix f water cloth/contact", "", [["0.01", "0.1"]], {
         "friction": [NUMBER], "restitution": [SHARE], "sides": [YES], "wall": [YES],
         "obstacle": [GROUP]}),
+    "pores": ("fix f water cloth/pores", "", [["1"]], {
+        "darcy": [NUMBER], "forchheimer": [NUMBER], "medium": [NUMBER] * 3,
+        "screen": [SHARE, NUMBER]}),
     "gas": ("fix f cloth cloth/gas", "", [["pressure"], NUMBER], {
         "toward": [NUMBER] * 3, "inflow": [NUMBER], "valve": [NUMBER], "burst": [NUMBER],
         "close": [YES]}),

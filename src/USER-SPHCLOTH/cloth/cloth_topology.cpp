@@ -133,7 +133,7 @@ void ClothTopology::gather(int groupbit, Leaving leaving)
   gather_elements(triangles, "angle", leaving, [&](int i, auto add) {
     for (int m = 0; m < atom->num_angle[i]; m++)
       add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
-          std::min(atom->angle_type[i][m], 1));    // its type says nothing: two would be one twice
+          atom->angle_type[i][m]);
   });
   gather_elements(hinges, "dihedral", leaving, [&](int i, auto add) {
     for (int m = 0; m < atom->num_dihedral[i]; m++)
@@ -182,13 +182,16 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
     canonical(sorted[m].vertices);
     sorted[m].type = static_cast<int>(record[N]);
   }
-  // copies of an element are one; those of another type are constraints of their own
+  // Copies of an element are one.  Those of another type are constraints of their own, but a
+  // triangle is none: it has its lowest type.
   const auto key = [](const Element &e) { return std::tie(e.vertices, e.type); };
   std::sort(sorted.begin(), sorted.end(),
             [&](const Element &a, const Element &b) { return key(a) < key(b); });
-  sorted.erase(std::unique(sorted.begin(), sorted.end(),
-                           [&](const Element &a, const Element &b) { return key(a) == key(b); }),
-               sorted.end());
+  const auto last =
+      std::unique(sorted.begin(), sorted.end(), [&](const Element &a, const Element &b) {
+        return N == 3 ? a.vertices == b.vertices : key(a) == key(b);
+      });
+  sorted.erase(last, sorted.end());
 
   elements.vertices.clear();
   elements.type.clear();

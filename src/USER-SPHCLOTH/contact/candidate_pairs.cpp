@@ -76,6 +76,7 @@ void CandidatePairs::find()
     const Sweep particle = mesh.sweep_of(i);
     const std::size_t first = candidates.size();
     discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
+      if (mesh.lets_through(t, atom->mask[i])) return;
       candidates.push_back({i, t, mesh.closest_at_start(particle.start, t).vector.norm()});
     });
     std::sort(candidates.begin() + first, candidates.end(),    // whatever the order of cells

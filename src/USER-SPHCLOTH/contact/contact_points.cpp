@@ -11,6 +11,7 @@ void ContactPoints::begin_step(double dt)
   for (std::size_t s = mesh.halo.n_slots(); s < mesh.start.size(); s++) {
     Point point;
     point.velocity = point.velocity_before = (mesh.end[s] - mesh.start[s]) / dt;
+    point.ahead = mesh.end[s];
     point.from = point.measured = mesh.end[s] = mesh.start[s];
     points.push_back(point);
   }
@@ -54,14 +55,18 @@ void ContactPoints::push_velocities(const std::vector<Vec3> &impulse)
   for_all([&](Point &point, int slot) { point.velocity += mesh.w_solver[slot] * impulse[slot]; });
 }
 
+// Pores may have moved a particle, too: then both add what they do.
+
 void ContactPoints::end_step(Atom *atom)
 {
+  const bool adds = mesh.has_pores();
   for_all([&](const Point &point, int slot) {
     const int i = mesh.atom_of(slot);
     if (point.velocity != point.velocity_before) mesh.moved.push_back(i);
     for (int d = 0; d < 3; d++) {
       atom->v[i][d] += point.velocity[d] - point.velocity_before[d];
-      atom->x[i][d] = mesh.end[slot][d];
+      atom->x[i][d] = adds ? atom->x[i][d] + (mesh.end[slot][d] - point.ahead[d])
+                           : mesh.end[slot][d];
     }
   });
 }

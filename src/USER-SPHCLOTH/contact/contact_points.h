@@ -40,6 +40,7 @@ class ContactPoints {
     Vec3 from, displacement = Vec3::Zero();    // at the start of the substep, and since then
     Vec3 velocity, velocity_before;
     Vec3 measured;    // where its path has been measured to
+    Vec3 ahead;    // where it would go
     double path = 0.0;
     bool touched = false;    // in this substep
   };

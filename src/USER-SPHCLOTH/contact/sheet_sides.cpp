@@ -16,7 +16,7 @@ void SheetSides::find(double cutoff, int sheet, std::vector<Sides> &sides, Sheet
 {
   const WallTimer clock(mesh.counts.seconds);
   mesh.load_positions();
-  discs.build(mesh, cutoff, [](std::size_t) { return 0.0; });
+  discs.build(mesh, cutoff, [](std::size_t) { return 0.0; }, TriangleDiscs::WATERTIGHT);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!mesh.collides(i)) continue;
     const Vec3 p = Eigen::Map<const Vec3>(atom->x[i]);
@@ -32,7 +32,10 @@ void SheetSides::find(double cutoff, int sheet, std::vector<Sides> &sides, Sheet
 
 void SheetSides::add_triangles(SheetLayers &layers) const
 {
-  for (const auto &[a, b, c] : mesh.triangles) layers.add({mesh.end[a], mesh.end[b], mesh.end[c]});
+  for (std::size_t t = 0; t < mesh.triangles.size(); t++) {
+    const auto &[a, b, c] = mesh.triangles[t];
+    if (!mesh.is_porous(static_cast<int>(t))) layers.add({mesh.end[a], mesh.end[b], mesh.end[c]});
+  }
 }
 
 // Side 1 above, -1 below, 0 far away or beyond the border.  At an edge or a vertex several

@@ -14,14 +14,18 @@ namespace LAMMPS_NS {
 
 class TriangleDiscs {
  public:
+  enum Which { ALL, WATERTIGHT };    // triangles
+
   // at the start of the step; room(t): how far a triangle may be from there
-  template <class Room> void build(const MovingTriangles &mesh, double distance, Room room)
+  template <class Room>
+  void build(const MovingTriangles &mesh, double distance, Room room, Which which = ALL)
   {
     discs.resize(mesh.triangles.size());
     for (std::size_t t = 0; t < discs.size(); t++) {
       const auto &[a, b, c] = mesh.triangles[t];
       discs[t] = sphcloth::disc_around(mesh.start[a], mesh.start[b], mesh.start[c]);
       discs[t].room = room(t);
+      if (which == WATERTIGHT && mesh.is_porous(static_cast<int>(t))) discs[t].radius = -1.0;
     }
     grid.build(discs, distance);
   }

@@ -41,6 +41,16 @@ class TriangleSet : protected Pointers {
   // Has the mesh a border?  One without it has all fluid on one side.
   bool is_open();
 
+  // Triangles of these types let particles of these groups through, for the rest of a run: fix
+  // cloth/pores.  To contact, sides and walls the mesh ends where they begin.
+  bool let_through(int first_type, int last_type, int groupbit);    // are there any?
+  bool has_pores() const { return !passing.empty(); }
+  bool is_porous(int t) const { return !passing.empty() && passing[element[t]] != 0; }
+  bool lets_through(int t, int mask) const
+  {
+    return !passing.empty() && (passing[element[t]] & mask) != 0;
+  }
+
   // nothing is beyond the edge of an element that is opposite to a vertex
   bool is_border(int m, int opposite) const { return at_border[m][opposite]; }
 
@@ -51,6 +61,9 @@ class TriangleSet : protected Pointers {
       if (weight[q] <= 0.0 && is_border(element[t], q)) return true;
     return false;
   }
+  // the same, of the mesh with its porous triangles, also where it is a vertex that has the border
+  // at other triangles
+  bool is_on_end(int t, const Vec3 &weight) const;
 
   // of the triangles that are here, at the last list build
   double longest_edge_here() const { return longest_here; }
@@ -59,7 +72,9 @@ class TriangleSet : protected Pointers {
   Vec3 position(int slot) const;
 
  private:
-  std::vector<std::array<bool, 3>> at_border;    // of each element
+  std::vector<std::array<bool, 3>> at_border, at_end;    // of each element
+  std::vector<bool> vertex_at_end;
+  std::vector<int> passing;    // bits of groups that an element lets through; empty: none does
 
   GhostReach ghosts;
   double longest_here = 0.0;

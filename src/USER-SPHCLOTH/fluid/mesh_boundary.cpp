@@ -99,11 +99,12 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
     const Vec3 p = position_of(atom->x[i]);
     near.clear();
     grid.query(Box(p), [&](int t) {
+      if (part == Part::WATERTIGHT && set->is_porous(t)) return;
       if (const double bound = boxes[t].exteriorDistance(p); bound <= support + skin)
         near.push_back({t, bound});
     });
     keep_nearest(p, support + skin, near);
-    if (near.empty() || is_beyond(p, near)) continue;
+    if (near.empty() || (part == Part::WATERTIGHT && is_beyond(p, near))) continue;
     Seeker seeker{i, support, p, candidates.size(), 0, borders.size(), 0};
     candidates.insert(candidates.end(), near.begin(), near.end());
     border_grid.query(Box(p), [&](int b) {
@@ -180,6 +181,7 @@ void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &clo
     if (triangle < 0 || closest.distance == 0.0) continue;
     closest.particle = seeker.particle;
     closest.sheet = sheet;
+    closest.triangle = triangle;
     closest.vertices = set->triangles[triangle];
     closest.normal = nearest / closest.distance;
     find_border(p - nearest, seeker, closest);

@@ -24,7 +24,7 @@ class FluidState;
 // the point of a mesh that is nearest to a particle
 
 struct ClosestPoint {
-  int particle = 0, sheet = 0;
+  int particle = 0, sheet = 0, triangle = 0;
   std::array<int, 3> vertices{};    // slots
   Eigen::Vector3d weight, normal;    // barycentric; from the mesh to the particle
   double distance = 0.0;
@@ -39,7 +39,12 @@ class BoundaryMesh : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_) : Pointers(lmp_), set(set_) {}
+  enum class Part { WATERTIGHT, ALL };
+
+  BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_, Part part_ = Part::WATERTIGHT) :
+      Pointers(lmp_), set(set_), part(part_)
+  {
+  }
 
   // After each list build: triangles that may be nearest to a particle until the next one.
   // reach(i): of the kernel of an owned particle, 0 for one that does not feel this wall.
@@ -87,6 +92,7 @@ class BoundaryMesh : protected Pointers {
     std::size_t first_border, last_border;
   };
   TriangleSet *set;
+  Part part;
   double skin = 0.0;
   std::vector<Candidate> candidates;
   std::vector<std::array<int, 2>> borders;    // slots of the ends

@@ -23,7 +23,7 @@ namespace sphcloth {
 
 struct Disc {
   Eigen::Vector3d center, normal;    // without a normal it is a ball
-  double radius;
+  double radius;    // below 0: it is left out
   double room = 0.0;    // how far from it the triangle may be
 };
 
@@ -46,6 +46,7 @@ class DiscGrid {
   {
     for (Size &size : sizes) size.members.clear();
     for (std::size_t d = 0; d < discs.size(); d++) {
+      if (discs[d].radius < 0.0) continue;
       std::size_t n = 0;
       const double size = discs[d].radius + discs[d].room;
       for (double max = reach; size > max && n < MAX_SIZES - 1; max *= 2.0) n++;

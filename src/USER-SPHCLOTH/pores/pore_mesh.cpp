@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds particles in the layers before porous triangles, and what slows them.
+
+#include "pores/pore_mesh.h"
+
+#include "atom.h"
+#include "lammps_util/atom_tools.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+void PoreMesh::rebuild()
+{
+  mesh.update_candidates(neighbor->skin, [this](int i) {
+    return fluid.passes(atom->mask[i], atom->type[i]) ? fluid.width(atom->type[i]) : 0.0;
+  });
+  for (std::vector<Vec3> *each : {&pushed, &passing, &filled, &part})
+    each->assign(set->halo.n_slots(), Vec3::Zero());
+  find_areas();
+}
+
+// Of owned vertices, whose triangles are all here.
+
+void PoreMesh::find_areas()
+{
+  area.assign(set->halo.n_owned(), 0.0);
+  for (int t = 0; t < static_cast<int>(set->triangles.size()); t++) {
+    const auto &[a, b, c] = set->triangles[t];
+    const Vec3 origin = set->position(a);
+    const double third = (set->position(b) - origin).cross(set->position(c) - origin).norm() / 6.0;
+    for (const int s : set->triangles[t])
+      if (!set->halo.is_ghost(s)) area[s] += third;
+  }
+}
+
+void PoreMesh::find(double *flow)
+{
+  closest_points.clear();
+  mesh.find_closest_points(0, closest_points);
+  const std::vector<int> &type = set->mesh->topology().triangles.type;
+  const auto elsewhere = [&](const ClosestPoint &at) {
+    return !fluid.is_porous(type[set->element[at.triangle]]) ||
+        set->is_on_end(at.triangle, at.weight);
+  };
+  closest_points.erase(std::remove_if(closest_points.begin(), closest_points.end(), elsewhere),
+                       closest_points.end());
+  follow_flow(flow);
+  pairs.clear();
+  for (const ClosestPoint &at : closest_points) add_pair(at);
+}
+
+int PoreMesh::side_of(const ClosestPoint &at) const
+{
+  const auto &[a, b, c] = at.vertices;
+  const Vec3 origin = set->position(a);
+  const Vec3 normal = (set->position(b) - origin).cross(set->position(c) - origin);
+  return normal.dot(at.normal) > 0.0 ? 1 : -1;
+}
+
+double PoreMesh::share_of(const ClosestPoint &at) const
+{
+  return share_in_layer(at.distance, fluid.width(atom->type[at.particle]));
+}
+
+// of each vertex, by the particles beside it
+
+void PoreMesh::follow_flow(double *flow)
+{
+  VertexHalo &halo = set->halo;
+  for (std::vector<Vec3> *each : {&passing, &filled})
+    std::fill(each->begin(), each->end(), Vec3::Zero());
+  for (const ClosestPoint &at : closest_points) {
+    const int i = at.particle, type = atom->type[i], side = side_of(at);
+    const double share = share_of(at);
+    if (share == 0.0) continue;
+    const double volume = atom_mass(atom, i) / fluid.density(type) * share;
+    const double up = side * update->dt * (Vec3(atom->v[i]) - mesh.velocity_at(at)).dot(at.normal);
+    for (int q = 0; q < 3; q++) {
+      passing[at.vertices[q]] += at.weight[q] * share * Vec3(up, fluid.width(type), 1.0);
+      filled[at.vertices[q]][side > 0 ? 0 : 1] += at.weight[q] * volume;
+    }
+  }
+  halo.reverse_add(0, passing.data());
+  halo.reverse_add(0, filled.data());
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const Vec3 &sum = passing[s];
+    double &of_vertex = flow[halo.atom_of(s)];
+    if (sum[2] > 0.0) of_vertex = next_flow(of_vertex, sum[0] / sum[2], sum[1] / sum[2]);
+    const double by = area[s] > 0.0 ? 1.0 / area[s] : 0.0;
+    const PartOfLayers parts = part_of_layers(of_vertex, by * filled[s][0], by * filled[s][1]);
+    part[s] = Vec3(parts.above, parts.below, 0.0);
+  }
+  halo.forward(0, part.data());
+}
+
+// A net's resistance is that at the velocities of the start of the step.
+
+void PoreMesh::add_pair(const ClosestPoint &at)
+{
+  const int i = at.particle, type = atom->type[i];
+  const int side = side_of(at) > 0 ? 0 : 1;
+  double share = 0.0;
+  for (int q = 0; q < 3; q++) share += at.weight[q] * part[at.vertices[q]][side];
+  share *= share_of(at);
+  if (!(share > 0.0)) return;
+  const PoreLaw &law = fluid.laws[type];
+  const double mass = atom_mass(atom, i), rho0 = fluid.density(type), by = mass / rho0 * share;
+  PoreDrag drag{law.darcy, 0.0};
+  if (!law.screen.empty()) {
+    const Vec3 u = Vec3(atom->v[i]) - mesh.velocity_at(at);
+    const double across = u.dot(at.normal);
+    const PoreDrag of_net = law.screen.drag(across, (u - across * at.normal).norm(), rho0);
+    drag = {drag.across + of_net.across, of_net.along};
+  }
+  pairs.push_back({i,
+                   at.vertices,
+                   at.weight,
+                   -at.normal,
+                   mass,
+                   share * fluid.width(type),
+                   {by * drag.across, by * drag.along},
+                   by * law.forchheimer});
+}
+
+// Implicit in the velocity of the end of the step: at any resistance a particle slows down and does
+// not turn around.  Its displacement is that of the lower velocity.
+
+PoreMesh::Vec3 PoreMesh::slow_down(double &lost)
+{
+  Vec3 sum = Vec3::Zero();
+  const double dt = update->dt;
+  for (const PorePair &pair : pairs) {
+    double *const v = atom->v[pair.particle], *const x = atom->x[pair.particle];
+    Vec3 u = Vec3(v);
+    for (int q = 0; q < 3; q++)
+      u -= pair.weight[q] * Vec3(atom->v[set->halo.atom_of(pair.vertices[q])]);
+    const double across = u.dot(pair.toward), by = dt / pair.mass;
+    const double left = slowed(across, by * pair.drag.across, by * pair.forchheimer);
+    const double rate = by * pair.drag.along;
+    const Vec3 change =
+        (across - left) * pair.toward + rate / (1.0 + rate) * (u - across * pair.toward);
+    const Vec3 impulse = pair.mass * change;
+    for (int d = 0; d < 3; d++) {
+      v[d] -= change[d];
+      x[d] -= dt * change[d];
+    }
+    sum += impulse;
+    lost += impulse.dot(u - 0.5 * change);
+    for (int q = 0; q < 3; q++) pushed[pair.vertices[q]] += pair.weight[q] * impulse;
+  }
+  set->halo.reverse_add(0, pushed.data());
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    if (!pushed[s].isZero(0.0)) set->mesh->push_held(set->halo.atom_of(s), pushed[s]);
+  std::fill(pushed.begin(), pushed.end(), Vec3::Zero());
+  return sum;
+}

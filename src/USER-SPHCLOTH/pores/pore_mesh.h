@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The porous triangles of one mesh, and the fluid that is near them in a step.
+
+#ifndef SPHCLOTH_PORES_PORE_MESH_H
+#define SPHCLOTH_PORES_PORE_MESH_H
+
+#include "contact/moving_triangles.h"
+#include "core/pores/pore_law.h"
+#include "fluid/mesh_boundary.h"
+#include "pointers.h"
+#include "pores/pore_fluid.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// a particle in the layer before a porous triangle
+
+struct PorePair {
+  using Vec3 = Eigen::Vector3d;
+
+  int particle;
+  std::array<int, 3> vertices;    // slots
+  Vec3 weight, toward;    // barycentric; normal, from the particle to the mesh
+  double mass;
+  double share;    // of the pressure, over the width of the layer
+  sphcloth::PoreDrag drag;    // mass over time
+  double forchheimer;    // mass over length
+};
+
+class PoreMesh : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  PoreMesh(LAMMPS *lmp_, MovingTriangles *set_, const PoreFluid &fluid_) :
+      Pointers(lmp_), set(set_), fluid(fluid_), mesh(lmp, set, BoundaryMesh::Part::ALL)
+  {
+  }
+
+  MovingTriangles *const set;
+  std::vector<PorePair> pairs;    // of this step
+
+  void rebuild();    // after each list build
+  // Where particles have moved to in a step, and vertices not yet.  flow: by atom, of vertices,
+  // which changes.  Collective.
+  void find(double *flow);
+
+  // A mesh that does not give way: slows the particles of the pairs, and pushes it.  Returns the
+  // impulse on it, mass times velocity, and adds to the energy that is lost.
+  Vec3 slow_down(double &lost);
+
+  // visit(particle, side): above, 1, or below, -1
+  template <class Visit> void for_sides(Visit visit) const
+  {
+    for (const ClosestPoint &at : closest_points) visit(at.particle, side_of(at));
+  }
+
+  double bytes() const
+  {
+    return sphcloth::bytes_of(pairs, closest_points, pushed, area, passing, filled, part);
+  }
+
+ private:
+  const PoreFluid &fluid;
+  BoundaryMesh mesh;
+  std::vector<Vec3> pushed;    // by slot, 0 between steps
+  // By slot: a third of the area of its triangles; shares of particles times upward displacements,
+  // times widths, and shares; volumes times shares above and below; the parts of both layers
+  std::vector<double> area;
+  std::vector<Vec3> passing, filled, part;
+  std::vector<ClosestPoint> closest_points;    // on porous triangles, not at the end of the mesh
+
+  int side_of(const ClosestPoint &) const;
+  double share_of(const ClosestPoint &) const;
+  void find_areas();
+  void follow_flow(double *flow);
+  void add_pair(const ClosestPoint &);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -82,10 +82,12 @@ class ClothMesh:
     Attributes:
         ids: atom ids of the vertices in ascending order, shape (V,).
         triangles: indices into ``ids``, shape (T, 3), all wound in the same sense.
+        kinds: angle type of each triangle, shape (T,); None if they are not known.
     """
 
     ids: NDArray[np.int64]
     triangles: NDArray[np.int64]
+    kinds: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         """Raise UserError if two neighboring triangles are wound in opposite senses."""
@@ -114,15 +116,35 @@ class ClothMesh:
         """
         # MDAnalysis' own angles are turned around where the first atom is the larger one
         try:
-            atoms = np.array([line.split()[2:5] for line in lines], dtype=np.int64)
-            ids, triangles = np.unique(atoms.reshape(-1, 3), return_inverse=True)
+            rows = np.array([line.split()[1:5] for line in lines], dtype=np.int64).reshape(-1, 4)
+            ids, triangles = np.unique(rows[:, 1:], return_inverse=True)
             if ids[0] < 1:
                 raise ValueError(f"{ids[0]} is no ID of an atom")
         except (ValueError, OverflowError) as error:
             raise UserError(
                 f"{data}: the section Angles cannot be read: write it with 'write_data FILE nofix'"
             ) from error
-        return cls(ids, triangles.reshape(-1, 3))
+        return cls(ids, triangles.reshape(-1, 3), rows[:, 0])
+
+    def of_kinds(self, chosen: Collection[int]) -> ClothMesh:
+        """Return the triangles of some angle types, over the same vertices.
+
+        Raises:
+            UserError: the types of the triangles are not known.
+        """
+        return self._only(self._is_of(chosen))
+
+    def without_kinds(self, chosen: Collection[int]) -> ClothMesh:
+        """Return the other triangles, likewise; without a choice it is this mesh."""
+        return self._only(~self._is_of(chosen)) if chosen else self
+
+    def _is_of(self, chosen: Collection[int]) -> NDArray[np.bool_]:
+        if self.kinds is None:
+            raise UserError("the angle types of the triangles are not known: read a data file")
+        return np.isin(self.kinds, list(chosen))
+
+    def _only(self, chosen: NDArray[np.bool_]) -> ClothMesh:
+        return ClothMesh(self.ids, self.triangles[chosen], self.kinds[chosen])
 
     @cached_property
     def edges(self) -> NDArray[np.int64]:

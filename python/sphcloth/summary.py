@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
@@ -37,8 +37,9 @@ class Summary:
         poured: particles poured.
         on_sheet: particles with the sheet below them in the last frame.
         spilled: particles poured that are not on the sheet: beside it, below it or drained.
-        crossed: particles that went through the sheet, from the dump alone; None of a dump with a
-            single frame.
+        crossed: particles that went through the sheet where it has no pores, from the dump alone;
+            None of a dump with a single frame.
+        through_pores: particles that went through its pores; None without fix cloth/pores.
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
         layers: whether cloth meets cloth (``cloth yes``).
         intersections: pairs of an edge and a triangle, of cloth and cloth or of cloth and obstacle,
@@ -62,6 +63,7 @@ class Summary:
     on_sheet: int | None
     spilled: int | None
     crossed: int | None
+    through_pores: int | None
     crossing_steps: list[int]
     layers: bool
     intersections: int | None
@@ -96,6 +98,11 @@ class Summary:
         """Print the values on one screen, what must be zero marked by whether it is."""
         show_rows(self._rows(), console)
 
+    def _rows_of_pores(self) -> list[tuple[str, str]]:
+        if self.through_pores is None:
+            return []
+        return [("went through pores", text(self.through_pores))]
+
     def _rows(self) -> list[tuple[str, str]]:
         rows = [
             ("time reached", f"{self.time:.4g}"),
@@ -103,6 +110,7 @@ class Summary:
             ("on the sheet", text(self.on_sheet)),
             ("spilled", text(self.spilled)),
             ("crossed the sheet", _must_be_zero(self.crossed)),
+            *self._rows_of_pores(),
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
             ("largest density deviation", text(self.deviation, "{:.2%}")),
             ("water denser by more than 1 %", text(self.compressed, "{:.1%}")),
@@ -146,11 +154,13 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     roles = Roles.read(folder / f"{name}.data")
     scene_roles = SceneRoles.of(samples(trajectory), roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
-    water = Water.of(trajectory, scene_roles, table if can_balance else None, roles.rest_density)
     poured = _last_count(table, "v_poured")
     can_count = "v_updates" in table or "v_fluid" in table
     updates = metrics.particle_updates(table) if can_count else None
     evidence = Evidence.of_log(folder / "log.lammps")
+    porous = evidence.commands.porous(scene_roles.mesh)
+    counted = table if can_balance else None
+    water = Water.of(trajectory, scene_roles, counted, roles.rest_density, porous)
     layers = any(fix.value("cloth", "no") == "yes" for fix in evidence.commands.styled(CONTACT))
     return Summary(
         time=float(table["Time"][-1]),
@@ -159,6 +169,7 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         on_sheet=water.on_sheet,
         spilled=None if None in (poured, water.on_sheet) else poured - water.on_sheet,
         crossed=water.crossed,
+        through_pores=water.through_pores,
         crossing_steps=water.crossing_steps,
         layers=layers,
         intersections=_intersections(scene_roles, trajectory) if layers else None,
@@ -182,7 +193,9 @@ class Water:
 
     Attributes:
         on_sheet: particles with the sheet below them in the last frame.
-        crossed: particles that went through the sheet; None of a dump with a single frame.
+        crossed: particles that went through the sheet where it has no pores; None of a dump with a
+            single frame.
+        through_pores: particles that went through pores; None if there are none.
         crossing_steps: the steps of the frames after that, without repeats.
         compressed: share of the water, of all frames, that is denser than at rest by more than
             1 %; None if the dump does not tell.
@@ -190,6 +203,7 @@ class Water:
 
     on_sheet: int | None = None
     crossed: int | None = None
+    through_pores: int | None = None
     crossing_steps: list[int] = field(default_factory=list)
     compressed: float | None = None
 
@@ -200,8 +214,17 @@ class Water:
         scene_roles: SceneRoles,
         table: ThermoTable | None,
         rest_density: Mapping[int, float],
+        porous: Collection[int] = (),
     ) -> Water:
-        """Follow all water through a dump; with a table, check that all of it is there."""
+        """Follow all water through a dump; with a table, check that all of it is there.
+
+        Args:
+            trajectory: the dump.
+            scene_roles: of its atoms.
+            table: of the log.
+            rest_density: of each type of water.
+            porous: angle types of triangles with pores.
+        """
         if scene_roles.mesh is None or not scene_roles.fluid:
             return cls()
         last, mesh = trajectory[-1], scene_roles.mesh
@@ -212,14 +235,18 @@ class Water:
                 pass
             return cls(int(sum(map(np.count_nonzero, above))), compressed=densities.compressed)
         passes = []
+        watertight = mesh.without_kinds(porous)
         for kind in scene_roles.fluid:
             frames = _counted(trajectory, table, scene_roles.fluid)
             seen = frames if passes else densities.watch(frames)
-            passes.append(metrics.crossings(mesh, seen, kind))
+            passes.append(metrics.crossings(watertight, seen, kind))
         steps = np.unique(np.concatenate([one.steps for one in passes]))
+        pores = mesh.of_kinds(porous)
+        through = [metrics.crossings(pores, trajectory, kind).count for kind in scene_roles.fluid]
         return cls(
             int(sum(map(np.count_nonzero, above))),
             sum(one.count for one in passes),
+            sum(through) if porous else None,
             steps.tolist(),
             densities.compressed,
         )

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from sphcloth.errors import UserError
 from sphcloth.fix_values import column
+from sphcloth.mesh import ClothMesh
 
 # what fix sph/integrate prints at the end of a run
 STEPS_BY_LIMIT = "sph/integrate: steps by limit:"
@@ -154,6 +155,14 @@ class Commands:
         """Return all fixes of a style, in order."""
         return [fix for fix in self.fixes.values() if fix.style == style]
 
+    def porous(self, mesh: ClothMesh | None) -> frozenset[int]:
+        """Return the angle types of a mesh that have pores, by fix cloth/pores."""
+        ranges = [fix.arguments[0] for fix in self.styled("cloth/pores")]
+        if mesh is None or mesh.kinds is None or not ranges:
+            return frozenset()
+        kinds = set(mesh.kinds.tolist())
+        return frozenset(kind for kind in kinds for words in ranges if _is_in(kind, words))
+
     @property
     def stepper(self) -> Fix | None:
         """The fix sph/integrate."""
@@ -162,3 +171,11 @@ class Commands:
 
 def _is_number(words: Sequence[str]) -> bool:
     return bool(words) and re.fullmatch(r"[-+]?[\d.]+(e[-+]?\d+)?", words[0], re.I) is not None
+
+
+def _is_in(kind: int, words: str) -> bool:
+    """Tell whether a type is in a range of LAMMPS: 2, 1*3, 2*, *3 or *."""
+    low, star, high = words.partition("*")
+    if not star:
+        return kind == int(low)
+    return int(low or 1) <= kind <= int(high or kind)

@@ -196,6 +196,8 @@ def _plan_area(u: NDArray, v: NDArray) -> NDArray:
 
 def _overlapping_boxes(left: NDArray, right: NDArray) -> tuple[NDArray, NDArray]:
     """Return all pairs of boxes that overlap; boxes are lower and upper corners, (2, N, D)."""
+    if not right.size:
+        return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp)
     reach_left = (left[1] - left[0]).max(axis=1) / 2
     reach_right = (right[1] - right[0]).max() / 2
     # slack: neighbors at exactly the reach must not be lost to round-off

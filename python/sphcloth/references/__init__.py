@@ -21,6 +21,7 @@ from sphcloth.references.catenary import HangingPolygon
 from sphcloth.references.chain import LinkedPendulum
 from sphcloth.references.couette import CouetteStart
 from sphcloth.references.dam_break import Column
+from sphcloth.references.drain import DrainingColumn
 from sphcloth.references.filled_sheet import FilledSheet
 from sphcloth.references.hanging_chain import HangingChain
 from sphcloth.references.hencky import PressurizedMembrane, PressurizedNet
@@ -28,6 +29,7 @@ from sphcloth.references.hydrostatic import TaitColumn
 from sphcloth.references.jet import Jet
 from sphcloth.references.jet_on_sheet import TurnedJet
 from sphcloth.references.lintearia import HeavyLintearia, Lintearia
+from sphcloth.references.net_drag import measured_drag
 from sphcloth.references.oscillating_drop import EllipticDrop
 from sphcloth.references.pendulum import pendulum_period
 from sphcloth.references.pinned_weight import Load
@@ -45,6 +47,7 @@ __all__ = [
     "Collision",
     "Column",
     "CouetteStart",
+    "DrainingColumn",
     "EllipticDrop",
     "FallingSheet",
     "FilledSheet",
@@ -67,5 +70,6 @@ __all__ = [
     "TurnedJet",
     "WindPendulum",
     "hinge_angles",
+    "measured_drag",
     "pendulum_period",
 ]

@@ -137,8 +137,11 @@ def apart(log: Path, example: str) -> tuple[float, str]:
     if missing := known[0].keys() - ours.keys():
         return np.inf, f"columns are missing: {', '.join(sorted(missing))}"
     counts, ends = ([f(table["Step"]) for table in known] for f in (len, max))
-    steps = abs(max(ours["Step"]) - ends[0])
-    if len(ours["Step"]) != counts[0] and steps > TIMES * (max(ends) - min(ends)):
+    too_far = [
+        abs(here - of[0]) > TIMES * np.ptp(of)
+        for here, of in ((len(ours["Step"]), counts), (max(ours["Step"]), ends))
+    ]
+    if all(too_far):
         return np.inf, f"rows: {len(ours['Step'])}, not {counts[0]}"
     rows = min(len(ours["Step"]), *counts)
     beside = rows_beside(

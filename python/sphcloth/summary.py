@@ -241,12 +241,15 @@ class Water:
             seen = frames if passes else densities.watch(frames)
             passes.append(metrics.crossings(watertight, seen, kind))
         steps = np.unique(np.concatenate([one.steps for one in passes]))
-        pores = mesh.of_kinds(porous)
-        through = [metrics.crossings(pores, trajectory, kind).count for kind in scene_roles.fluid]
+        through = None
+        if porous:
+            pores = mesh.of_kinds(porous)
+            found = (metrics.crossings(pores, trajectory, kind) for kind in scene_roles.fluid)
+            through = sum(one.count for one in found)
         return cls(
             int(sum(map(np.count_nonzero, above))),
             sum(one.count for one in passes),
-            sum(through) if porous else None,
+            through,
             steps.tolist(),
             densities.compressed,
         )

@@ -56,10 +56,10 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     """Run Darcy at three resolutions, the other laws at the finest one, and on several ranks."""
     laws = _laws(values)
     columns = {name: _column(values, *law) for name, law in laws.items()}
-    darcy = partial(_run, values, runner, "darcy", laws["darcy"])
+    darcy = partial(_run, values, runner, laws["darcy"])
     refined = Refinement.of(darcy, three(values["layers"], 0.6, 8))
     runs = {"darcy": refined.fine} | {
-        name: _run(values, runner, name, law, name, values["layers"])
+        name: _run(values, runner, law, name, values["layers"])
         for name, law in laws.items()
         if name != "darcy"
     }
@@ -90,7 +90,6 @@ def _column(values: Mapping[str, Value], a: float, b: float) -> DrainingColumn:
 def _run(
     values: Mapping[str, Value],
     runner: Runner,
-    name: str,
     law: tuple[float, float],
     label: str,
     layers: int,
@@ -104,7 +103,7 @@ def _run(
     dropped = (*NOT_IN_SCRIPT, "gain", "layers")
     shared = {key: values[key] for key in values if key not in dropped}
     return runner.run(
-        label if label != name else name,
+        label,
         t_end,
         shared | clock | {"darcy": law[0], "forchheimer": law[1], "sound": sound, "layers": layers},
     )
@@ -147,7 +146,7 @@ def _ranks(values: Mapping[str, Value], runner: Runner, law: tuple[float, float]
     """Return the largest distance of final levels from that of a run on one rank, m."""
     layers = three(values["layers"], 0.6, 8)["coarse"]
     ends = [
-        _level(_run(values, each, "darcy", law, label, layers))[1][-1]
+        _level(_run(values, each, law, label, layers))[1][-1]
         for label, each in runner.on_ranks(values["most_ranks"]).items()
     ]
     return max((abs(end - ends[0]) for end in ends[1:]), default=0.0)

@@ -209,6 +209,12 @@ def test_python_files_are_short() -> None:
     assert not long, f"above {LINES} lines, to be split by subject: {long}"
 
 
+def test_files_of_tests_have_names_of_their_own() -> None:
+    """Folders of tests are no packages: pytest collects one file alone of two with one name."""
+    counts = Counter(path.name for path in (ROOT / "tests").rglob("test_*.py"))
+    assert not [name for name, n in counts.items() if n > 1]
+
+
 # words
 
 

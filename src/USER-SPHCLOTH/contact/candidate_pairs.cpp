@@ -16,20 +16,31 @@ using namespace sphcloth;
 // of the thickness
 static constexpr double MAX_MARGIN = 1.5, MAX_REACH = 1.5;
 
+static constexpr double NOT_ASKED = -1.0;    // room of a particle without candidates yet
+
 void CandidatePairs::clear()
 {
   candidates.clear();
   vertices_then.clear();
-  positions_then[0].clear();
+  room.clear();
 }
 
 void CandidatePairs::update(double max_stride)
 {
   if (none()) return;
-  const bool holds = still_holds(max_stride);
-  if (holds && candidates.empty()) return;
+  const bool holds = triangles_hold(max_stride);
+  asked.clear();
+  if (!holds) {
+    for (int i = 0; i < atom->nlocal; i++)
+      if (mesh.collides(i)) asked.push_back(i);
+  } else if (count_beyond_room() > 0) {
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is_beyond_room(i)) asked.push_back(i);
+  } else if (candidates.empty())
+    return;
   measure_strides(max_stride);
-  if (!holds) find();
+  if (!holds) sort_triangles();
+  if (!asked.empty()) find();
   measure_paths();
 }
 
@@ -45,12 +56,11 @@ void CandidatePairs::measure_strides(double max_stride)
 void CandidatePairs::measure_paths()
 {
   path.resize(stride.size());
-  for (std::size_t s = 0; s < path.size(); s++)
-    path[s] = stride[s] + (mesh.start[s] - vertices_then[s]).norm();
+  for (std::size_t s = 0; s < path.size(); s++) path[s] = (mesh.start[s] - vertices_then[s]).norm();
 }
 
-// How far vertices and particles may move before the list is made anew: as far as until the next
-// list build, when it is in any case, but not so far that there are too many candidates.
+// How far vertices, and particles near them, may move before the list is made anew: as far as until
+// the next list build, when it is in any case, but not so far that there are too many candidates.
 
 double CandidatePairs::margin() const
 {
@@ -58,40 +68,64 @@ double CandidatePairs::margin() const
   return thickness * std::clamp(0.5 * neighbor->skin / thickness, 1.0, MAX_MARGIN);
 }
 
-void CandidatePairs::find()
+// at the start of the step, without any candidate
+
+void CandidatePairs::sort_triangles()
 {
-  const double cutoff = max_reach() + 2.0 * margin();
   candidates.clear();
-  discs.build(mesh, cutoff, [this](std::size_t t) {
+  discs.build(mesh, max_reach() + 2.0 * margin(), [this](std::size_t t) {
     const auto &[a, b, c] = mesh.triangles[t];
     return std::max({stride[a], stride[b], stride[c]});
   });
   vertices_then.assign(mesh.start.begin(), mesh.start.begin() + mesh.halo.n_slots());
-  for (int d = 0; d < 3; d++) {
-    const double *last = mesh.last_positions[d];
-    positions_then[d].assign(last, last + atom->nlocal);
-  }
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!mesh.collides(i)) continue;
-    const Sweep particle = mesh.sweep_of(i);
-    const std::size_t first = candidates.size();
-    discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
-      if (mesh.lets_through(t, atom->mask[i])) return;
-      candidates.push_back({i, t, mesh.closest_at_start(particle.start, t).vector.norm()});
-    });
-    std::sort(candidates.begin() + first, candidates.end(),    // whatever the order of cells
-              [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });
-  }
+  for (int d = 0; d < 3; d++) positions_then[d].resize(atom->nlocal);
+  room.assign(atom->nlocal, NOT_ASKED);
 }
 
-// Does the list hold all pairs that may collide in this step?
+// of those that are asked for, in the places of what they had
 
-bool CandidatePairs::still_holds(double max_stride) const
+void CandidatePairs::find()
 {
-  if (positions_then[0].size() != static_cast<std::size_t>(atom->nlocal) ||
-      vertices_then.size() != static_cast<std::size_t>(mesh.halo.n_slots()))
-    return false;
-  return std::max(longest_path_of_vertices(max_stride), longest_path()) <= margin();
+  merged.clear();
+  auto old = candidates.begin();
+  for (const int i : asked) {
+    while (old != candidates.end() && old->particle < i) merged.push_back(*old++);
+    while (old != candidates.end() && old->particle == i) ++old;
+    find_of(i);
+  }
+  merged.insert(merged.end(), old, candidates.end());
+  std::swap(candidates, merged);
+}
+
+// Triangles move by the margin, too, before they are sorted anew.  A particle far from all of them
+// has more room.
+
+void CandidatePairs::find_of(int i)
+{
+  const Sweep particle = mesh.sweep_of(i);
+  const std::size_t first = merged.size();
+  const double cutoff = max_reach() + 2.0 * margin();
+  discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
+    if (mesh.lets_through(t, atom->mask[i])) return;
+    const auto &[a, b, c] = mesh.triangles[t];
+    const ClosestPoints then =
+        closest_points(PairKind::POINT_TRIANGLE,
+                       {particle.start, vertices_then[a], vertices_then[b], vertices_then[c]});
+    merged.push_back({i, t, then.vector.norm()});
+  });
+  std::sort(merged.begin() + first, merged.end(),    // whatever the order of cells
+            [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });
+  for (int d = 0; d < 3; d++) positions_then[d][i] = particle.start[d];
+  room[i] = std::max(margin(), discs.grid.min_distance(particle.start) - max_reach() - margin());
+}
+
+// Does the list hold all triangles that particles within their room may meet in this step?
+
+bool CandidatePairs::triangles_hold(double max_stride) const
+{
+  return room.size() == static_cast<std::size_t>(atom->nlocal) &&
+      vertices_then.size() == static_cast<std::size_t>(mesh.halo.n_slots()) &&
+      longest_path_of_vertices(max_stride) <= margin();
 }
 
 // Of a vertex, since the list was made, with this step: at most
@@ -106,33 +140,42 @@ double CandidatePairs::longest_path_of_vertices(double max_stride) const
   return std::min(std::sqrt(max_stride_sq), max_stride) + std::sqrt(max_before_sq);
 }
 
-// The same of a particle that collides with this mesh.  All particles, twice in each step: one loop
-// without branches.
+// How many particles have left their room?  All of them, twice in each step: one loop without
+// branches.
 
-double CandidatePairs::longest_path() const
+int CandidatePairs::count_beyond_room() const
 {
   const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
-  if (n == 0) return 0.0;
+  if (n == 0) return 0;
   const ParticleColumns &last = mesh.last_positions;
-  const double *const x = atom->x[0];
+  const double *const x = atom->x[0], *const limit = room.data();
   const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
   const double *const x1 = positions_then[0].data(), *const y1 = positions_then[1].data(),
                       *const z1 = positions_then[2].data();
-  double step_sq = 0.0, before_sq = 0.0;
-#pragma omp simd reduction(max : step_sq, before_sq)
+  int beyond = 0;
+#pragma omp simd reduction(+ : beyond)
   for (int i = 0; i < n; i++) {
     const double dx = x[3 * i] - x0[i], dy = x[3 * i + 1] - y0[i], dz = x[3 * i + 2] - z0[i];
     const double ex = x0[i] - x1[i], ey = y0[i] - y1[i], ez = z0[i] - z1[i];
-    const bool meets = (mask[i] & groupbits) != 0;
-    step_sq = std::max(step_sq, meets ? dx * dx + dy * dy + dz * dz : 0.0);
-    before_sq = std::max(before_sq, meets ? ex * ex + ey * ey + ez * ez : 0.0);
+    const double path =
+        std::sqrt(dx * dx + dy * dy + dz * dz) + std::sqrt(ex * ex + ey * ey + ez * ez);
+    beyond += ((mask[i] & groupbits) != 0) & !(path <= limit[i]);
   }
-  return std::sqrt(step_sq) + std::sqrt(before_sq);
+  return beyond;
+}
+
+bool CandidatePairs::is_beyond_room(int i) const
+{
+  if (!mesh.collides(i)) return false;
+  const Sweep particle = mesh.sweep_of(i);
+  const double path =
+      (particle.end - particle.start).norm() + (particle.start - position_then(i)).norm();
+  return !(path <= room[i]);
 }
 
 double CandidatePairs::memory_usage() const
 {
   return discs.bytes() +
-      bytes_of(candidates, positions_then[0], positions_then[1], positions_then[2], vertices_then,
-               stride, path);
+      bytes_of(candidates, merged, positions_then[0], positions_then[1], positions_then[2],
+               vertices_then, stride, path, room, asked);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Broad phase: the particles and triangles of a mesh that may collide in a step.
-// The list is made with a margin, and holds while particles and vertices stay within it, and until
-// the next list build of LAMMPS; update() makes it anew where it holds no longer.  Which pairs are
-// visited does not depend on when that was.
+// The list is made with a margin, and holds until the next list build of LAMMPS, while vertices stay
+// within it and, for each particle, while that does; update() makes it anew where it holds no
+// longer.  Which pairs are visited does not depend on when that was.
 
 #ifndef SPHCLOTH_CONTACT_CANDIDATE_PAIRS_H
 #define SPHCLOTH_CONTACT_CANDIDATE_PAIRS_H
@@ -48,10 +48,10 @@ class CandidatePairs : protected Pointers {
         reach_then = reach_at_start + (sweep.start - position_then(last)).norm();
       }
       const auto &[i, j, k] = mesh.triangles[c.triangle];
-      if (c.distance > reach_then + std::max({path[i], path[j], path[k]})) continue;
+      const double ahead = std::max({stride[i], stride[j], stride[k]});
+      if (c.distance > reach_then + ahead + std::max({path[i], path[j], path[k]})) continue;
       const sphcloth::ClosestPoints at = mesh.closest_at_start(sweep.start, c.triangle);
-      if (at.vector.norm() <= reach_at_start + std::max({stride[i], stride[j], stride[k]}))
-        visit(last, c.triangle, at);
+      if (at.vector.norm() <= reach_at_start + ahead) visit(last, c.triangle, at);
     }
   }
   double max_reach() const;
@@ -61,24 +61,29 @@ class CandidatePairs : protected Pointers {
  private:
   struct Candidate {
     int particle, triangle;
-    double distance;    // when the list was made
+    double distance;    // of where the particle was asked for from where the triangle then was
   };
 
   const MovingTriangles &mesh;
-  std::vector<Candidate> candidates;
-  // at the start of the step when the list was made: of owned atoms, of vertices by slot
+  std::vector<Candidate> candidates, merged;    // in the order of particles
+  // at the start of the step when they were asked for: of owned atoms; by slot, of vertices
   std::array<std::vector<double>, 3> positions_then;
   std::vector<Vec3> vertices_then;
-  std::vector<double> stride, path;    // of vertices: in this step; and since then, with this step
+  std::vector<double> room;    // of owned atoms: how far their candidates hold
+  std::vector<int> asked;    // owned atoms whose candidates are found anew
+  std::vector<double> stride, path;    // of vertices: in this step; from then to its start
   TriangleDiscs discs;
 
+  void sort_triangles();
   void find();
+  void find_of(int particle);
   void measure_strides(double max_stride);
   void measure_paths();
-  bool still_holds(double max_stride) const;
+  bool triangles_hold(double max_stride) const;
   double margin() const;
   double longest_path_of_vertices(double max_stride) const;
-  double longest_path() const;
+  int count_beyond_room() const;
+  bool is_beyond_room(int i) const;
   Vec3 position_then(int i) const
   {
     return {positions_then[0][i], positions_then[1][i], positions_then[2][i]};

@@ -67,6 +67,16 @@ class DiscGrid {
       }
   }
 
+  // no disc is nearer to p than this, which is 0 or below inside their bounds
+  double min_distance(const Eigen::Vector3d &p) const
+  {
+    double min = std::numeric_limits<double>::infinity();
+    for (const Size &size : sizes)
+      if (!size.grid.empty())
+        min = std::min(min, std::sqrt(size.grid.bounds.squaredExteriorDistance(p)) - size.largest);
+    return min;
+  }
+
   // of those the ones that are not farther than the nearest center of all, and `slack`
 
   template <class Visit>

@@ -29,7 +29,7 @@ using namespace FixConst;
 
 FixClothAir::FixClothAir(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/air", id)), options(lmp, label),
-    water(lmp)
+    water(lmp), shade(lmp)
 {
   vector_flag = 1;
   size_vector = 6;
@@ -69,7 +69,7 @@ void FixClothAir::init()
   std::sort(in_group.begin(), in_group.end());
   for (FixPBDCloth *cloth : cloths_before(lmp, this, label)) {
     auto mesh = std::make_unique<AirMesh>(lmp, cloth, in_group);
-    if (!mesh->empty()) cloths.push_back({cloth, std::move(mesh), {}});
+    if (!mesh->empty()) cloths.push_back({cloth, std::move(mesh), nullptr, {}});
   }
   refuse_vertices_of_others();
   if (cloths.empty())
@@ -78,6 +78,12 @@ void FixClothAir::init()
         "{}: group {} holds no triangle of a cloth: give the group of a fix pbd/cloth that is "
         "defined before, whose cloth has triangles (create_cloth makes them)",
         label, group->names[igroup]);
+  if (options.added_thickness == 0.0) return;
+  for (Cloth &cloth : cloths) {
+    cloth.added = std::make_unique<AddedMass>(lmp, cloth.fix, cloth.mesh.get(),
+                                              options.drag.density * options.added_thickness);
+    cloth.fix->register_first_coupling(cloth.added.get());
+  }
 }
 
 // Each would take the push of the other for something that goes on in the next step.
@@ -102,7 +108,10 @@ void FixClothAir::refuse_vertices_of_others()
 
 void FixClothAir::post_neighbor()
 {
-  for (Cloth &cloth : cloths) cloth.mesh->rebuild();
+  for (Cloth &cloth : cloths) {
+    cloth.mesh->rebuild();
+    if (cloth.added) cloth.added->rebuild();
+  }
 }
 
 // Wind and water of the time of the positions: at the start of the next step some have moved.
@@ -121,9 +130,11 @@ void FixClothAir::initial_integrate(int)
 {
   impulse.setZero();
   area = 0.0;
+  for (Cloth &cloth : cloths) load(cloth);
+  if (options.shaded) find_shade();
   for (Cloth &cloth : cloths) {
-    load(cloth);
     area += cloth.mesh->add_loads(options.drag, update->dt);
+    if (cloth.added) cloth.added->find_shares();
     apply(cloth);
   }
   last_dt = update->dt;
@@ -143,6 +154,7 @@ void FixClothAir::load(Cloth &cloth)
   cloth.velocity.resize(halo.n_owned());
   std::fill(mesh.v.begin(), mesh.v.end(), Vec3::Zero());
   options.wind.add_to(halo, mesh.v);
+  if (options.shaded) mesh.wind = mesh.v;
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     const double w = dt * force->ftm2v * cloth.fix->inverse_mass(i);
@@ -153,6 +165,14 @@ void FixClothAir::load(Cloth &cloth)
     mesh.gain[s] = std::isnan(motion[GAIN][i]) ? Vec3(w * Vec3(atom->f[i]))
                                                : Vec3(by * kept(GAIN, i));
   }
+  mesh.forward_motion();
+}
+
+void FixClothAir::find_shade()
+{
+  std::vector<AirMesh *> meshes;
+  for (const Cloth &cloth : cloths) meshes.push_back(cloth.mesh.get());
+  shade.find(meshes);
 }
 
 void FixClothAir::apply(const Cloth &cloth)
@@ -183,12 +203,14 @@ void FixClothAir::end_step(const Cloth &cloth)
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const int i = mesh.halo.atom_of(s);
     const Vec3 &j = mesh.impulse[s], &before = cloth.velocity[s];
+    const Vec3 of_added = cloth.added ? cloth.added->impulse_on_mesh(s) : Vec3::Zero();
     const double w = cloth.fix->inverse_mass(i);
     const Vec3 v = w == 0.0 ? Vec3(atom->v[i]) : Vec3((Vec3(atom->x[i]) - mesh.x[s]) / update->dt);
     const bool first = std::isnan(motion[VELOCITY][i]);
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Vec3 gain = first || w == 0.0 ? Vec3::Constant(unknown) : Vec3(v - before - w * j);
-    step_work += 0.5 * j.dot(before + v);
+    impulse += of_added;
+    step_work += 0.5 * (j + of_added).dot(before + v);
     for (int d = 0; d < 3; d++) {
       motion[VELOCITY + d][i] = v[d];
       motion[GAIN + d][i] = gain[d];
@@ -271,8 +293,9 @@ void FixClothAir::restart(char *buf)
 
 double FixClothAir::memory_usage()
 {
-  double bytes = motion.bytes() + options.wind.bytes() + water.bytes();
+  double bytes = motion.bytes() + options.wind.bytes() + water.bytes() + shade.bytes();
   for (const Cloth &cloth : cloths)
-    bytes += cloth.mesh->bytes() + sphcloth::bytes_of(cloth.velocity);
+    bytes += cloth.mesh->bytes() + (cloth.added ? cloth.added->bytes() : 0.0) +
+        sphcloth::bytes_of(cloth.velocity);
   return bytes;
 }

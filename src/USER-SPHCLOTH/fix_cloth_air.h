@@ -12,9 +12,11 @@ FixStyle(cloth/air,FixClothAir);
 
 #include "fix.h"
 
+#include "air/added_mass.h"
 #include "air/air_mesh.h"
 #include "air/air_options.h"
 #include "air/water_beside.h"
+#include "air/wind_shade.h"
 #include "lammps_util/particle_columns.h"
 
 #include <Eigen/Core>
@@ -60,12 +62,14 @@ class FixClothAir : public Fix {
   struct Cloth {
     FixPBDCloth *fix;
     std::unique_ptr<AirMesh> mesh;
+    std::unique_ptr<AddedMass> added;    // null: there is none
     std::vector<Vec3> velocity;    // of owned vertices, before the step
   };
 
   std::string label;
   AirOptions options;
   WaterBeside water;
+  WindShade shade;
   std::vector<Cloth> cloths;
   // of the last step, per atom: mean velocity of a vertex, and what it gained of that by all but
   // the air; not a number before the first
@@ -84,6 +88,7 @@ class FixClothAir : public Fix {
   }
   void refuse_vertices_of_others();
   void load(Cloth &);
+  void find_shade();
   void apply(const Cloth &);
   void end_step(const Cloth &);
 };

@@ -74,15 +74,22 @@ void AirMesh::find_inverse_mass()
                                      of_vertex[triangles.slot[2][t]]);
 }
 
-double AirMesh::add_loads(const sphcloth::AirDrag &drag, double dt)
+void AirMesh::forward_motion()
 {
   halo.forward_positions(ALL, x.data());
   halo.forward_velocities(ALL, v.data());
   halo.forward(ALL, gain.data());
+  if (wind.empty()) return;
+  halo.forward(ALL, wind.data());
+  triangles.lee_share.resize(triangles.size());
+}
+
+double AirMesh::add_loads(const sphcloth::AirDrag &drag, double dt)
+{
   find_open_share();
   std::fill(impulse.begin(), impulse.end(), Vec3::Zero());
-  const double area =
-      add_air_impulses(triangles, {x.data(), v.data(), gain.data()}, drag, dt, impulse.data());
+  const double area = add_air_impulses(triangles, {x.data(), v.data(), gain.data(), wind.data()},
+                                       drag, dt, impulse.data());
   halo.reverse_add(ALL, impulse.data());
   return area;
 }
@@ -113,10 +120,23 @@ void AirMesh::find_open_share()
   }
 }
 
+void AirMesh::find_dry_areas(std::vector<Vec3> &area)
+{
+  area.assign(halo.n_slots(), Vec3::Zero());
+  for (int t = 0; t < triangles.size(); t++) {
+    const auto [a, b, c] = triangle(t);
+    const double dry = triangles.open_share.empty() ? 1.0 : triangles.open_share[t];
+    const Vec3 third = dry / 6.0 * (b - a).cross(c - a);
+    for (const std::vector<int> &slots : triangles.slot) area[slots[t]] += third;
+  }
+  halo.reverse_add(ALL, area.data());
+}
+
 double AirMesh::bytes() const
 {
   using sphcloth::bytes_of;
-  double sum = halo.memory_usage() + bytes_of(x, v, gain, impulse, water, water_side, n_triangles);
+  double sum =
+      halo.memory_usage() + bytes_of(x, v, gain, wind, impulse, water, water_side, n_triangles);
   for (const std::vector<int> &slots : triangles.slot) sum += bytes_of(slots);
-  return sum + bytes_of(triangles.inverse_mass, triangles.open_share);
+  return sum + bytes_of(triangles.inverse_mass, triangles.open_share, triangles.lee_share);
 }

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -26,6 +27,7 @@ class AirMesh : protected Pointers {
   VertexHalo halo;
   // by slot: motion of owned vertices, to be set; impulses, 0 before they are added
   std::vector<Vec3> x, v, gain, impulse;
+  std::vector<Vec3> wind;    // of owned vertices, to be set; empty: there is no lee
   // water beside owned vertices, to be set: the share of space that it fills, and the mean of its
   // directions times this.  Empty: there is none.
   std::vector<double> water;
@@ -34,8 +36,19 @@ class AirMesh : protected Pointers {
   bool empty() const { return n_felt == 0; }
   // after each list build
   void rebuild();
+  void forward_motion();    // to ghosts
   // collective; returns the area that takes air, of this rank's triangles
   double add_loads(const sphcloth::AirDrag &, double dt);
+  // by slot, of owned vertices: a third of each triangle, as far as no water covers it; collective
+  void find_dry_areas(std::vector<Vec3> &);
+
+  // of this rank; behind forward_motion()
+  int n_triangles_here() const { return triangles.size(); }
+  std::array<Vec3, 3> triangle(int t) const
+  {
+    return {x[triangles.slot[0][t]], x[triangles.slot[1][t]], x[triangles.slot[2][t]]};
+  }
+  void set_lee_share(int t, double share) { triangles.lee_share[t] = share; }
   double bytes() const;
 
  private:

@@ -29,6 +29,10 @@ void AirOptions::read(ArgReader &args)
       wind.read_mean(args);
     else if (keyword == "gust")
       wind.read_gust(args);
+    else if (keyword == "shaded")
+      shaded = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "added_mass")
+      added_thickness = args.at_least("added_mass", 0.0);
     else if (keyword == "normal" || keyword == "tangential") {
       const bool normal = keyword == "normal";
       (normal ? drag.coefficients.normal : drag.coefficients.tangential) =
@@ -37,7 +41,7 @@ void AirOptions::read(ArgReader &args)
     } else if (keyword == "table")
       table = args.word("file of 'table'");
     else
-      args.unknown(keyword, "density, wind, gust, normal, tangential, table");
+      args.unknown(keyword, "density, wind, gust, normal, tangential, table, shaded, added_mass");
   }
   if (!has_density)
     error->all(FLERR,

@@ -16,6 +16,8 @@ class AirOptions : protected Pointers {
  public:
   sphcloth::AirDrag drag;
   Wind wind;
+  bool shaded = false;    // cloth keeps the wind off cloth in its lee
+  double added_thickness = 0.0;    // of air that moves along with the cloth
 
   AirOptions(LAMMPS *lmp_, const std::string &owner_) :
       Pointers(lmp_), wind(lmp_, owner_), owner(owner_)

@@ -43,6 +43,11 @@ void load(Batch &b, const AirTriangles &t, const AirMotion &motion, int begin, i
       b.u[d][k] = (motion.v[s0][d] + motion.v[s1][d] + motion.v[s2][d]) * (-1.0 / 3.0);
       b.gain[d][k] = (motion.gain[s0][d] + motion.gain[s1][d] + motion.gain[s2][d]) * (1.0 / 3.0);
     }
+    if (!t.lee_share.empty()) {
+      const double kept_off = t.lee_share[m] * (1.0 / 3.0);
+      for (int d = 0; d < 3; d++)
+        b.u[d][k] -= kept_off * (motion.wind[s0][d] + motion.wind[s1][d] + motion.wind[s2][d]);
+    }
     b.dry[k] = t.open_share.empty() ? 1.0 : t.open_share[m];
     b.inverse_mass[k] = t.inverse_mass[m];
   }

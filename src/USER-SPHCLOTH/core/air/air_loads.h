@@ -33,6 +33,7 @@ struct AirTriangles {
   // sum over its vertices of their number of triangles over their mass, over 9; 0 if all are held
   std::vector<double> inverse_mass;
   std::vector<double> open_share;    // of the force that is not kept off by water; empty: 1
+  std::vector<double> lee_share;    // of the wind that is kept off by other cloth; empty: 0
 
   int size() const { return static_cast<int>(slot[0].size()); }
 };
@@ -41,6 +42,7 @@ struct AirMotion {
   const Eigen::Vector3d *x = nullptr;    // where the vertices are
   const Eigen::Vector3d *v = nullptr;    // velocity minus that of the air
   const Eigen::Vector3d *gain = nullptr;    // of velocity in this step, by all but the air
+  const Eigen::Vector3d *wind = nullptr;    // velocity of the air, where there is a lee
 };
 
 struct AirDrag {

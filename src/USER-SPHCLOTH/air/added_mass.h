@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Air that moves along with a cloth, across it: a mass that is added to that of the vertices in the
+// direction of their normal, behind each sweep of the solver.
+//
+// What a sweep, or a force, gives to a vertex across the cloth is less by the share of the air in
+// both masses; the air gets the rest.  A step of a mass matrix m + m_a n n^T, whose constraints are
+// projected with m: where they pull across the cloth they need more substeps to get their way.
+
+#ifndef SPHCLOTH_AIR_ADDED_MASS_H
+#define SPHCLOTH_AIR_ADDED_MASS_H
+
+#include "air/air_mesh.h"
+#include "cloth/solver_coupling.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixPBDCloth;
+
+class AddedMass : public SolverCoupling, protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+
+  // areal: mass of the air over the area of the cloth
+  AddedMass(LAMMPS *lmp_, const FixPBDCloth *cloth_, AirMesh *mesh_, double areal_) :
+      Pointers(lmp_), cloth(cloth_), mesh(mesh_), areal(areal_)
+  {
+  }
+
+  void rebuild();    // after each list build
+  // at the start of a step, when it is known what is dry; collective
+  void find_shares();
+
+  bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
+  void begin_substep(const sphcloth::Vertex *, const sphcloth::Vertex *, double dt) override;
+  void project(sphcloth::Vertex *displacement) override;
+  void end_substep(sphcloth::Vertex *v, double dt) override;
+  void end_step() override {}
+  Vec3 impulse_on(int slot) const override { return received[slot]; }
+
+  // of an owned vertex of the mesh, which is another order
+  Vec3 impulse_on_mesh(int slot) const { return received[slot_in_solver[slot]]; }
+  double bytes() const;
+
+ private:
+  const FixPBDCloth *const cloth;
+  AirMesh *const mesh;
+  const double areal;
+  std::vector<int> slot_in_solver;    // of owned vertices of the mesh
+  // of owned vertices of the solver, in its order
+  std::vector<double> share;    // of the air in the mass across the cloth; 0 of a held vertex
+  std::vector<Vec3> normal, received;
+  std::vector<Vec3> before;    // velocity at the start of the substep, without its forces
+  std::vector<Vec3> expected;    // displacement by that and by what the vertex got so far
+  std::vector<Vec3> area;    // of vertices of the mesh
+  double substep_dt = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -35,7 +35,7 @@ TINY = {
     name: ("tiny", {})
     for name in (
         *("balloon", "chair", "cloth_on_water", "curtain", "hammock", "net", "pour", "sail"),
-        *("shower", "stack", "strainer", "towel", "two_resolutions"),
+        *("shower", "stack", "strainer", "towel", "two_resolutions", "water_balloon"),
     )
 }
 RUNS = {**TINY, "banner": ("small", {"t_end": "1.0", "frames": "10"})}

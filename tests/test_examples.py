@@ -178,10 +178,20 @@ def test_a_net_streams_out_behind_its_upper_edge(tmp_path):
     assert held == pytest.approx(drag, rel=0.15)
 
 
+def test_a_bag_of_rubber_grows_with_the_water_in_it(tmp_path):
+    summary, table = run("water_balloon", tmp_path)
+    assert summary["crossed"] == 0 and summary["spilled"] == 0
+    assert summary["poured"] > 150
+    assert table["v_lowest"][0] == pytest.approx(-0.06)
+    assert table["v_lowest"][-1] < -0.07
+    assert 0.05 < table["v_strain"].max() < 1
+
+
 @pytest.mark.parametrize(
     ("example", "mesh", "scripts"),
     [
         ("balloon", "balloon", ["balloon/make_balloon.py"]),
+        ("water_balloon", "bag", ["water_balloon/make_bag.py"]),
         ("shower", "shirt", ["shower/make_shirt.py"]),
         ("chair", "chair", ["shower/make_shirt.py", "chair/make_chair.py"]),
     ],

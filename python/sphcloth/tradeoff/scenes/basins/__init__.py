@@ -12,9 +12,9 @@ SCENE = replace(
     summary="a drop falls into the first of twelve basins at rest, two dimensions",
     variations={
         "constant": {"acoustic": ("0.8", "1.2", "1.4", "1.6", "1.8", "2.0")},
-        "global": {"acoustic": ("1.2", "1.6", "1.8"), "force": ("0.2",)},
-        "individual": {"acoustic": ("0.8", "1.2"), "ceiling": ("1.0",)},
-        "block": {"acoustic": ("1.2", "1.6", "1.8"), "sleep": ("0.005", "0.01", "0.02")},
+        "global": {"stability": ("0.475", "0.7", "0.95")},
+        "individual": {"stability": ("0.475", "0.95"), "ceiling": ("1.0",)},
+        "block": {"stability": ("0.475", "0.7", "0.95"), "sleep": ("0.005", "0.01", "0.02")},
     },
     variables=resting_pool.SCENE.variables
     | {"basins": "12", "width": "0.4", "t_settle": "4.0", "t_end": "4.8"},

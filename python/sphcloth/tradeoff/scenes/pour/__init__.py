@@ -6,11 +6,10 @@ from collections.abc import Mapping
 
 from sphcloth.examples import find_example
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.variations import SHARES
 
 SAMPLES = 25
 STEPS = ("0.25", "0.5", "0.75", "1.0")
-# light wet cloth bears longer steps than the default gives it, since there is contact
-ADAPTIVE = {"acoustic": STEPS[1:], "wetted": ("0.5", "1.6", "2.8"), "force": ("0.2",)}
 # sound over reference speed, by the script's density fluctuation of 1 %
 MACH = 10.0
 
@@ -41,9 +40,9 @@ SCENE = Scene(
     ),
     variations={
         "constant": {"acoustic": STEPS},
-        "global": ADAPTIVE,
-        "individual": {"acoustic": STEPS[:3]},
-        "block": ADAPTIVE,
+        "global": {"stability": SHARES},
+        "individual": {"stability": SHARES},
+        "block": {"stability": SHARES},
     },
     reference={"scheme": "constant", "acoustic": "0.1"},
     variables=POUR.sizes()["medium"] | SHARED | {"t_end": "2.0"},

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
-from sphcloth.tradeoff.variations import COEFFICIENTS, ONE_RESOLUTION
+from sphcloth.tradeoff.variations import ONE_RESOLUTION, SHARES
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.02
@@ -27,7 +27,7 @@ SCENE = Scene(
         Quantity("potential", "potential energy", column("v_potential"), by_range=True),
     ),
     variations=ONE_RESOLUTION
-    | {"block": {"acoustic": COEFFICIENTS[1:6], "sleep": ("0.0", "0.02", "0.1")}},
+    | {"block": {"stability": SHARES[1:], "sleep": ("0.0", "0.02", "0.1")}},
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={"calm": str(INTERVAL), "frames": "1"},
     quick={"spacing": "0.02", "width": "1.6"},

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
-from sphcloth.tradeoff.variations import CEILINGS, FORCE
+from sphcloth.tradeoff.variations import CEILINGS, SHARES
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.03
 COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
 # for schemes in which particles have steps of their own
-UNEQUAL = {"acoustic": COEFFICIENTS[1::2], "ceiling": CEILINGS}
+UNEQUAL = {"stability": SHARES[1:], "ceiling": CEILINGS}
 
 
 def clock(values: Mapping[str, float]) -> Clock:
@@ -31,9 +31,9 @@ SCENE = Scene(
     ),
     variations={
         "constant": {"acoustic": COEFFICIENTS},
-        "global": {"acoustic": COEFFICIENTS[1::2], "force": FORCE},
+        "global": {"stability": SHARES},
         "individual": UNEQUAL,
-        "block": UNEQUAL | {"ceiling": ("4.0", "8.0"), "force": FORCE},
+        "block": UNEQUAL | {"ceiling": ("4.0", "8.0")},
     },
     reference={"scheme": "constant", "acoustic": "0.1"},
     variables={"calm": str(INTERVAL), "frames": "1"},

@@ -114,7 +114,7 @@ def test_the_weight_of_a_sheet_moves_the_air_too(solver):
         lmp.command("run 1")
         first = by_id(lmp, "v")
         lmp.command("run 1")
-        x, v = by_id(lmp, "x"), by_id(lmp, "v")
+        v = by_id(lmp, "v")
         force = lmp.extract_fix("air", 0, 1, 2, 0)
         work = lmp.extract_fix("air", 0, 1, 4, 0)
         mass = lmp.numpy.extract_atom("mass")[1]

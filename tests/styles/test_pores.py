@@ -280,19 +280,18 @@ def test_any_number_of_ranks_and_a_restart_give_the_same(tmp_path, ranks):
 
 
 ERRORS = [
-    ("gauze", "darcy -1", r"fix pores cloth/pores: darcy is '-1'.*>= 0"),
-    ("gauze", "forchheimer nan", r"forchheimer is 'nan'.*finite"),
-    ("gauze", "", r"the resistance is missing.*darcy"),
-    ("gauze", "medium 0 1 1", r"permeability of 'medium' is '0'.*> 0"),
-    ("gauze", "medium 1e-9 1e-3 0", r"'medium' takes the viscosity.*type 1 has none.*'nu'"),
-    ("gauze", "screen 0.6 0.01", r"solidity of 'screen' is '0.6'.*up to 0.4"),
-    ("gauze", "color red", r"unknown keyword 'color'.*darcy"),
+    ("darcy -1", r"fix pores cloth/pores: darcy is '-1'.*>= 0"),
+    ("forchheimer nan", r"forchheimer is 'nan'.*finite"),
+    ("", r"the resistance is missing.*darcy"),
+    ("medium 0 1 1", r"permeability of 'medium' is '0'.*> 0"),
+    ("medium 1e-9 1e-3 0", r"'medium' takes the viscosity.*type 1 has none.*'nu'"),
+    ("screen 0.6 0.01", r"solidity of 'screen' is '0.6'.*up to 0.4"),
+    ("color red", r"unknown keyword 'color'.*darcy"),
 ]
 
 
-@pytest.mark.parametrize(("scene", "words", "message"), ERRORS)
-def test_bad_words_are_refused(tmp_path, scene, words, message):
-    assert scene == "gauze"
+@pytest.mark.parametrize(("words", "message"), ERRORS)
+def test_bad_words_are_refused(words, message):
     with instance() as lmp, pytest.raises(Exception, match=message):
         lmp.commands_string(gauze(words) + "run 0")
 

@@ -138,12 +138,7 @@ PoreMesh::Vec3 PoreMesh::slow_down(double &lost)
     Vec3 u = Vec3(v);
     for (int q = 0; q < 3; q++)
       u -= pair.weight[q] * Vec3(atom->v[set->halo.atom_of(pair.vertices[q])]);
-    const double across = u.dot(pair.toward), by = dt / pair.mass;
-    const double left = slowed(across, by * pair.drag.across, by * pair.forchheimer);
-    const double rate = by * pair.drag.along;
-    const Vec3 change =
-        (across - left) * pair.toward + rate / (1.0 + rate) * (u - across * pair.toward);
-    const Vec3 impulse = pair.mass * change;
+    const Vec3 change = pair.taken_from(u, dt, 1.0 / pair.mass), impulse = pair.mass * change;
     for (int d = 0; d < 3; d++) {
       v[d] -= change[d];
       x[d] -= dt * change[d];

@@ -26,6 +26,15 @@ struct PorePair {
   double share;    // of the pressure, over the width of the layer
   sphcloth::PoreDrag drag;    // mass over time
   double forchheimer;    // mass over length
+
+  // What the drag takes from a velocity relative to the mesh in a time, where a push changes that
+  // velocity by the push times the mobility.
+  Vec3 taken_from(const Vec3 &u, double time, double mobility) const
+  {
+    const double by = time * mobility, closing = u.dot(toward), rate = by * drag.along;
+    const double left = sphcloth::slowed(closing, by * drag.across, by * forchheimer);
+    return (closing - left) * toward + rate / (1.0 + rate) * (u - closing * toward);
+  }
 };
 
 class PoreMesh : protected Pointers {

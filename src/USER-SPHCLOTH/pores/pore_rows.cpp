@@ -86,13 +86,8 @@ void PoreRows::solve(std::size_t k)
   Row &row = rows[k];
   row.relative = substep_dt * row.velocity + (row.mobility - 1.0 / pair.mass) * row.correction;
   for (int q = 0; q < 3; q++) row.relative -= pair.weight[q] * displaced[pair.vertices[q]];
-  const double closing = row.relative.dot(pair.toward), by = substep_dt * row.mobility;
-  const double left =
-      substep_dt * slowed(closing / substep_dt, by * pair.drag.across, by * pair.forchheimer);
-  const double rate = by * pair.drag.along;
-  const Vec3 correction = ((closing - left) * pair.toward +
-                           rate / (1.0 + rate) * (row.relative - closing * pair.toward)) /
-      row.mobility;
+  const Vec3 taken = pair.taken_from(row.relative / substep_dt, substep_dt, row.mobility);
+  const Vec3 correction = substep_dt / row.mobility * taken;
   const Vec3 step = correction - row.correction;
   row.correction = correction;
   for (int q = 0; q < 3; q++) push[pair.vertices[q]] += pair.weight[q] * step;

@@ -80,7 +80,7 @@ void FixClothAir::init()
         label, group->names[igroup]);
   if (options.added_thickness == 0.0) return;
   for (Cloth &cloth : cloths) {
-    cloth.added = std::make_unique<AddedMass>(lmp, cloth.fix, cloth.mesh.get(),
+    cloth.added = std::make_unique<AddedMass>(lmp, cloth.mesh.get(),
                                               options.drag.density * options.added_thickness);
     cloth.fix->register_first_coupling(cloth.added.get());
   }

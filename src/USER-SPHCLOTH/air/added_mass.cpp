@@ -5,7 +5,6 @@
 
 #include "atom.h"
 #include "core/util/bytes.h"
-#include "fix_pbd_cloth.h"
 #include "force.h"
 
 #include <algorithm>
@@ -18,7 +17,7 @@ void AddedMass::rebuild()
   slot_in_solver.clear();
   int in_mesh = 0, n = 0;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!cloth->has_vertex(i)) continue;
+    if (!mesh->mesh->has_vertex(i)) continue;
     if (in_mesh < mesh->halo.n_owned() && mesh->halo.atom_of(in_mesh) == i) {
       slot_in_solver.push_back(n);
       in_mesh++;
@@ -34,7 +33,7 @@ void AddedMass::find_shares()
 {
   mesh->find_dry_areas(area);
   for (int s = 0; s < mesh->halo.n_owned(); s++) {
-    const double size = area[s].norm(), w = cloth->inverse_mass(mesh->halo.atom_of(s));
+    const double size = area[s].norm(), w = mesh->mesh->inverse_mass(mesh->halo.atom_of(s));
     const double of_air = areal * size * w;    // over the mass of the vertex
     share[slot_in_solver[s]] = of_air / (1.0 + of_air);
     normal[slot_in_solver[s]] = size > 0.0 ? Vec3(area[s] / size) : Vec3::Zero();
@@ -49,7 +48,7 @@ bool AddedMass::begin_step(const Vertex *start, const Vertex *end, double dt)
   for (std::size_t k = 0; k < slot_in_solver.size(); k++) {
     const int s = slot_in_solver[k], i = mesh->halo.atom_of(static_cast<int>(k));
     const Vec3 way(end[s].x - start[s].x, end[s].y - start[s].y, end[s].z - start[s].z);
-    before[s] = way / dt - dt * force->ftm2v * cloth->inverse_mass(i) * Vec3(atom->f[i]);
+    before[s] = way / dt - dt * force->ftm2v * mesh->mesh->inverse_mass(i) * Vec3(atom->f[i]);
   }
   return true;
 }

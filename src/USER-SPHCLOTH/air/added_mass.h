@@ -16,15 +16,13 @@
 
 namespace LAMMPS_NS {
 
-class FixPBDCloth;
-
 class AddedMass : public SolverCoupling, protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
   // areal: mass of the air over the area of the cloth
-  AddedMass(LAMMPS *lmp_, const FixPBDCloth *cloth_, AirMesh *mesh_, double areal_) :
-      Pointers(lmp_), cloth(cloth_), mesh(mesh_), areal(areal_)
+  AddedMass(LAMMPS *lmp_, AirMesh *mesh_, double areal_) :
+      Pointers(lmp_), mesh(mesh_), areal(areal_)
   {
   }
 
@@ -44,7 +42,6 @@ class AddedMass : public SolverCoupling, protected Pointers {
   double bytes() const;
 
  private:
-  const FixPBDCloth *const cloth;
   AirMesh *const mesh;
   const double areal;
   std::vector<int> slot_in_solver;    // of owned vertices of the mesh

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Broad phase: the particles and triangles of a mesh that may collide in a step.
-// The list is made with a margin, and holds until the next list build of LAMMPS, while vertices stay
-// within it and, for each particle, while that does; update() makes it anew where it holds no
+// The list is made with a margin, and holds until the next list build of LAMMPS, while vertices
+// stay within it and, for each particle, while that does; update() makes it anew where it holds no
 // longer.  Which pairs are visited does not depend on when that was.
 
 #ifndef SPHCLOTH_CONTACT_CANDIDATE_PAIRS_H

@@ -68,7 +68,7 @@ COMPLIANT = replace(
     fixes=COMPLIANT.fixes
     + "variable breeze equal 20[m/s]-300[m/s^2]*time\n"
     + "fix air cloth cloth/air density 1.2[kg/m^3] wind v_breeze 0 -10[m/s] &\n"
-    + "  gust 5[m/s] 0.5[m] 11 normal 1.3 tangential 0.02\n",
+    + "  gust 5[m/s] 0.5[m] 11 normal 1.3 tangential 0.02 shaded yes added_mass 0.05[m]\n",
 )
 # the sheet itself is the boundary of the water
 SHEET_AS_WALL = replace(
@@ -160,7 +160,8 @@ ROUND = Scene(
     fixes=gravity(g="9.81[N/kg]")
     + "fix sheet cloth pbd/cloth pin pins damping 1[1/s]\n"
     + "variable gale atom 5[m/s]-20[1/s]*y\n"
-    + "fix air cloth cloth/air density 1.2[kg/m^3] wind v_gale 0 1[m/s]\n",
+    + "fix air cloth cloth/air density 1.2[kg/m^3] wind v_gale 0 1[m/s] &\n"
+    + "  tangential 0.02 added_mass 0.1[m] shaded yes\n",
     steps=10,
 )
 

@@ -3,6 +3,7 @@
 import io
 import itertools
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from sphcloth.bench import peers, splishsplash
 from sphcloth.bench.peers import Code, Point, at_equal_error, bench_peers, cost_at, front
 from sphcloth.bench.water_density import DensityError, densities, density_error, inside
 from sphcloth.errors import UserError
+from sphcloth.run import lammps_command
+from sphcloth.trajectory import Trajectory
 
 TINY = {"across": 15, "steps": 5}
 
@@ -49,6 +52,17 @@ def test_the_error_is_that_of_all_frames_and_its_tail() -> None:
     assert error.tail == pytest.approx(1.003 * 0.99**-3 - 1, abs=0.002)
     assert error.mean == pytest.approx(0.5 * (0.003 + 0.033), abs=0.003)
     assert error.bias == error.mean
+
+
+def test_water_stays_whole_where_steps_are_unequal(tmp_path: Path) -> None:
+    """By default: with steps of neighbors in a ratio of 4 holes of half the density open."""
+    settings = {"code": "double", "scheme": "block", "sound": "30", "time": "0.2"}
+    command = lammps_command(Path(peers.__file__).parent / "in.peers", 1, settings)
+    subprocess.run(command, cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+    frames = [frame.positions for frame in Trajectory(tmp_path / "water.dump")]
+    error = density_error(frames[3:], 0.05)
+    assert len(frames) == 6
+    assert error.mean < 0.01 and error.tail < 0.04
 
 
 def test_too_little_water_is_an_error_that_says_what_to_do() -> None:

@@ -18,7 +18,7 @@ class OutputTimes;
 // of the scheme block
 
 struct BlockOptions {
-  int ratio = 4;         // largest ratio of a particle's step to a neighbor's, 2 or 4
+  int ratio = 2;         // largest ratio of a particle's step to a neighbor's, 2 or 4
   double gain = 2.0;     // how many times fewer updates unequal steps have to need
   bool waking = true;    // may the step of an inactive particle end early?
   double sleep = 0.0;    // speed below which water sleeps, 0: never

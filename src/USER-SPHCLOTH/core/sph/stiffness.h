@@ -25,6 +25,7 @@ namespace sphcloth {
 struct Stiffness {
   double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
   double gradient[3] = {};    // d rho/d x of itself
+  double spring = 0.0;    // the same of what holds it alone, and adds to the largest eigenvalue
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
   // with its own motion

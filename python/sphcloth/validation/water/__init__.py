@@ -38,7 +38,7 @@ DROPS: tuple[tuple[str, dict[str, Value]], ...] = (
     *(("global", {"limits": f"acoustic {share}"}) for share in (0.25, 0.5)),
     ("individual", {"limits": "acoustic 0.25"}),
     ("block", {"limits": "acoustic 0.25 ratio 2"}),
-    *(("block", {"limits": f"acoustic {share}"}) for share in (0.25, 0.5)),
+    *(("block", {"limits": f"acoustic {share} ratio 4"}) for share in (0.25, 0.5)),
 )
 MEET = 0.12
 

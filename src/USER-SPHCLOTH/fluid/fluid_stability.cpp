@@ -75,7 +75,7 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
     for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
     const double mass = atom_mass(atom, i), sound = sounds[i];
     const LatticeModes &of_lattice = modes(t, mass);
-    found[i].fluid_sq = of_lattice.sound * sound * sound * s.total(mass);
+    found[i].fluid_sq = sound * sound * s.largest(mass, of_lattice.sound);
     if (s.spring > 0.0) found[i].fluid_sq += sound * sound * s.spring;
     found[i].friction = of_lattice.friction * s.friction;
   });

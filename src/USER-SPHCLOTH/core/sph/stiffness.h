@@ -6,7 +6,10 @@
 // with the masses, K has the same eigenvalues as the matrix of s_k s_l sum_j g_kj . g_lj/m_j over
 // pairs of fluid particles under pressure: its fluid part is bounded by the largest diagonal entry
 // times the factor of the lattice (core/sph/lattice_modes.h), which is largest where there is
-// order.
+// order.  In order there are no g_kk.  At a free surface they are large, and move a particle alone:
+// with f the factor, F the sum over j != k and G = |g_kk|^2/m_k, the roots of the largest
+// eigenvalues add up to no more than sqrt((f-1) F) + sqrt(G), the tangent of sqrt(f (F + G)) from
+// G = F/(f-1) on.
 //
 // Vertices of cloth may be much lighter than the fluid, and what they do to two particles may add
 // up or not.  Their part is bounded with a_kj = s_k |g_kj|/sqrt(m_j) and unit vectors e_kj along
@@ -28,12 +31,14 @@ struct Stiffness {
   double spring = 0.0;    // the same of what holds it alone, and adds to the largest eigenvalue
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
-  // with its own motion
-  double total(double mass) const
+  // square of the largest frequency over s_k^2, with the factor of the lattice
+  double largest(double mass, double factor) const
   {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
-    return fluid + squares / mass;
+    const double own = squares / mass, others = (factor - 1.0) * fluid;
+    if ((factor - 1.0) * own <= fluid) return factor * (fluid + own);
+    return others + own + 2.0 * std::sqrt(others * own);
   }
 };
 

@@ -6,9 +6,9 @@
 // the smoothing length h_s = H/2, as stability analysis does.
 //
 // Stability: semi-implicit Euler, x'' = -omega^2 x - r x' with the friction of the step before, is
-// stable while omega^2 dt^2 + 2 r dt <= 4.  What friction stops alone then changes its sign in
-// every step; it does not while r dt <= 1, so that r counts twice here.  The largest omega and r
-// that a particle has a part in are those of core/sph/stiffness.h.
+// stable while omega^2 dt^2 + 2 r dt <= 4.  What friction stops alone changes its sign in no step
+// while r dt <= 1.  The largest omega and r that a particle has a part in are those of
+// core/sph/stiffness.h.
 //
 // The control by compression follows Ihmsen, Akinci, Gissler & Teschner, VRIPHYS 2010, 79.
 
@@ -120,7 +120,7 @@ struct StepLimit {
 
 SPHCLOTH_INLINE double stable_step(double omega_sq, double friction)
 {
-  const double sum = friction + std::sqrt(friction * friction + omega_sq);
+  const double half = 0.5 * friction, sum = half + std::sqrt(half * half + omega_sq);
   return sum > 0.0 ? 2.0 / sum : std::numeric_limits<double>::infinity();
 }
 
@@ -151,8 +151,7 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
       s.friction * s.friction > omega_sq     ? Limit::VISCOUS
           : s.of_vertices_sq > s.of_fluid_sq ? Limit::WETTED
                                              : Limit::ACOUSTIC);
-  limit.tighten(with(lambda.stability, lambda.stability * stable_step(0.0, s.friction)),
-                Limit::VISCOUS);
+  limit.tighten(with(lambda.stability, ratio(lambda.stability, s.friction)), Limit::VISCOUS);
   limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
                 Limit::VISCOUS);
   limit.tighten(with(lambda.density, ratio(lambda.density * s.rho, std::fabs(s.drho))),

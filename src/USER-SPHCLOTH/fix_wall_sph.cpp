@@ -369,7 +369,8 @@ bool FixWallSPH::moves_beside(int i)
   });
 }
 
-// Behind a wall the spring adds the square of its own frequency, which is of no other particle.
+// Behind a wall the spring adds the square of its own frequency along the axis of the wall, which is
+// of no other particle.
 
 void FixWallSPH::add_stiffness(int i, Stiffness &s)
 {
@@ -385,7 +386,7 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
     s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k, share);
     if (delta < 0.0) {
       const double of_spring = rho / (STOPPING_DEPTH * support);
-      s.spring += of_spring * of_spring / atom_mass(atom, i);
+      s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);
     }
     s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support);
   }

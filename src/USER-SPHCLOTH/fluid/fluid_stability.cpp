@@ -76,7 +76,6 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
     const double mass = atom_mass(atom, i), sound = sounds[i];
     const LatticeModes &of_lattice = modes(t, mass);
     found[i].fluid_sq = sound * sound * s.largest(mass, of_lattice.sound);
-    if (s.spring > 0.0) found[i].fluid_sq += sound * sound * s.spring;
     found[i].friction = of_lattice.friction * s.friction;
   });
 }

@@ -19,6 +19,7 @@
 #ifndef SPHCLOTH_CORE_SPH_STIFFNESS_H
 #define SPHCLOTH_CORE_SPH_STIFFNESS_H
 
+#include <algorithm>
 #include <cmath>
 
 namespace sphcloth {
@@ -28,7 +29,8 @@ namespace sphcloth {
 struct Stiffness {
   double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
   double gradient[3] = {};    // d rho/d x of itself
-  double spring = 0.0;    // the same of what holds it alone, and adds to the largest eigenvalue
+  // the same of what holds it alone along each axis; the largest adds to the largest eigenvalue
+  double spring[3] = {};
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
   // square of the largest frequency over s_k^2, with the factor of the lattice
@@ -37,8 +39,9 @@ struct Stiffness {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
     const double own = squares / mass, others = (factor - 1.0) * fluid;
-    if ((factor - 1.0) * own <= fluid) return factor * (fluid + own);
-    return others + own + 2.0 * std::sqrt(others * own);
+    const double held = std::max({spring[0], spring[1], spring[2]});
+    if ((factor - 1.0) * own <= fluid) return factor * (fluid + own) + held;
+    return others + own + 2.0 * std::sqrt(others * own) + held;
   }
 };
 

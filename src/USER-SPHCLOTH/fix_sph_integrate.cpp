@@ -99,6 +99,7 @@ void FixSPHIntegrate::init()
                label, scheme_name(scheme));
   limits.init(fluid, scheme);
   control.init(fluid, limits.shortest_sound_time());
+  first_kick.begin_run(atom);
   stepper->init(fluid);
   check_group();
 }
@@ -112,7 +113,8 @@ void FixSPHIntegrate::use_scheme(SteppingScheme wanted, const BlockClock &clock)
   if (stepper && !stepper->columns().empty())
     for (int i = 0; i < atom->nlocal; i++) rows[i][UpdateRows::ACTIVE] = 1.0;
   scheme = wanted;
-  stepper = make_stepper(lmp, scheme, {this, options, rows, limits, control, report}, clock);
+  stepper =
+      make_stepper(lmp, scheme, {this, options, rows, first_kick, limits, control, report}, clock);
 }
 
 void FixSPHIntegrate::check_group()
@@ -194,6 +196,7 @@ void FixSPHIntegrate::finish_step()
 void FixSPHIntegrate::post_run()
 {
   control.times.end_run();
+  first_kick.end_run(atom);
   if (scheme == SteppingScheme::CONSTANT) return;
   const std::string waits = scheme == SteppingScheme::INDIVIDUAL ? label + report.waits_in_words()
                                                                  : "";
@@ -279,12 +282,14 @@ void FixSPHIntegrate::grow_arrays(int nmax)
 {
   memory->grow(rows.row, nmax, UpdateRows::N_COLUMNS, "sph/integrate:rows");
   array_atom = rows.row;
+  first_kick.columns.grow(nmax);
   stepper->grow(nmax);
 }
 
 void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
   std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, rows[j]);
+  first_kick.columns.copy(i, j);
   stepper->columns().copy(i, j);
 }
 
@@ -292,29 +297,37 @@ void FixSPHIntegrate::set_arrays(int i)
 {
   std::fill_n(rows[i], UpdateRows::N_COLUMNS, 0.0);
   rows[i][UpdateRows::ACTIVE] = 1.0;
+  first_kick.add_particle(i, update->whichflag != 0);
   stepper->columns().clear(i);
   stepper->add_particle(i);
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
-  double *end = std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, buf);
+  double *end =
+      std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, first_kick.columns.pack(i, buf));
   return static_cast<int>(stepper->columns().pack(i, end) - buf);
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
+  first_kick.columns.unpack(i, buf);
+  buf += first_kick.columns.count();
   std::copy(buf, buf + UpdateRows::N_COLUMNS, rows[i]);
   stepper->columns().unpack(i, buf + UpdateRows::N_COLUMNS);
-  return UpdateRows::N_COLUMNS + stepper->columns().count();
+  return n_exchanged();
 }
 
-// The first value of a record is its length.  A uniform step keeps nothing; restart() has read the
-// scheme that has written the columns.
+// The first value of a record is its length.  A uniform step keeps no more than whether the
+// velocity is staggered; restart() has read the scheme that has written the columns.
 
 int FixSPHIntegrate::pack_restart(int i, double *buf)
 {
-  buf[0] = stepper->columns().empty() ? 1 : 1 + pack_exchange(i, buf + 1);
+  buf[0] = maxsize_restart();
+  if (stepper->columns().empty())
+    first_kick.columns.pack(i, buf + 1);
+  else
+    pack_exchange(i, buf + 1);
   return static_cast<int>(buf[0]);
 }
 
@@ -322,26 +335,27 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
 {
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
-  if (*record == 1.0) return;
   if (static_cast<int>(*record) != maxsize_restart())
     rank_error(lmp, FLERR,
                "{}: atom {} has {} numbers in the restart file, {} are kept here: its record is "
                "damaged, or of another release of sphcloth: take another file",
                label, atom->tag[i], *record, maxsize_restart());
-  std::copy(record + 1, record + 1 + UpdateRows::N_COLUMNS, rows[i]);
-  stepper->columns().unpack(i, record + 1 + UpdateRows::N_COLUMNS);
+  first_kick.columns.unpack(i, record + 1);
+  if (stepper->columns().empty()) return;
+  record += 1 + first_kick.columns.count();
+  std::copy(record, record + UpdateRows::N_COLUMNS, rows[i]);
+  stepper->columns().unpack(i, record + UpdateRows::N_COLUMNS);
 }
 
 int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
 
 int FixSPHIntegrate::maxsize_restart()
 {
-  const ParticleColumns &columns = stepper->columns();
-  return columns.empty() ? 1 : 1 + UpdateRows::N_COLUMNS + columns.count();
+  return 1 + (stepper->columns().empty() ? first_kick.columns.count() : n_exchanged());
 }
 
 double FixSPHIntegrate::memory_usage()
 {
   return static_cast<double>(sizeof(double)) * UpdateRows::N_COLUMNS * atom->nmax +
-      stepper->bytes();
+      first_kick.columns.bytes() + stepper->bytes();
 }

@@ -84,6 +84,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   FluidState *fluid;
   StepOptions options;
   UpdateRows rows;
+  FirstKick first_kick;
   ParticleLimits limits;
   StepControl control;
   StepReport report;
@@ -97,6 +98,10 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   bool updates_some() const
   {
     return scheme == SteppingScheme::INDIVIDUAL || scheme == SteppingScheme::BLOCK;
+  }
+  int n_exchanged() const
+  {
+    return first_kick.columns.count() + UpdateRows::N_COLUMNS + stepper->columns().count();
   }
   void check_group();
   void take_up_restored_step();

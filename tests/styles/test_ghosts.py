@@ -175,7 +175,7 @@ def test_a_step_that_passes_the_other_rank_is_named(tmp_path):
     text = towards_images("0 0 0", "0 0 0.9").replace("f f p", "f f f")
     text = text.replace("boundary", "processors 1 1 2\nboundary", 1)
     text = text.replace("center 0 0 0.4", "center 0 0 0.2")
-    text = text.replace("run 1\n", "fix push water addforce 0 0 -8e3\nrun 3\n")
+    text = text.replace("run 1\n", "fix push water addforce 0 0 -16e3\nrun 3\n")
     said = "".join(fail(write(tmp_path, text), ranks=2) for _ in range(2))
     assert re.search(r"cloth/contact: particle 1 moves by 0.8 .* lower the time step", said)
 

@@ -24,7 +24,6 @@ void BlockImpulses::note_pair_forces()
 
 void BlockImpulses::note_total()
 {
-  if (!needs_external()) return;
   total.resize(3 * static_cast<std::size_t>(atom->nmax), 0.0);
   copy_forces(total);
 }
@@ -42,11 +41,8 @@ void BlockImpulses::copy_forces(std::vector<double> &to) const
   for (const int i : active) std::copy_n(atom->f[i], 3, to.begin() + 3 * i);
 }
 
-bool BlockImpulses::needs_external() const { return limits.use_forces() || sleeping.enabled(); }
-
 void BlockImpulses::note_external_forces()
 {
-  if (!needs_external()) return;
   double *external[3];
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
   for (const int i : state.fluid->active_particles())

@@ -9,7 +9,6 @@
 
 #include "core/neighbor/dual_lists.h"
 #include "stepping/block_state.h"
-#include "stepping/particle_limits.h"
 #include "stepping/sleeping_water.h"
 
 #include <vector>
@@ -18,9 +17,8 @@ namespace LAMMPS_NS {
 
 class BlockImpulses : protected Pointers {
  public:
-  BlockImpulses(LAMMPS *lmp_, BlockState &state_, const ParticleLimits &limits_,
-                SleepingWater &sleeping_) :
-      Pointers(lmp_), state(state_), limits(limits_), sleeping(sleeping_)
+  BlockImpulses(LAMMPS *lmp_, BlockState &state_, SleepingWater &sleeping_) :
+      Pointers(lmp_), state(state_), sleeping(sleeping_)
   {
   }
 
@@ -35,12 +33,10 @@ class BlockImpulses : protected Pointers {
 
  private:
   BlockState &state;
-  const ParticleLimits &limits;
   SleepingWater &sleeping;
   std::vector<double> pair_forces, total;    // [n][3]
   std::vector<int> slots;    // of particles whose impulses are summed pair by pair
 
-  bool needs_external() const;
   void copy_forces(std::vector<double> &to) const;
   void apply_uniform();
   void apply_by_bin();

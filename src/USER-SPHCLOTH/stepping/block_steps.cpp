@@ -20,7 +20,7 @@ using Columns = BlockColumns;
 
 BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClock &clock) :
     Stepper(lmp_, parts_), state(lmp_, parts.fix, parts.options.block), bins(lmp_, parts, state),
-    sleeping(lmp_, state, parts.limits), impulses(lmp_, state, parts.limits, sleeping),
+    sleeping(lmp_, state, parts.limits), impulses(lmp_, state, sleeping),
     half_kick(lmp_, state, parts.limits)
 {
   state.clock = clock;
@@ -42,8 +42,19 @@ void BlockSteps::init(FluidState *style)
 
 void BlockSteps::move()
 {
-  kick_and_drift(atom, update, force, parts.fix->groupbit,
-                 [this](int i) { return state.is_asleep(i); });
+  // The impulses of a base step may have begun before a velocity was changed, other forces do not.
+  const double half_step = 0.5 * update->dt * force->ftm2v;
+  const auto share = [&](int i) {
+    const bool changed = parts.first_kick.is_changed(i);
+    const double kick = parts.first_kick.share(i);
+    if (!changed) return kick;
+    for (int d = 0; d < 3; d++)
+      atom->v[i][d] -= half_step / atom_mass(atom, i) * state.columns.external_force(d)[i];
+    return 1.0;
+  };
+  kick_and_drift(
+      atom, update, force, parts.fix->groupbit, [this](int i) { return state.is_asleep(i); },
+      share);
   sleeping.wake_disturbed();
   advance_clock();
   select_active();
@@ -94,17 +105,14 @@ void BlockSteps::apply_impulses()
   impulses.note_total();
 }
 
-void BlockSteps::end_step()
-{
-  impulses.note_external_forces();
-  bins.limit_vertices();
-}
+void BlockSteps::end_step() { bins.limit_vertices(); }
 
 // It was chosen with the impulses that act in it.  The last step before an output time ends there,
 // whatever was rounded on the way.
 
 void BlockSteps::choose_step()
 {
+  impulses.note_external_forces();
   const BlockClock &clock = state.clock;
   const bool to_output = clock.reaches_output && clock.ends_base_step();
   const double dt = to_output ? clock.output_time - physical_time(update) : clock.smallest_step();

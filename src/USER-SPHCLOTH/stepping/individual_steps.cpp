@@ -34,10 +34,11 @@ void IndividualSteps::drift()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & parts.fix->groupbit)) continue;
     const double elapsed = before - parts.rows[i][UpdateRows::LAST_UPDATE];
+    const double kick = parts.first_kick.share(i) * dt;
     double *x = atom->x[i], *v = atom->v[i];
     for (int d = 0; d < 3; d++) {
       const double accel = kept[IndividualColumns::ACCELERATION + d][i];
-      v[d] += dt * accel;
+      v[d] += kick * accel;
       x[d] += dt * (v[d] + elapsed * accel);
     }
   }

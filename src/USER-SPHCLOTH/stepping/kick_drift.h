@@ -16,11 +16,11 @@ struct Moved {
   int moved = 0, at_rest = 0;    // numbers of particles
 };
 
-// all of a group but those that rest
+// All of a group but those that rest; share(i) of the step is the time of the kick
 
-template <class Rests>
+template <class Rests, class Share>
 Moved kick_and_drift(Atom *atom, const Update *update, const Force *force, int groupbit,
-                     Rests rests)
+                     Rests rests, Share share)
 {
   Moved n;
   const double dt = update->dt, dtf = dt * force->ftm2v;
@@ -31,7 +31,7 @@ Moved kick_and_drift(Atom *atom, const Update *update, const Force *force, int g
       n.at_rest++;
       continue;
     }
-    const double kick = dtf / atom_mass(atom, i);
+    const double kick = share(i) * dtf / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) {
       v[i][d] += kick * f[i][d];
       x[i][d] += dt * v[i][d];

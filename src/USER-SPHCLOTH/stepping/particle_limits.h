@@ -75,7 +75,6 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   // a number that changes with what stability follows from, but for positions; collective
   std::uint64_t settings() const;
 
-  bool use_forces() const { return lambda.force > 0.0; }
   // smoothing length over speed of sound, the least of all fluids
   double shortest_sound_time() const;
   // in which sound crosses the support

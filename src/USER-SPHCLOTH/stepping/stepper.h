@@ -11,6 +11,7 @@
 #include "pointers.h"
 
 #include "lammps_util/particle_columns.h"
+#include "stepping/first_kick.h"
 #include "stepping/particle_limits.h"
 #include "stepping/step_control.h"
 #include "stepping/step_options.h"
@@ -35,6 +36,7 @@ struct SteppingParts {
   Fix *fix;    // whose group is integrated, and which communicates
   const StepOptions &options;
   UpdateRows &rows;
+  FirstKick &first_kick;
   ParticleLimits &limits;
   StepControl &control;
   StepReport &report;

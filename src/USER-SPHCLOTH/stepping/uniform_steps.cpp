@@ -25,8 +25,10 @@ void UniformSteps::move()
   parts.control.watch.begin_step();
   fluid->want_frequencies_now(parts.control.watch.due());
   const UpdateRows &rows = parts.rows;
-  const Moved n = kick_and_drift(atom, update, force, parts.fix->groupbit,
-                                 [&](int i) { return rows[i][UpdateRows::ACTIVE] == 0.0; });
+  const Moved n = kick_and_drift(
+      atom, update, force, parts.fix->groupbit,
+      [&](int i) { return rows[i][UpdateRows::ACTIVE] == 0.0; },
+      [&](int i) { return parts.first_kick.share(i); });
   parts.report.updates += n.moved;
   tell_active(n.at_rest == 0);
 }

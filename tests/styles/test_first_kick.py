@@ -1,0 +1,103 @@
+"""Velocities that are given are of the time of the positions: the motion is of second order."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import FLUID, box, header, neighbor, sph_tait
+
+DT, G = 1e-3, 9.81
+SCHEMES = ["constant", "global", "individual", "block"]
+
+
+def falling(scheme, *, dt=DT, commands="", limits=""):
+    """Two fluid particles out of each other's reach, thrown upwards under gravity."""
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f", atoms=FLUID)
+        + box("-1 1 -1 1 -10 10")
+        + "create_atoms 1 single 0.3 0 0 units box\ncreate_atoms 1 single -0.3 0 0 units box\n"
+        + "mass 1 0.125\n"
+        + sph_tait("1 1 fluid 1000 c0 20")
+        + neighbor(0.02)
+        + "velocity all set 0.1 0 2\nfix gravity all gravity 9.81 vector 0 0 -1\n"
+        + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 {limits}\n"
+        + f"run_style sph/adaptive {scheme}\n"
+        + commands
+    )
+    return lmp
+
+
+def heights(lmp):
+    return by_id(lmp, "x")[:, 2]
+
+
+def parabola(time, speed=2.0, start=0.0):
+    return start + speed * time - 0.5 * G * time**2
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_particle_in_free_fall_is_on_the_parabola(scheme):
+    """Half a step late, it would be lower by G DT t/2, 5e-4 here."""
+    lmp = falling(scheme, commands="run 100 post no\n")
+    assert lmp.get_thermo("time") == pytest.approx(0.1, rel=1e-12)
+    assert heights(lmp) == pytest.approx(parabola(0.1), abs=1e-12)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_velocities_that_are_set_between_two_runs_are_of_the_time_of_the_positions(scheme):
+    lmp = falling(scheme, commands="run 100 post no\n")
+    top = heights(lmp)
+    lmp.commands_string("group one id 1\nvelocity one set NULL NULL 3\nrun 50 post no\n")
+    first, second = heights(lmp)
+    assert first == pytest.approx(parabola(0.05, speed=3.0, start=top[0]), abs=1e-12)
+    assert second == pytest.approx(parabola(0.15), abs=1e-12)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_two_runs_are_one(scheme):
+    whole = falling(scheme, commands="run 100 post no\n")
+    parts = falling(scheme, commands="run 30 post no\nrun 0 post no\nrun 70 post no\n")
+    assert np.array_equal(by_id(parts, "x"), by_id(whole, "x"))
+    assert np.array_equal(by_id(parts, "v"), by_id(whole, "v"))
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("steps", [0, 30])
+def test_a_restart_knows_which_velocities_were_given(scheme, steps, tmp_path):
+    """Also of a particle that came with the last step before."""
+    file = tmp_path / "restart"
+    late = "fix late all sph/emit 1 1 0.05 disc 0.7 0 5 0.01 velocity 0 0 -1 start 0.0295\n"
+    whole = falling(scheme, commands=f"{late}run 100 post no\n")
+    falling(scheme, commands=f"{late}run {steps} post no\nwrite_restart {file}\n")
+    again = instance()
+    again.commands_string(
+        f"atom_modify map yes\nread_restart {file}\n"
+        + neighbor(0.02)
+        + "fix gravity all gravity 9.81 vector 0 0 -1\n"
+        + "fix step all sph/integrate global velocity 0 force 0\n"
+        + f"run_style sph/adaptive {scheme}\n{late}run {100 - steps} post no\n"
+    )
+    assert np.array_equal(by_id(again, "x"), by_id(whole, "x"))
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_error_of_a_collision_falls_with_the_square_of_the_step(scheme):
+    """Two particles are pressed together by gravity of opposite signs, and bounce."""
+
+    def apart(dt):
+        lmp = instance()
+        lmp.commands_string(
+            header("f f f", atoms=FLUID)
+            + box("-1 1 -1 1 -1 1")
+            + "create_atoms 1 single 0.04 0 0 units box\n"
+            + "create_atoms 1 single -0.04 0 0 units box\nmass 1 0.125\n"
+            + sph_tait("1 1 fluid 200 c0 20", options="tension yes")
+            + neighbor(0.02)
+            + "velocity all ramp vx 0.5 -0.5 x -0.04 0.04 units box\n"
+            + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 density 0\n"
+            + f"run_style sph/adaptive {scheme}\nrun {round(0.016 / dt)} post no\n"
+        )
+        return np.ptp(by_id(lmp, "x")[:, 0])
+
+    coarse, middle, fine = (apart(dt) for dt in (2e-4, 1e-4, 5e-5))
+    assert (coarse - middle) / (middle - fine) == pytest.approx(4.0, rel=0.2)

@@ -369,8 +369,7 @@ bool FixWallSPH::moves_beside(int i)
   });
 }
 
-// Behind a wall the spring adds the square of its own frequency along the axis of the wall, which is
-// of no other particle.
+// Behind a wall the spring adds the square of its own frequency along the axis of the wall.
 
 void FixWallSPH::add_stiffness(int i, Stiffness &s)
 {

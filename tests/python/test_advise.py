@@ -163,7 +163,7 @@ def test_a_probe_computes_what_the_script_does(tmp_path: Path) -> None:
 
 
 def test_water_that_is_too_stiff_or_too_soft(tmp_path: Path) -> None:
-    stiff = topics(water(tmp_path, sound="300.0", steps="1500"))["sound"]
+    stiff = topics(water(tmp_path, sound="300.0", scheme="global", steps="1500"))["sound"]
     assert stiff.startswith("pair_coeff 1 1 fluid 1000.0 c0 ") and stiff.endswith("alpha 0.05")
     better = float(stiff.split()[6])
     assert 20 < better < 200
@@ -330,7 +330,7 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
     for value, name in meant.items():
         assert run.last(value) == run.last(f"v_{name}") is not None
-    by_limit = {"velocity": 12, "force": 19, "wetted": 359, "max": 85}
+    by_limit = {"velocity": 13, "force": 25, "wetted": 319, "max": 86}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
     step = "fix step fluid sph/integrate global until 0.5"

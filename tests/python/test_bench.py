@@ -207,7 +207,7 @@ def test_what_is_left_out_is_what_its_steps_cost_beside_those_who_are_updated() 
 
 def test_activity_from_end_to_end() -> None:
     said = io.StringIO()
-    result = bench_activity(1, 16, 96, Console(file=said, width=200))
+    result = bench_activity(1, 16, 128, Console(file=said, width=200))
     assert [corner["share"] for corner in result["corners"]] == [0.01, 0.05, 0.2]
     for corner in result["corners"]:
         assert 0 < corner["active"] < 0.5

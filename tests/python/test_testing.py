@@ -78,7 +78,7 @@ def test_runs_and_assertions(pytester: pytest.Pytester) -> None:
     result.assert_outcomes(passed=1, failed=4)
     result.stdout.fnmatch_lines(
         [
-            "*AssertionError: momentum went from [[]*to*at step 20: a change of 0.038* allowed",
+            "*AssertionError: momentum went from [[]*to*at step 20: a change of 0.0375* allowed",
             "*AssertionError: a density is off by 4.97*% of 950 at step *, 1.000% allowed",
             "*in.scene fails: ERROR: Unknown command: nonsense*",
             "no script in.missing",

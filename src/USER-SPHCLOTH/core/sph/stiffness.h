@@ -29,7 +29,7 @@ namespace sphcloth {
 struct Stiffness {
   double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
   double gradient[3] = {};    // d rho/d x of itself
-  // the same of what holds it alone along each axis; the largest adds to the largest eigenvalue
+  // the same of walls' springs alone, along each axis; the largest adds to the largest eigenvalue
   double spring[3] = {};
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
@@ -38,10 +38,10 @@ struct Stiffness {
   {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
-    const double own = squares / mass, others = (factor - 1.0) * fluid;
-    const double held = std::max({spring[0], spring[1], spring[2]});
-    if ((factor - 1.0) * own <= fluid) return factor * (fluid + own) + held;
-    return others + own + 2.0 * std::sqrt(others * own) + held;
+    const double alone = squares / mass, others = (factor - 1.0) * fluid;
+    const double springs = std::max({spring[0], spring[1], spring[2]});
+    if ((factor - 1.0) * alone <= fluid) return factor * (fluid + alone) + springs;
+    return others + alone + 2.0 * std::sqrt(others * alone) + springs;
   }
 };
 

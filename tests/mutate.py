@@ -71,6 +71,8 @@ PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 STABILITY = "tests/styles/test_stability.py"
 OBSTACLES, SUBSTEPS = "tests/styles/test_obstacles.py", "tests/styles/test_substeps.py"
+FIRST_KICK, PORES = "tests/styles/test_first_kick.py", "tests/styles/test_pores.py"
+LEE = "tests/styles/test_lee_and_added_mass.py"
 FOLDED = "tests/styles/test_folded_sheets.py"
 
 BUGS = [
@@ -234,6 +236,33 @@ BUGS = [
         f"{CONTACT} {OBSTACLES}"),
     Bug("contact: particles keep the speed with which they come too near",
         "contact/velocity_rows.cpp", "if (speed >= 0.0) return;", "return;", OBSTACLES),
+    Bug("steps: the first kick is whole", "stepping/first_kick.h",
+        "state == RECORDED ? 1.0 : 0.5", "1.0", FIRST_KICK),
+    Bug("steps: velocities that were set count as half a step old", "stepping/first_kick.h",
+        "? STAGGERED : CHANGED", "? STAGGERED : STAGGERED", FIRST_KICK),
+    Bug("stability: a particle's own motion does not add", "core/sph/stiffness.h",
+        " + 2.0 * std::sqrt(others * alone)", "", CORE),
+    Bug("stability: half of the friction", "core/timestep/step_limits.h",
+        "const double half = 0.5 * friction", "const double half = 0.25 * friction", CORE),
+    Bug("air: lift points to the other side", "core/air/drag_law.h",
+        "n = drag * sine + lift * cosine", "n = drag * sine - lift * cosine", CORE),
+    Bug("air: what is inside a triangle's shadow is not in its lee", "core/air/wind_shadow.cpp",
+        "of_c < 0.0) continue", "of_c > 0.0) continue", CORE),
+    Bug("air: added mass acts along all directions alike", "air/added_mass.cpp",
+        "share[s] * change.dot(n) * n", "share[s] * change", LEE),
+    Bug("gas: the exponent counts in the pressure alone", "core/pbd/gas_law.h",
+        "return exponent * pressure(gas, volume) / volume", "return pressure(gas, volume) / volume",
+        CORE),
+    Bug("gas: energy of the gas without what is outside", "core/pbd/gas_law.h",
+        "return outside + pressure(gas, volume) * volume",
+        "return pressure(gas, volume) * volume", CORE),
+    Bug("pores: the net does not slow the flow", "core/pores/pore_law.h",
+        "slow = 1.0 + 0.25 * loss", "slow = 1.0 + 0.0 * loss", CORE),
+    Bug("pores: the quadratic part counts twice", "core/pores/pore_law.h",
+        "sum * sum + 4.0 * quadratic", "sum * sum + 8.0 * quadratic", CORE),
+    Bug("pores: the sheet feels half of what the water gets", "pores/pore_rows.cpp",
+        "push[pair.vertices[q]] += pair.weight[q] * step;",
+        "push[pair.vertices[q]] += 0.5 * pair.weight[q] * step;", PORES),
 ]  # fmt: skip
 
 

@@ -9,7 +9,7 @@ DT, G = 1e-3, 9.81
 SCHEMES = ["constant", "global", "individual", "block"]
 
 
-def falling(scheme, *, dt=DT, commands="", limits=""):
+def falling(scheme, commands):
     """Two fluid particles out of each other's reach, thrown upwards under gravity."""
     lmp = instance()
     lmp.commands_string(
@@ -20,7 +20,7 @@ def falling(scheme, *, dt=DT, commands="", limits=""):
         + sph_tait("1 1 fluid 1000 c0 20")
         + neighbor(0.02)
         + "velocity all set 0.1 0 2\nfix gravity all gravity 9.81 vector 0 0 -1\n"
-        + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 {limits}\n"
+        + f"timestep {DT}\nfix step all sph/integrate global velocity 0 force 0\n"
         + f"run_style sph/adaptive {scheme}\n"
         + commands
     )
@@ -38,14 +38,14 @@ def parabola(time, speed=2.0, start=0.0):
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_particle_in_free_fall_is_on_the_parabola(scheme):
     """Half a step late, it would be lower by G DT t/2, 5e-4 here."""
-    lmp = falling(scheme, commands="run 100 post no\n")
+    lmp = falling(scheme, "run 100 post no\n")
     assert lmp.get_thermo("time") == pytest.approx(0.1, rel=1e-12)
     assert heights(lmp) == pytest.approx(parabola(0.1), abs=1e-12)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_velocities_that_are_set_between_two_runs_are_of_the_time_of_the_positions(scheme):
-    lmp = falling(scheme, commands="run 100 post no\n")
+    lmp = falling(scheme, "run 100 post no\n")
     top = heights(lmp)
     lmp.commands_string("group one id 1\nvelocity one set NULL NULL 3\nrun 50 post no\n")
     first, second = heights(lmp)
@@ -55,8 +55,8 @@ def test_velocities_that_are_set_between_two_runs_are_of_the_time_of_the_positio
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_two_runs_are_one(scheme):
-    whole = falling(scheme, commands="run 100 post no\n")
-    parts = falling(scheme, commands="run 30 post no\nrun 0 post no\nrun 70 post no\n")
+    whole = falling(scheme, "run 100 post no\n")
+    parts = falling(scheme, "run 30 post no\nrun 0 post no\nrun 70 post no\n")
     assert np.array_equal(by_id(parts, "x"), by_id(whole, "x"))
     assert np.array_equal(by_id(parts, "v"), by_id(whole, "v"))
 
@@ -67,8 +67,8 @@ def test_a_restart_knows_which_velocities_were_given(scheme, steps, tmp_path):
     """Also of a particle that came with the last step before."""
     file = tmp_path / "restart"
     late = "fix late all sph/emit 1 1 0.05 disc 0.7 0 5 0.01 velocity 0 0 -1 start 0.0295\n"
-    whole = falling(scheme, commands=f"{late}run 100 post no\n")
-    falling(scheme, commands=f"{late}run {steps} post no\nwrite_restart {file}\n")
+    whole = falling(scheme, f"{late}run 100 post no\n")
+    falling(scheme, f"{late}run {steps} post no\nwrite_restart {file}\n")
     again = instance()
     again.commands_string(
         f"atom_modify map yes\nread_restart {file}\n"

@@ -22,9 +22,11 @@ class FirstKick {
   // of a particle, for its next step, which follows
   double share(int i)
   {
-    const double now = columns[STATE][i];
-    columns[STATE][i] = STAGGERED;
-    return now == GIVEN || now == CHANGED ? 0.5 : 1.0;
+    double &state = columns[STATE][i];
+    if (state == STAGGERED) return 1.0;
+    const double share = state == RECORDED ? 1.0 : 0.5;
+    state = STAGGERED;
+    return share;
   }
   // has its velocity been given between two runs?
   bool is_changed(int i) const { return columns[STATE][i] == CHANGED; }

@@ -240,8 +240,6 @@ BUGS = [
         "state == RECORDED ? 1.0 : 0.5", "1.0", FIRST_KICK),
     Bug("steps: velocities that were set count as half a step old", "stepping/first_kick.h",
         "? STAGGERED : CHANGED", "? STAGGERED : STAGGERED", FIRST_KICK),
-    Bug("stability: a particle's own motion does not add", "core/sph/stiffness.h",
-        " + 2.0 * std::sqrt(others * alone)", "", CORE),
     Bug("stability: half of the friction", "core/timestep/step_limits.h",
         "const double half = 0.5 * friction", "const double half = 0.25 * friction", CORE),
     Bug("air: lift points to the other side", "core/air/drag_law.h",

@@ -333,18 +333,17 @@ int FixSPHIntegrate::pack_restart(int i, double *buf)
 
 void FixSPHIntegrate::unpack_restart(int i, int nth)
 {
-  const double *record = atom->extra[i];
+  double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
   if (static_cast<int>(*record) != maxsize_restart())
     rank_error(lmp, FLERR,
                "{}: atom {} has {} numbers in the restart file, {} are kept here: its record is "
                "damaged, or of another release of sphcloth: take another file",
                label, atom->tag[i], *record, maxsize_restart());
-  first_kick.columns.unpack(i, record + 1);
-  if (stepper->columns().empty()) return;
-  record += 1 + first_kick.columns.count();
-  std::copy(record, record + UpdateRows::N_COLUMNS, rows[i]);
-  stepper->columns().unpack(i, record + UpdateRows::N_COLUMNS);
+  if (stepper->columns().empty())
+    first_kick.columns.unpack(i, record + 1);
+  else
+    unpack_exchange(i, record + 1);
 }
 
 int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }

@@ -9,22 +9,28 @@ DT, G = 1e-3, 9.81
 SCHEMES = ["constant", "global", "individual", "block"]
 
 
-def falling(scheme, commands):
-    """Two fluid particles out of each other's reach, thrown upwards under gravity."""
+def scene(scheme, sides, particles, given, commands, *, rho0=1000, options="", limits="", dt=DT):
+    """Fluid particles of 0.125 kg, at places along x, with velocities and forces."""
     lmp = instance()
     lmp.commands_string(
         header("f f f", atoms=FLUID)
-        + box("-1 1 -1 1 -10 10")
-        + "create_atoms 1 single 0.3 0 0 units box\ncreate_atoms 1 single -0.3 0 0 units box\n"
+        + box(sides)
+        + "".join(f"create_atoms 1 single {x} 0 0 units box\n" for x in particles)
         + "mass 1 0.125\n"
-        + sph_tait("1 1 fluid 1000 c0 20")
+        + sph_tait(f"1 1 fluid {rho0} c0 20", options=options)
         + neighbor(0.02)
-        + "velocity all set 0.1 0 2\nfix gravity all gravity 9.81 vector 0 0 -1\n"
-        + f"timestep {DT}\nfix step all sph/integrate global velocity 0 force 0\n"
+        + given
+        + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 {limits}\n"
         + f"run_style sph/adaptive {scheme}\n"
         + commands
     )
     return lmp
+
+
+def falling(scheme, commands):
+    """Two particles out of each other's reach, thrown upwards under gravity."""
+    thrown = "velocity all set 0.1 0 2\nfix gravity all gravity 9.81 vector 0 0 -1\n"
+    return scene(scheme, "-1 1 -1 1 -10 10", (0.3, -0.3), thrown, commands)
 
 
 def heights(lmp):
@@ -82,20 +88,20 @@ def test_a_restart_knows_which_velocities_were_given(scheme, steps, tmp_path):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_the_error_of_a_collision_falls_with_the_square_of_the_step(scheme):
-    """Two particles are pressed together by gravity of opposite signs, and bounce."""
+    """Two particles meet, and bounce."""
 
     def apart(dt):
-        lmp = instance()
-        lmp.commands_string(
-            header("f f f", atoms=FLUID)
-            + box("-1 1 -1 1 -1 1")
-            + "create_atoms 1 single 0.04 0 0 units box\n"
-            + "create_atoms 1 single -0.04 0 0 units box\nmass 1 0.125\n"
-            + sph_tait("1 1 fluid 200 c0 20", options="tension yes")
-            + neighbor(0.02)
-            + "velocity all ramp vx 0.5 -0.5 x -0.04 0.04 units box\n"
-            + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 density 0\n"
-            + f"run_style sph/adaptive {scheme}\nrun {round(0.016 / dt)} post no\n"
+        pressed = "velocity all ramp vx 0.5 -0.5 x -0.04 0.04 units box\n"
+        lmp = scene(
+            scheme,
+            "-1 1 -1 1 -1 1",
+            (0.04, -0.04),
+            pressed,
+            f"run {round(0.016 / dt)} post no\n",
+            rho0=200,
+            options="tension yes",
+            limits="density 0",
+            dt=dt,
         )
         return np.ptp(by_id(lmp, "x")[:, 0])
 

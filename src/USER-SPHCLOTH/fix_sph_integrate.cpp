@@ -149,6 +149,13 @@ void FixSPHIntegrate::take_up_restored_step()
 
 void FixSPHIntegrate::setup(int)
 {
+  if (!run_style_drives) begin_steps();
+}
+
+// Forces are complete where the run style calls this.
+
+void FixSPHIntegrate::begin_steps()
+{
   const double now = physical_time(update), jump = control.jump(now);
   if (jump != 0.0) stepper->shift_times(jump);
   control.set_time(now);

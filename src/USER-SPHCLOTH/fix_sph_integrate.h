@@ -74,6 +74,8 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   bool is_active(int i) const { return rows[i][UpdateRows::ACTIVE] != 0.0; }
   SteppingScheme stepping_scheme() const override { return scheme; }
 
+  // chooses the first step, when all forces are set up
+  void begin_steps();
   // ends a step: counts it and, unless the step is constant, chooses the next one
   void finish_step();
 

@@ -55,6 +55,77 @@ void SPHAdaptive::init()
   fluid_alone = fluid && fluid->is_of(force->pair);
 }
 
+// As Verlet::setup(), but for the first step: it follows from the forces of all fixes, and the first
+// output shows it.
+
+void SPHAdaptive::setup(int flag)
+{
+  if (comm->me == 0 && screen) {
+    utils::print(screen, "Setting up {} run ...\n", STYLE);
+    if (flag) {
+      utils::print(screen, "  Unit style    : {}\n  Current step  : {}\n  Time step     : {}\n",
+                   update->unit_style, update->ntimestep, update->dt);
+      timer->print_timeout(screen);
+    }
+  }
+  update->setupflag = 1;
+  set_up_atoms();
+  set_up_forces();
+  particles->begin_steps();
+  output->setup(flag);
+  update->setupflag = 0;
+}
+
+void SPHAdaptive::setup_minimal(int flag)
+{
+  Verlet::setup_minimal(flag);
+  particles->begin_steps();
+}
+
+void SPHAdaptive::set_up_atoms()
+{
+  atom->setup();
+  modify->setup_pre_exchange();
+  if (triclinic) domain->x2lamda(atom->nlocal);
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  if (atom->sortfreq > 0) atom->sort();
+  comm->borders();
+  if (triclinic) domain->lamda2x(atom->nlocal + atom->nghost);
+  domain->image_check();
+  domain->box_too_small_check();
+  modify->setup_pre_neighbor();
+  neighbor->build(1);
+  modify->setup_post_neighbor();
+  neighbor->ncalls = 0;
+}
+
+void SPHAdaptive::set_up_forces()
+{
+  force->setup();
+  ev_set(update->ntimestep);
+  force_clear();
+  modify->setup_pre_force(vflag);
+  if (pair_compute_flag)
+    force->pair->compute(eflag, vflag);
+  else if (force->pair)
+    force->pair->compute_dummy(eflag, vflag);
+  if (atom->molecular != Atom::ATOMIC) compute_bonded();
+  if (force->kspace) {
+    force->kspace->setup();
+    if (kspace_compute_flag)
+      force->kspace->compute(eflag, vflag);
+    else
+      force->kspace->compute_dummy(eflag, vflag);
+  }
+  modify->setup_pre_reverse(eflag, vflag);
+  if (force->newton) comm->reverse_comm();
+  modify->setup(vflag);
+}
+
 void SPHAdaptive::run(int n)
 {
   for (int i = 0; i < n; i++) {
@@ -141,10 +212,7 @@ void SPHAdaptive::evaluate()
     timer->stamp(Timer::PAIR);
   }
   if (atom->molecular != Atom::ATOMIC) {
-    if (force->bond) force->bond->compute(eflag, vflag);
-    if (force->angle) force->angle->compute(eflag, vflag);
-    if (force->dihedral) force->dihedral->compute(eflag, vflag);
-    if (force->improper) force->improper->compute(eflag, vflag);
+    compute_bonded();
     timer->stamp(Timer::BOND);
   }
   if (kspace_compute_flag) {
@@ -161,6 +229,14 @@ void SPHAdaptive::evaluate()
   }
   if (modify->n_post_force_any) modify->post_force(vflag);
   timer->stamp(Timer::MODIFY);
+}
+
+void SPHAdaptive::compute_bonded()
+{
+  if (force->bond) force->bond->compute(eflag, vflag);
+  if (force->angle) force->angle->compute(eflag, vflag);
+  if (force->dihedral) force->dihedral->compute(eflag, vflag);
+  if (force->improper) force->improper->compute(eflag, vflag);
 }
 
 // pair_style sph/tait gives no forces to ghosts.

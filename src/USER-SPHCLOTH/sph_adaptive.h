@@ -19,6 +19,8 @@ class SPHAdaptive : public Verlet, public HasSteppingScheme {
  public:
   SPHAdaptive(class LAMMPS *, int, char **);
   void init() override;
+  void setup(int) override;
+  void setup_minimal(int) override;
   void run(int) override;
 
   SteppingScheme stepping_scheme() const override { return stepping; }
@@ -28,9 +30,12 @@ class SPHAdaptive : public Verlet, public HasSteppingScheme {
   class FixSPHIntegrate *particles;
   bool fluid_alone;    // pair_style sph/tait without others
 
+  void set_up_atoms();
+  void set_up_forces();
   void move();
   void communicate();
   void evaluate();
+  void compute_bonded();
   bool ghosts_have_forces() const;
   void finish();
 };

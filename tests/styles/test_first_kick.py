@@ -9,8 +9,13 @@ DT, G = 1e-3, 9.81
 SCHEMES = ["constant", "global", "individual", "block"]
 
 
-def scene(scheme, sides, particles, given, commands, *, rho0=1000, options="", limits="", dt=DT):
-    """Fluid particles of 0.125 kg, at places along x, with velocities and forces."""
+NO_ACCURACY = "velocity 0 force 0"
+
+
+def scene(
+    scheme, sides, particles, given, commands, *, rho0=1000, options="", limits=NO_ACCURACY, dt=DT
+):
+    """Fluid particles of 0.125 kg, at places along x, with velocities."""
     lmp = instance()
     lmp.commands_string(
         header("f f f", atoms=FLUID)
@@ -20,17 +25,22 @@ def scene(scheme, sides, particles, given, commands, *, rho0=1000, options="", l
         + sph_tait(f"1 1 fluid {rho0} c0 20", options=options)
         + neighbor(0.02)
         + given
-        + f"timestep {dt}\nfix step all sph/integrate global velocity 0 force 0 {limits}\n"
+        + f"timestep {dt}\nfix step all sph/integrate global {limits}\n"
         + f"run_style sph/adaptive {scheme}\n"
         + commands
     )
     return lmp
 
 
-def falling(scheme, commands):
-    """Two particles out of each other's reach, thrown upwards under gravity."""
-    thrown = "velocity all set 0.1 0 2\nfix gravity all gravity 9.81 vector 0 0 -1\n"
-    return scene(scheme, "-1 1 -1 1 -10 10", (0.3, -0.3), thrown, commands)
+GRAVITY = "fix gravity all gravity 9.81 vector 0 0 -1\n"
+
+
+def falling(scheme, commands, gravity="before"):
+    """Two particles out of each other's reach, thrown upwards under gravity, whose fix stands
+    before or behind the one that steps."""
+    before, behind = (GRAVITY, "") if gravity == "before" else ("", GRAVITY)
+    thrown = "velocity all set 0.1 0 2\n"
+    return scene(scheme, "-1 1 -1 1 -10 10", (0.3, -0.3), thrown + before, behind + commands)
 
 
 def heights(lmp):
@@ -42,16 +52,18 @@ def parabola(time, speed=2.0, start=0.0):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_particle_in_free_fall_is_on_the_parabola(scheme):
+@pytest.mark.parametrize("gravity", ["before", "behind"])
+def test_a_particle_in_free_fall_is_on_the_parabola(scheme, gravity):
     """Half a step late, it would be lower by G DT t/2, 5e-4 here."""
-    lmp = falling(scheme, "run 100 post no\n")
+    lmp = falling(scheme, "run 100 post no\n", gravity)
     assert lmp.get_thermo("time") == pytest.approx(0.1, rel=1e-12)
     assert heights(lmp) == pytest.approx(parabola(0.1), abs=1e-12)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_velocities_that_are_set_between_two_runs_are_of_the_time_of_the_positions(scheme):
-    lmp = falling(scheme, "run 100 post no\n")
+@pytest.mark.parametrize("gravity", ["before", "behind"])
+def test_velocities_that_are_set_between_two_runs_are_of_the_time_of_the_positions(scheme, gravity):
+    lmp = falling(scheme, "run 100 post no\n", gravity)
     top = heights(lmp)
     lmp.commands_string("group one id 1\nvelocity one set NULL NULL 3\nrun 50 post no\n")
     first, second = heights(lmp)
@@ -67,6 +79,18 @@ def test_two_runs_are_one(scheme):
     assert np.array_equal(by_id(parts, "v"), by_id(whole, "v"))
 
 
+@pytest.mark.parametrize("scheme", ["global", "individual"])
+def test_the_first_step_follows_from_the_forces_of_all_fixes(scheme):
+    """The first output shows it."""
+    sides, limits = "-1 1 -1 1 -10 10", "force 0.005"
+
+    def first(before, behind):
+        lmp = scene(scheme, sides, (0,), before, f"{behind}run 0 post no\n", limits=limits)
+        return lmp.get_thermo("dt")
+
+    assert first("", GRAVITY) == first(GRAVITY, "") < DT
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("steps", [0, 30])
 def test_a_restart_knows_which_velocities_were_given(scheme, steps, tmp_path):
@@ -79,8 +103,8 @@ def test_a_restart_knows_which_velocities_were_given(scheme, steps, tmp_path):
     again.commands_string(
         f"atom_modify map yes\nread_restart {file}\n"
         + neighbor(0.02)
-        + "fix gravity all gravity 9.81 vector 0 0 -1\n"
-        + "fix step all sph/integrate global velocity 0 force 0\n"
+        + GRAVITY
+        + f"fix step all sph/integrate global {NO_ACCURACY}\n"
         + f"run_style sph/adaptive {scheme}\n{late}run {100 - steps} post no\n"
     )
     assert np.array_equal(by_id(again, "x"), by_id(whole, "x"))
@@ -100,7 +124,7 @@ def test_the_error_of_a_collision_falls_with_the_square_of_the_step(scheme):
             f"run {round(0.016 / dt)} post no\n",
             rho0=200,
             options="tension yes",
-            limits="density 0",
+            limits=f"{NO_ACCURACY} density 0",
             dt=dt,
         )
         return np.ptp(by_id(lmp, "x")[:, 0])

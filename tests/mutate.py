@@ -97,7 +97,7 @@ BUGS = [
         "part = 0.5 * (1.0 - 1.0 / substeps)", "part = 1.0 - 1.0 / substeps",
         f"{CLOTH}::test_springs_of_other_fixes_neither_feed_nor_damp"),
     Bug("cloth: only edges that push have a load", "core/pbd/cloth_solver.cpp",
-        "load = std::fabs(c.lambda[m]) * s.inv_dt_sq", "load = c.lambda[m] * s.inv_dt_sq",
+        "return std::fabs(c.lambda[m]) * s.inv_dt_sq", "return c.lambda[m] * s.inv_dt_sq",
         SUBSTEPS),
     Bug("cloth: rigid edges are as stiff as each substep makes them", "core/pbd/cloth_solver.cpp",
         "SINGLE_SWEEP_SOFTNESS * (s.softness - w)", "0.0", CORE),

@@ -56,6 +56,23 @@ BOOST_AUTO_TEST_CASE(none_are_closer)
     }
 }
 
+BOOST_AUTO_TEST_CASE(along_the_line_between_centers_they_are_no_farther)
+{
+  for (const PairKind kind : {PairKind::POINT_TRIANGLE, PairKind::EDGE_EDGE}) {
+    double tightest = 0.0;
+    for (int n = 0; n < 1000; n++) {
+      const FourPoints x = random_points();
+      const double distance = closest_points(kind, x).vector.norm(),
+                   along = distance_along_centers(kind, x);
+      BOOST_CHECK(along <= distance * (1.0 + 1e-14));
+      tightest = std::max(tightest, along / distance);
+    }
+    BOOST_TEST(tightest > 0.99);
+    const Vec3 place(0.1, -0.4, 2.0);
+    BOOST_TEST(distance_along_centers(kind, {place, place, place, place}) == 0.0);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(weights_make_the_vector_from_the_second_side_to_the_first)
 {
   for (const PairKind kind : {PairKind::POINT_TRIANGLE, PairKind::EDGE_EDGE})

@@ -121,6 +121,39 @@ BOOST_AUTO_TEST_CASE(nothing_comes_nearer_than_the_bounds)
   BOOST_TEST(used > 0.3);    // they are near
 }
 
+BOOST_AUTO_TEST_CASE(from_step_to_step_nothing_comes_nearer_than_the_path)
+{
+  std::mt19937 random_numbers(5);
+  std::normal_distribution<double> normal;
+  const Sheets sheets(1.5);
+  MeshPatches patches;
+  patches.build(sheets.triangles, sheets.x);
+  std::vector<Vec3> start = sheets.x;
+  std::vector<double> path(patches.size() * patches.size(), 0.0);
+  double used = 0.0;
+  for (int step = 0; step < 5; step++) {
+    for (Vec3 &at : start)
+      at += 0.02 * Vec3(normal(random_numbers), normal(random_numbers), normal(random_numbers));
+    for (std::size_t s = start.size() / 2; s < start.size(); s++) start[s] -= Vec3(0.0, 0.0, 0.1);
+    patches.measure(start, start);
+    for (int p = 0; p < patches.size(); p++)
+      for (int q = 0; q < patches.size(); q++)
+        path[p * patches.size() + q] += patches.approach_since(p, q);
+    for (int s = 0; s < static_cast<int>(start.size()); s += 5)
+      for (int t = 0; t < static_cast<int>(sheets.triangles.size()); t++) {
+        const int p = patches.patch_of(s), q = patches.patch_of(sheets.triangles[t][0]);
+        const double nearer = distance(sheets, sheets.x, s, t) - distance(sheets, start, s, t);
+        BOOST_REQUIRE(nearer <= path[p * patches.size() + q] + 1e-12);
+        used = std::max(used, nearer / path[p * patches.size() + q]);
+      }
+  }
+  BOOST_TEST(used > 0.5);
+  // at the same place again nothing is added
+  patches.measure(start, start);
+  for (int p = 0; p < patches.size(); p++)
+    for (int q = 0; q < patches.size(); q++) BOOST_TEST(patches.approach_since(p, q) == 0.0);
+}
+
 BOOST_AUTO_TEST_CASE(boxes_hold_whole_triangles)
 {
   const Sheets sheets(0.5);
@@ -130,7 +163,8 @@ BOOST_AUTO_TEST_CASE(boxes_hold_whole_triangles)
   patches.start_from(there);
   for (const std::array<int, 3> &t : sheets.triangles)
     for (const int s : t)
-      for (const int other : t) BOOST_TEST(patches.box(patches.patch_of(s)).contains(there[other]));
+      for (const int other : t)
+        BOOST_TEST(patches.box(patches.patch_of(s), there).contains(there[other]));
   patches.measure(there, there);
   BOOST_TEST(patches.approach_of_any(1.0) < 1e-12);
 }

@@ -170,6 +170,17 @@ def test_restart_continues_to_the_last_bit(tmp_path):
     np.testing.assert_array_equal(through, again)
 
 
+def test_what_meets_does_not_depend_on_when_lists_were_made():
+    """A small skin makes lists of cloth that meets cloth anew at other times, and more often."""
+    ends = []
+    for skin in (0.05, 0.011):
+        text = scene().replace(neighbor(0.05), f"{neighbor(skin)}atom_modify sort 0 0\n")
+        lmp = started(f"{text}run 400 post no\n")
+        assert values(lmp)[0] > 0
+        ends.append(by_id(lmp, "x").copy())
+    assert np.array_equal(*ends)
+
+
 def test_cloths_of_two_fixes_are_as_those_of_one(tmp_path):
     two = "fix sheet lower pbd/cloth pin pins damping 5\nfix other upper pbd/cloth damping 5\n"
     for name, fixes in (("one", {}), ("two", {"fixes": two})):

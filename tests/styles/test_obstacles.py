@@ -175,7 +175,7 @@ def test_ranks(tmp_path, ranks):
     )
     drops = RAIN.format(speed=-3)
     for n in (1, ranks):
-        commands = "run 50\n" + final_dump(file=f"{n}.txt")
+        commands = "run 45\n" + final_dump(file=f"{n}.txt")
         text = scene(tmp_path, ball(), fixes, CLOTH, drops, commands)
         run(write(tmp_path, text, f"in.{n}"), ranks=n)
     one, many = (last_frame(tmp_path / f"{n}.txt") for n in (1, ranks))

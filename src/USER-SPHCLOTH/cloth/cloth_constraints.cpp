@@ -117,6 +117,7 @@ void ClothConstraints::color(int sweeps, bool at_once)
   edges.color = color_constraints(mesh.edges.vertices, mesh.n_vertices(), edges.colors);
   hinges.color = color_constraints(mesh.hinges.vertices, mesh.n_vertices(), hinges.colors);
 
+  known_without_ghosts = false;
   constraints_of.assign(at_once ? mesh.n_vertices() : 0, 0);
   count(edges);
   count(hinges);
@@ -216,13 +217,19 @@ void ClothConstraints::check_lengths(const ClothVertices &vertices) const
    this rank's, after each list build
 ------------------------------------------------------------------------- */
 
+// Without ghosts they are those of the list build before while vertices are in the same order.
+
 void ClothConstraints::collect(VertexHalo &halo)
 {
   std::vector<int> vertex_of_slot(halo.n_owned());
   for (int s = 0; s < halo.n_owned(); s++)
     vertex_of_slot[s] = mesh.index_of(atom->tag[halo.atom_of(s)]);
-  const auto found_edges = find(edges, halo, vertex_of_slot);
-  const auto found_hinges = find(hinges, halo, vertex_of_slot);
+  if (!known_without_ghosts || atom->nghost > 0 || vertex_of_slot != found_for) {
+    found_edges = find(edges, halo, vertex_of_slot);
+    found_hinges = find(hinges, halo, vertex_of_slot);
+    found_for.swap(vertex_of_slot);
+  }
+  known_without_ghosts = atom->nghost == 0;
   fill(distance, edges, found_edges, halo.n_slots());
   fill(bending, hinges, found_hinges, halo.n_slots());
   ask_for_ghosts(halo);

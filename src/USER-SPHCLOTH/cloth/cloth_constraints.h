@@ -93,6 +93,10 @@ class ClothConstraints : protected Pointers {
     std::array<int, N> slots;
   };
   template <std::size_t N> using ByColor = std::vector<std::vector<Found<N>>>;
+  ByColor<2> found_edges;
+  ByColor<4> found_hinges;
+  std::vector<int> found_for;    // mesh vertex of each slot
+  bool known_without_ghosts = false;
 
   std::string owner;
   const ClothTopology &mesh;

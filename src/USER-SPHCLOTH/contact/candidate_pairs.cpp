@@ -108,10 +108,8 @@ void CandidatePairs::find_of(int i)
   discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
     if (mesh.lets_through(t, atom->mask[i])) return;
     const auto &[a, b, c] = mesh.triangles[t];
-    const ClosestPoints then =
-        closest_points(PairKind::POINT_TRIANGLE,
-                       {particle.start, vertices_then[a], vertices_then[b], vertices_then[c]});
-    merged.push_back({i, t, then.vector.norm()});
+    const FourPoints then{particle.start, vertices_then[a], vertices_then[b], vertices_then[c]};
+    merged.push_back({i, t, distance_along_centers(PairKind::POINT_TRIANGLE, then)});
   });
   std::sort(merged.begin() + first, merged.end(),    // whatever the order of cells
             [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });

@@ -50,6 +50,10 @@ class CandidatePairs : protected Pointers {
       const auto &[i, j, k] = mesh.triangles[c.triangle];
       const double ahead = std::max({stride[i], stride[j], stride[k]});
       if (c.distance > reach_then + ahead + std::max({path[i], path[j], path[k]})) continue;
+      if (sphcloth::distance_along_centers(
+              sphcloth::PairKind::POINT_TRIANGLE,
+              {sweep.start, mesh.start[i], mesh.start[j], mesh.start[k]}) > reach_at_start + ahead)
+        continue;
       const sphcloth::ClosestPoints at = mesh.closest_at_start(sweep.start, c.triangle);
       if (at.vector.norm() <= reach_at_start + ahead) visit(last, c.triangle, at);
     }
@@ -61,7 +65,8 @@ class CandidatePairs : protected Pointers {
  private:
   struct Candidate {
     int particle, triangle;
-    double distance;    // of where the particle was asked for from where the triangle then was
+    // at least, of where the particle was asked for from where the triangle then was
+    double distance;
   };
 
   const MovingTriangles &mesh;

@@ -17,9 +17,6 @@ static constexpr double MIN_MARGIN = 0.75, MAX_MARGIN = 1.0, MAX_REACH = 1.5;
 // of the margin: to which more patches are near
 static constexpr double PATCH_MARGIN = 10.0;
 
-// of the margin: a list that has used more of it than this is made anew with others
-static constexpr double USED = 0.5;
-
 double ClothCandidates::max_reach() const { return MAX_REACH * rules.max_thickness(); }
 
 double ClothCandidates::margin() const
@@ -32,48 +29,54 @@ void ClothCandidates::update(double max_approach)
 {
   if (none()) return;
   limit = max_approach;
+  updates++;
   const bool known = revision == edges.revision();
   if (known) measure();
-  if (!known || !all_hold()) start_anew(known);
-}
-
-double ClothCandidates::approach_in_step(const PatchPair &both) const
-{
-  return std::min(limit, patches.approach_in_step(both.patches[0], both.patches[1]));
+  if (!known || patches.approach_of_any(limit) > range - max_reach()) start_anew(known);
+  for (PatchPair &both : near)
+    if (!holds(both)) find(both);
+  if (2 * unused > pairs.size()) drop_unused();
 }
 
 void ClothCandidates::measure()
 {
   patches.measure(mesh.start, mesh.end);
-  for (PatchPair &both : near)
-    both.approach = both.carried + patches.approach_before(both.patches[0], both.patches[1]) +
-        approach_in_step(both);
+  for (PatchPair &both : near) {
+    both.path += patches.approach_since(both.patches[0], both.patches[1]);
+    measure(both);
+  }
 }
 
-// Pairs that are not in a list were farther apart than what it covers.
+// How both have moved as one body counts only step by step.
+
+void ClothCandidates::measure(PatchPair &both) const
+{
+  const auto &[p, q] = both.patches;
+  both.in_step = std::min(limit, patches.approach_in_step(p, q));
+  both.approach = both.path + both.in_step;
+  if (!holds(both) && both.carried < both.path)
+    both.approach =
+        std::min(both.path, both.carried + patches.approach_before(p, q)) + both.in_step;
+}
+
+// Pairs that were not in a list were farther apart than what it covers.
 
 bool ClothCandidates::holds(const PatchPair &both) const
 {
   return !(both.approach > both.covered - max_reach());
 }
 
-bool ClothCandidates::all_hold() const
-{
-  return std::all_of(near.begin(), near.end(), [this](const PatchPair &b) { return holds(b); }) &&
-      !(patches.approach_of_any(limit) > range - max_reach());
-}
-
-// Patches start from where they are.  Lists that will hold for long are kept.
+// Patches start from where they are.
 
 void ClothCandidates::start_anew(bool known)
 {
-  pairs_before.clear();
   near_before.clear();
   if (known) {
-    for (PatchPair &both : near)
-      both.carried += patches.approach_before(both.patches[0], both.patches[1]);
+    for (PatchPair &both : near) {
+      const double before = patches.approach_before(both.patches[0], both.patches[1]);
+      both.carried = std::min(both.path, both.carried + before);
+    }
     std::swap(near, near_before);
-    std::swap(pairs, pairs_before);
     patches.start_from(mesh.start);
   } else {
     revision = edges.revision();
@@ -83,19 +86,15 @@ void ClothCandidates::start_anew(bool known)
   patches.measure(mesh.start, mesh.end);
   range = max_reach() + std::max(PATCH_MARGIN * margin(), patches.approach_of_any(limit));
   find_near();
-  pairs.clear();
-  fill_columns();
-  for (PatchPair &both : near) {
-    const double in_step = approach_in_step(both);
-    if (!keep(both, in_step)) find(both, in_step);
-  }
+  for (PatchPair &both : near) keep(both);
+  drop_unused();
 }
 
 void ClothCandidates::find_near()
 {
   near.clear();
   boxes.clear();
-  for (int p = 0; p < patches.size(); p++) boxes.push_back(patches.box(p));
+  for (int p = 0; p < patches.size(); p++) boxes.push_back(patches.box(p, mesh.start));
   grid.build(boxes);
   for (int p = 0; p < patches.size(); p++) {
     const std::size_t first = near.size();
@@ -121,42 +120,54 @@ bool ClothCandidates::meet(int p, int q) const
   return first != second || (!first && rules.cloth_meets_cloth);
 }
 
-// A list of before, or none where both patches are far enough from one another.
+// a list of before
 
-bool ClothCandidates::keep(PatchPair &both, double in_step)
+void ClothCandidates::keep(PatchPair &both) const
 {
-  const double room = 2.0 * margin(),
-               apart = boxes[both.patches[0]].exteriorDistance(boxes[both.patches[1]]);
-  if (apart > max_reach() + std::max(room, in_step)) {
-    both.approach = in_step;
-    both.covered = apart;
-    return true;
-  }
   const auto before = std::lower_bound(near_before.begin(), near_before.end(), both);
-  if (before == near_before.end() || before->patches != both.patches) return false;
-  PatchPair kept = *before;
-  kept.approach = kept.carried + in_step;
-  if (kept.carried > USED * room || !holds(kept)) return false;
-  kept.begin = static_cast<int>(pairs.size());
-  pairs.insert(pairs.end(), pairs_before.begin() + before->begin,
-               pairs_before.begin() + before->end);
-  kept.end = static_cast<int>(pairs.size());
-  both = kept;
-  return true;
+  if (before != near_before.end() && before->patches == both.patches) both = *before;
+  measure(both);
 }
 
-void ClothCandidates::find(PatchPair &both, double in_step)
+void ClothCandidates::drop_unused()
+{
+  std::swap(pairs, pairs_before);
+  std::swap(distances, distances_before);
+  pairs.clear();
+  distances.clear();
+  for (PatchPair &both : near) {
+    const int begin = static_cast<int>(pairs.size());
+    pairs.insert(pairs.end(), pairs_before.begin() + both.begin, pairs_before.begin() + both.end);
+    distances.insert(distances.end(), distances_before.begin() + both.begin,
+                     distances_before.begin() + both.end);
+    both.begin = begin;
+    both.end = static_cast<int>(pairs.size());
+  }
+  unused = 0;
+}
+
+// Empty where both patches are far enough from one another.  Pairs are measured when they are
+// visited.
+
+void ClothCandidates::find(PatchPair &both)
 {
   const auto &[p, q] = both.patches;
-  both.approach = in_step;
-  both.covered = cutoff = max_reach() + std::max(2.0 * margin(), in_step);
-  both.begin = static_cast<int>(pairs.size());
+  prepare(p);
+  prepare(q);
+  unused += both.end - both.begin;
+  const double apart = boxes[p].exteriorDistance(boxes[q]);
+  cutoff = max_reach() + std::max(2.0 * margin(), both.in_step);
+  both.path = both.nearest = 0.0;
+  both.carried = std::numeric_limits<double>::infinity();
+  both.approach = both.in_step;
+  both.covered = std::max(apart, cutoff);
+  both.begin = both.end = static_cast<int>(pairs.size());
+  if (apart > cutoff) return;
   find_triangles(p, q);
   if (p != q) find_triangles(q, p);
   find_edges(p, q);
   both.end = static_cast<int>(pairs.size());
-  for (int n = both.begin; n < both.end; n++)
-    both.nearest = std::min(both.nearest, pairs[n].distance);
+  distances.resize(pairs.size());
 }
 
 // of patches
@@ -177,20 +188,25 @@ void ClothCandidates::sort_members()
           add(patches.patch_of(edges.edges[e][0]), static_cast<int>(e));
       },
       first_edge, edges_of);
+  triangle_columns.resize(triangles_of.size());
+  edge_columns.resize(edges_of.size());
+  prepared.assign(patches.size(), 0);
 }
 
-void ClothCandidates::fill_columns()
+// where its triangles and edges are now
+
+void ClothCandidates::prepare(int p)
 {
-  triangle_columns.resize(triangles_of.size());
-  for (std::size_t n = 0; n < triangles_of.size(); n++) {
+  if (prepared[p] == updates) return;
+  prepared[p] = updates;
+  boxes[p] = patches.box(p, mesh.start);
+  for (int n = first_triangle[p]; n < first_triangle[p + 1]; n++) {
     const auto &[a, b, c] = mesh.triangles[triangles_of[n]];
-    triangle_columns.set(static_cast<int>(n), mesh.start[a], mesh.start[b], mesh.start[c]);
+    triangle_columns.set(n, mesh.start[a], mesh.start[b], mesh.start[c]);
   }
-  edge_columns.resize(edges_of.size());
-  for (std::size_t n = 0; n < edges_of.size(); n++) {
-    const Vec3 &a = mesh.start[edges.edges[edges_of[n]][0]],
-               &b = mesh.start[edges.edges[edges_of[n]][1]];
-    edge_columns.set(static_cast<int>(n), a, b);
+  for (int n = first_edge[p]; n < first_edge[p + 1]; n++) {
+    const auto &[a, b] = edges.edges[edges_of[n]];
+    edge_columns.set(n, mesh.start[a], mesh.start[b]);
   }
 }
 
@@ -243,23 +259,20 @@ bool ClothCandidates::orient(int &e, int &other) const
 void ClothCandidates::add(PairKind kind, const std::array<int, 4> &slots,
                           const std::array<int, 2> &members)
 {
-  const auto &[i, j, k, l] = slots;
-  const double distance =
-      closest_points(kind, {mesh.start[i], mesh.start[j], mesh.start[k], mesh.start[l]})
-          .vector.norm();
-  if (distance > cutoff) return;
-  const Meeting meeting = edges.is_obstacle(i) == edges.is_obstacle(l) ? Meeting::CLOTH_CLOTH
-                                                                       : Meeting::CLOTH_OBSTACLE;
-  pairs.push_back({kind, slots, members, meeting,
-                   distance < rules.cloth.thickness && are_joined(kind, slots), distance});
+  const Meeting meeting = edges.is_obstacle(slots[0]) == edges.is_obstacle(slots[3])
+      ? Meeting::CLOTH_CLOTH
+      : Meeting::CLOTH_OBSTACLE;
+  pairs.push_back({kind, slots, members, meeting});
 }
 
-bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots) const
+bool ClothCandidates::are_joined(const ContactPair &pair, double distance) const
 {
-  for (int k = 0; k < first_side(kind); k++)
-    for (int l = first_side(kind); l < 4; l++)
-      if ((mesh.start[slots[k]] - mesh.start[slots[l]]).norm() < rules.cloth.thickness &&
-          edges.joined(slots[k], slots[l]))
+  const double thickness = rules.cloth.thickness;
+  if (distance >= thickness) return false;
+  for (int k = 0; k < first_side(pair.kind); k++)
+    for (int l = first_side(pair.kind); l < 4; l++)
+      if ((mesh.start[pair.slots[k]] - mesh.start[pair.slots[l]]).norm() < thickness &&
+          edges.joined(pair.slots[k], pair.slots[l]))
         return true;
   return false;
 }
@@ -267,6 +280,6 @@ bool ClothCandidates::are_joined(PairKind kind, const std::array<int, 4> &slots)
 double ClothCandidates::memory_usage() const
 {
   return patches.bytes() + grid.bytes() + triangle_columns.bytes() + edge_columns.bytes() +
-      bytes_of(pairs, pairs_before, near, near_before, boxes, first_triangle, triangles_of,
-               first_edge, edges_of);
+      bytes_of(pairs, pairs_before, distances, distances_before, near, near_before, boxes, prepared,
+               first_triangle, triangles_of, first_edge, edges_of);
 }

@@ -3,8 +3,9 @@
 // a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex
 // of both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
 //
-// Lists are by pairs of patches of vertices.  Each is made with a margin and holds while its two
-// patches stay within that, also over list builds of LAMMPS that leave vertices where they were.
+// Lists are by pairs of patches of vertices.  Each is made with a margin, holds while its two patches
+// stay within that, also over list builds of LAMMPS that leave vertices where they were, and is made
+// anew alone.  A pair is measured where it may have come near since it was measured last.
 // Which pairs are visited, and in which order, does not depend on when a list was made.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H
@@ -45,24 +46,37 @@ class ClothCandidates : protected Pointers {
 
   // Pairs that may come as near as `reach`, at most max_reach(), in this step: visit(pair, closest
   // points at the start of the step).
-  template <class Visit> void for_near(double reach, Visit visit) const
+  template <class Visit> void for_near(double reach, Visit visit)
   {
-    for (const PatchPair &both : near) {
-      const double reach_then = reach + both.approach;
-      if (both.nearest > reach_then) continue;
+    for (PatchPair &both : near) {
+      const double reach_then = reach + both.approach, path_then = reach + both.path + both.in_step;
+      if (both.nearest > path_then) continue;
+      both.nearest = std::numeric_limits<double>::infinity();
+      const double reach_in_step = reach + both.in_step;
       for (int n = both.begin; n < both.end; n++) {
-        const ContactPair &pair = pairs[n];
-        if (pair.distance > reach_then) continue;
-        const std::array<int, 4> &s = pair.slots;
-        const sphcloth::ClosestPoints at = closest_points(
-            pair.kind, {mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]], mesh.start[s[3]]});
-        const double room = at.vector.norm() - reach;
-        if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
+        if (!distances[n].is_beyond(reach_then, path_then)) {
+          const ContactPair &pair = pairs[n];
+          const std::array<int, 4> &s = pair.slots;
+          const sphcloth::FourPoints x{mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]],
+                                       mesh.start[s[3]]};
+          double distance = distance_along_centers(pair.kind, x);
+          if (distance <= reach_in_step) {
+            const sphcloth::ClosestPoints at = closest_points(pair.kind, x);
+            distance = at.vector.norm();
+            const double room = distance - reach;
+            if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
+          }
+          distances[n].measure(distance, both.path);
+        }
+        both.nearest = std::min(both.nearest, static_cast<double>(distances[n].last));
       }
     }
   }
   double max_reach() const;
   const MeetingRules rules;
+
+  // Is a pair at this distance joined by a bond that is shorter than the thickness: by a seam?
+  bool are_joined(const ContactPair &pair, double distance) const;
 
   double memory_usage() const;
 
@@ -71,25 +85,43 @@ class ClothCandidates : protected Pointers {
   const MeshEdges &edges;
   struct PatchPair {
     std::array<int, 2> patches;    // ascending
-    // By which both may have come nearer since the list was made: until the patches started anew,
-    // and until the end of this step.
-    double carried = 0.0, approach = 0.0;
+    // By which both may have come nearer since the list was made: step by step; until the patches
+    // started anew; in this step; and in all.
+    double path = 0.0, carried = 0.0, in_step = 0.0, approach = 0.0;
     double covered = 0.0;    // all pairs nearer than this are in the list
     int begin = 0, end = 0;    // of pairs
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = 0.0;    // of these, when they were measured last, with the path of then
 
     bool operator<(const PatchPair &other) const { return patches < other.patches; }
   };
 
+  // Of a pair, lower bounds in single precision, since many are read: when its list was made, and
+  // when it was measured last, with the path of then.
+  struct Distances {
+    float listed = 0.0, last = 0.0;
+
+    void measure(double distance, double path)
+    {
+      constexpr double ROUNDED = 1.0 - 1e-6;
+      last = static_cast<float>(ROUNDED * (distance + path));
+      if (path == 0.0) listed = last;
+    }
+    bool is_beyond(double reach, double path) const { return listed > reach || last > path; }
+  };
+
   sphcloth::MeshPatches patches;
   std::vector<ContactPair> pairs, pairs_before;
+  std::vector<Distances> distances, distances_before;    // of these
   std::vector<PatchPair> near, near_before;
+  std::size_t unused = 0;    // of the pairs: those of lists that were made anew
   double range = 0.0;    // to which patches are near, when they started anew
   double limit = 0.0;    // of an approach
   int revision = 0;    // of the edges that lists are of; 0: there are none
   // of a search: boxes of patches, and their triangles and edges
   sphcloth::BoxGrid grid;
   std::vector<sphcloth::Box> boxes;
+  std::vector<int> prepared;    // of patches: in which update
+  int updates = 0;
   std::vector<int> first_triangle, triangles_of, first_edge, edges_of;
   sphcloth::TriangleColumns triangle_columns;
   sphcloth::EdgeColumns edge_columns;
@@ -107,21 +139,20 @@ class ClothCandidates : protected Pointers {
   }
   Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }
   double margin() const;
-  double approach_in_step(const PatchPair &) const;
   void measure();
+  void measure(PatchPair &) const;
   bool holds(const PatchPair &) const;
-  bool all_hold() const;
   void start_anew(bool known);
   void find_near();
   void sort_members();
-  void fill_columns();
   bool meet(int patch, int other) const;
-  bool keep(PatchPair &, double in_step);
-  void find(PatchPair &, double in_step);
+  void keep(PatchPair &) const;
+  void drop_unused();
+  void find(PatchPair &);
+  void prepare(int patch);
   void find_triangles(int patch_of_vertices, int patch);
   void find_edges(int patch, int other);
   bool orient(int &edge, int &other) const;
-  bool are_joined(sphcloth::PairKind, const std::array<int, 4> &slots) const;
   void add(sphcloth::PairKind, const std::array<int, 4> &slots, const std::array<int, 2> &members);
   double cutoff = 0.0;    // of the list that is made
 };

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -25,6 +26,7 @@ static constexpr double KEEP = 0.1, GIVEN = 0.5;
 static constexpr double CLOSE = 0.02, KEEP_CLOSE = 0.9;
 
 static constexpr int MAX_PASSES = 20;
+static constexpr double EXACTLY = std::numeric_limits<double>::infinity();
 
 void ContactGuarantee::rebuild()
 {
@@ -106,7 +108,8 @@ void ContactGuarantee::find_collisions_of_particles()
     if (at.vector.isZero(0.0) || !follow(mesh.pair_of(i, t), at)) return;
     const ContactRow row = rows.back();
     rows.pop_back();
-    const double leaning = std::max(SEAM, mesh.leaning_into_others(t, {row.weight, row.normal}));
+    const double leaning =
+        std::max(SEAM, mesh.leaning_into_others(t, {row.weight, row.normal}, EXACTLY));
     if (rows.size() > first && leaning > smallest * (1.0 + SEAM)) return;
     if (rows.size() > first && leaning < smallest * (1.0 - SEAM)) rows.resize(first, row);
     rows.push_back(row);

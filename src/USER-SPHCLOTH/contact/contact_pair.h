@@ -16,8 +16,6 @@ struct ContactPair {
   std::array<int, 4> slots;    // vertex or particle, and triangle; or two edges
   std::array<int, 2> members;    // triangle: the second; edges: both
   Meeting meeting;
-  bool joined;    // by a bond that is shorter than the thickness: a seam
-  double distance;    // when the list was made
 };
 
 }    // namespace LAMMPS_NS

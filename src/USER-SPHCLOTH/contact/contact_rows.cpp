@@ -37,10 +37,12 @@ static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
 static constexpr double NONE = -1.0;
 
-// Of the thickness: by which the two sides of a row may move past one another before their closest
-// points are found anew.  Until then its distance is that along its normal, to second order.  Where
+// By which the two sides of a row may move past one another before their closest points are found
+// anew, of the thickness.  Until then its distance is that along its normal, to second order.  Where
 // these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not push.
-static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05;
+// And of the distance to contact: before that has passed nothing pushes.
+static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05,
+                        MAX_SLIDE_APART = 0.5;
 
 void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
@@ -84,13 +86,15 @@ double ContactRows::find_rows_of_cloth()
   of_cloth.for_near(of_cloth.max_reach(), [&](const ContactPair &pair, const ClosestPoints &at) {
     const double distance = at.vector.norm();
     if (distance == 0.0) return;
+    const bool joined = of_cloth.are_joined(pair, distance);
     const double thickness = rules.of(pair.meeting).thickness,
-                 recovered = pair.joined || !recovers_in_solver() ? 0.0 : RECOVERY * thickness;
+                 recovered = joined || !recovers_in_solver() ? 0.0 : RECOVERY * thickness;
     add_row(pair, at, std::min(thickness, distance + recovered));
+    details.back().joined = joined;
     const ContactRow &row = rows.back();
     const double ahead = std::min(distance, row.relative(mesh.end).dot(row.normal));
-    if (!pair.joined) missing = std::max(missing, 1.0 - ahead / thickness);
-    if (pair.meeting == Meeting::CLOTH_CLOTH && !pair.joined)
+    if (!joined) missing = std::max(missing, 1.0 - ahead / thickness);
+    if (pair.meeting == Meeting::CLOTH_CLOTH && !joined)
       mesh.counts.cloth_gap = std::min(mesh.counts.cloth_gap, distance);
   });
   return missing;
@@ -119,7 +123,7 @@ void ContactRows::add_row(const ContactPair &pair, const ClosestPoints &at, doub
                                      : mesh.normal_at_start(pair.members[1]);
   rows.emplace_back(pair, at.weight, normal, gap);
   rows.back().distance = distance;
-  details.push_back({pair.members, pair.joined});
+  details.push_back({pair.members});
 }
 
 // of a particle, whose direction leans by so much into other triangles: the nearest, or not
@@ -158,7 +162,8 @@ double ContactRows::max_slide(const ContactRow &row) const
   const double of_thickness = row.share == 0.0 ? MAX_SLIDE_ASIDE
       : row.is_inside_both()                   ? MAX_SLIDE
                                                : MAX_SLIDE_LEANING;
-  return of_thickness * rules_of(row).thickness;
+  return std::max(of_thickness * rules_of(row).thickness,
+                  MAX_SLIDE_APART * (row.distance - row.gap));
 }
 
 // How far both sides may move before the row may push, or its closest points are found anew.
@@ -177,6 +182,7 @@ void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double 
   const double before = remaining;
   remaining -= dt;
   active.clear();
+  substep_begins = true;
   masses.clear_loads();
   if (rules.cloth.restitution > 0.0) load_velocities(v);
   if (rules.max_friction() > 0.0) {
@@ -191,12 +197,18 @@ void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double 
 void ContactRows::project(Vertex *displacement)
 {
   const WallTimer clock(mesh.counts.seconds);
-  for (int pass = 0; pass < passes; pass++) project_once(displacement);
+  load_positions(displacement);
+  for (int pass = 0; pass < passes; pass++) {
+    project_once();
+    push_positions(displacement);
+    if (pass < passes - 1) load_ghosts(Vec3::Zero());
+    points.push(masses.impulse);
+    points.measure_paths(Vec3::Zero());
+  }
 }
 
-void ContactRows::project_once(Vertex *displacement)
+void ContactRows::project_once()
 {
-  load_positions(displacement);
   masses.clear_impulses();
   awake.clear();
   for (std::size_t k = 0; k < rows.size(); k++)
@@ -205,41 +217,65 @@ void ContactRows::project_once(Vertex *displacement)
     project_normal(k);
     if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
   });
-  push_vertices(displacement, substep_dt);
-  points.push(masses.impulse);
 }
 
-// by what rows of all ranks have pushed: displacements in this time, or velocities
+// vertices, by what rows of all ranks have pushed
 
-void ContactRows::push_vertices(Vertex *by_slot, double time)
+void ContactRows::push_positions(Vertex *displacement)
+{
+  mesh.halo.reverse_add(0, masses.impulse.data());
+  double max_sq = 0.0;
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    if (masses.impulse[s].isZero(0.0)) continue;
+    const Vec3 way = mesh.w_solver[s] * masses.impulse[s];
+    move(displacement[s], way);
+    mesh.end[s] = end_of(s, displacement);
+    received[s] += masses.impulse[s] / substep_dt;
+    max_sq = std::max(max_sq, way.squaredNorm());
+  }
+  path += std::sqrt(max_sq);
+}
+
+void ContactRows::push_velocities(Vertex *v)
 {
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const Vec3 &impulse = masses.impulse[s];
-    by_slot[s].x += mesh.w_solver[s] * impulse[0];
-    by_slot[s].y += mesh.w_solver[s] * impulse[1];
-    by_slot[s].z += mesh.w_solver[s] * impulse[2];
-    received[s] += impulse / time;
+    if (masses.impulse[s].isZero(0.0)) continue;
+    move(v[s], mesh.w_solver[s] * masses.impulse[s]);
+    received[s] += masses.impulse[s];
   }
 }
 
+// Where vertices are now.  What all have moved together, in about this direction before, does not
+// count.
+
 void ContactRows::load_positions(const Vertex *displacement)
 {
-  const int n = mesh.halo.n_slots();
-  end_before.assign(mesh.end.begin(), mesh.end.begin() + n);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    const Vertex &start = substep_start[s], &by = displacement[s];
-    mesh.end[s] = Vec3(start.x + by.x, start.y + by.y, start.z + by.z);
-  }
-  mesh.halo.forward_positions(0, mesh.end.data(), remaining);
-  Vec3 together = Vec3::Zero();
-  for (int s = 0; s < n; s++) together += mesh.end[s] - end_before[s];
-  if (n > 0) together /= n;
+  const Vec3 aside = substep_begins ? together : Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
   double max_sq = 0.0;
-  for (int s = 0; s < n; s++)
-    max_sq = std::max(max_sq, (mesh.end[s] - end_before[s] - together).squaredNorm());
+  for (int s = 0; s < mesh.halo.n_owned(); s++) {
+    const Vec3 at = end_of(s, displacement), way = at - mesh.end[s];
+    mesh.end[s] = at;
+    sum += way;
+    max_sq = std::max(max_sq, (way - aside).squaredNorm());
+  }
   path += std::sqrt(max_sq);
-  points.measure_paths(together);
+  load_ghosts(aside);
+  points.measure_paths(aside);
+  if (substep_begins && mesh.halo.n_owned() > 0) together = sum / mesh.halo.n_owned();
+  substep_begins = false;
+}
+
+void ContactRows::load_ghosts(const Vec3 &aside)
+{
+  const int owned = mesh.halo.n_owned(), n = mesh.halo.n_slots();
+  ghosts_before.assign(mesh.end.begin() + owned, mesh.end.begin() + n);
+  mesh.halo.forward_positions(0, mesh.end.data(), remaining);
+  double max_sq = 0.0;
+  for (int s = owned; s < n; s++)
+    max_sq = std::max(max_sq, (mesh.end[s] - ghosts_before[s - owned] - aside).squaredNorm());
+  path += std::sqrt(max_sq);
 }
 
 // A row that sleeps would not push, and would keep its closest points: the answer does not depend
@@ -330,7 +366,7 @@ double ContactRows::share(int k, const ClosestPoints &at) const
 
 double ContactRows::leaning_of(int k, const ClosestPoints &at) const
 {
-  return mesh.leaning_into_others(details[k].members[1], at, rows[k].slots[0]);
+  return mesh.leaning_into_others(details[k].members[1], at, LEANS_AWAY, rows[k].slots[0]);
 }
 
 // into a triangle at an edge whose third vertex is none of the other side
@@ -373,7 +409,7 @@ void ContactRows::end_substep(Vertex *v, double dt)
   load_velocities(v);
   masses.clear_impulses();
   for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  push_vertices(v, 1.0);
+  push_velocities(v);
   points.push_velocities(masses.impulse);
 }
 
@@ -441,7 +477,7 @@ void ContactRows::recover_gaps()
       atom->x[mesh.halo.atom_of(s)][d] += mesh.w[s] * masses.impulse[s][d];
 }
 
-// Those that keep the whole thickness miss nothing while they sleep.
+// Those miss nothing that cannot have come so near on their paths: which rows sleep does not matter.
 
 void ContactRows::find_missing_gaps()
 {
@@ -450,7 +486,7 @@ void ContactRows::find_missing_gaps()
   for (std::size_t n = 0; n < n_rows_of_cloth; n++) {
     const int k = static_cast<int>(n);
     const double thickness = rules_of(rows[k]).thickness;
-    if (details[k].joined || (rows[k].gap == thickness && awake_from[k] > path_of(k))) continue;
+    if (details[k].joined || rows[k].distance - path_of(k) >= thickness) continue;
     find_closest_points(k);
     if (rows[k].share == 0.0 || rows[k].distance >= thickness) continue;
     awake.push_back(k);
@@ -461,6 +497,6 @@ void ContactRows::find_missing_gaps()
 double ContactRows::memory_usage() const
 {
   return masses.bytes() + points.bytes() +
-      bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, end_before,
+      bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, ghosts_before,
                velocity, received);
 }

@@ -48,7 +48,7 @@ class ContactRows : public SolverCoupling, protected Pointers {
   const MeetingRules rules;
   struct Detail {    // of a row
     std::array<int, 2> members;    // see ContactPair
-    bool joined;
+    bool joined = false;
     double speed_before = 0.0;    // along the normal
     Vec3 friction_correction = Vec3::Zero();    // of this substep, mass times length
   };
@@ -61,13 +61,16 @@ class ContactRows : public SolverCoupling, protected Pointers {
   std::vector<double> awake_from;    // of rows: path of both sides before which there is no contact
   std::vector<int> awake, active;    // rows in this pass, and those in contact in this substep
   SplitMasses masses;
-  std::vector<Vec3> from, end_before, velocity;    // vertices at the start of the substep
+  std::vector<Vec3> from, velocity;    // vertices at the start of the substep
+  std::vector<Vec3> ghosts_before;
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
   const sphcloth::Vertex *substep_start = nullptr;
   int passes = 1;    // of a projection, in this step
   bool too_near = false;    // is some cloth to cloth, on any rank?
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
+  Vec3 together = Vec3::Zero();    // that, in the substep before
+  bool substep_begins = false;
 
   const ContactRules &rules_of(const ContactRow &row) const { return rules.of(row.meeting); }
   // of both sides of a row, in this step
@@ -83,9 +86,22 @@ class ContactRows : public SolverCoupling, protected Pointers {
   void start_rows();
   double max_slide(const ContactRow &) const;
   double asleep(const ContactRow &, double distance, double slid) const;
-  void project_once(sphcloth::Vertex *displacement);
-  void push_vertices(sphcloth::Vertex *by_slot, double time);
+  void project_once();
+  static void move(sphcloth::Vertex &vertex, const Vec3 &by)
+  {
+    vertex.x += by[0];
+    vertex.y += by[1];
+    vertex.z += by[2];
+  }
+  Vec3 end_of(int slot, const sphcloth::Vertex *displacement) const
+  {
+    const sphcloth::Vertex &start = substep_start[slot], &by = displacement[slot];
+    return {start.x + by.x, start.y + by.y, start.z + by.z};
+  }
+  void push_positions(sphcloth::Vertex *displacement);
+  void push_velocities(sphcloth::Vertex *v);
   void load_positions(const sphcloth::Vertex *displacement);
+  void load_ghosts(const Vec3 &aside);
   void load_velocities(const sphcloth::Vertex *v);
   // rows are fetched from memory some ahead
   template <class Visit> void for_ahead(const std::vector<int> &some, Visit visit) const

@@ -108,11 +108,13 @@ void MeshContact::check_heights() const
                triangles.label, thickness, lowest);
 }
 
-void MeshContact::warn_of_too_near() const
+void MeshContact::warn_of_too_near()
 {
   bigint mine = 0, all;
   of_cloth.for_near(rules.max_thickness(), [&](const ContactPair &pair, const ClosestPoints &at) {
-    if (!pair.joined && at.vector.norm() < 0.999 * rules.of(pair.meeting).thickness) mine++;
+    const double distance = at.vector.norm();
+    if (!of_cloth.are_joined(pair, distance) && distance < 0.999 * rules.of(pair.meeting).thickness)
+      mine++;
   });
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all > 0 && comm->me == 0)

@@ -54,7 +54,7 @@ class MeshContact : protected Pointers {
 
   void move_to_owners() const;
   void check_heights() const;
-  void warn_of_too_near() const;
+  void warn_of_too_near();
 };
 
 }    // namespace LAMMPS_NS

@@ -93,7 +93,7 @@ void MovingTriangles::forget_particles()
 // those of the triangle itself lead away from the point.
 
 double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
-                                            int slot_of_point) const
+                                            double enough, int slot_of_point) const
 {
   std::array<int, 3> at{};    // the vertices of the edge, or the vertex
   int n = 0;
@@ -102,6 +102,7 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
   if (n == 3) return 0.0;
   const Vec3 a = end[at[0]];
   const Vec3 edge = n == 2 ? Vec3(end[at[1]] - a) : Vec3::Zero();
+  const double inv_sq = n == 2 ? 1.0 / edge.squaredNorm() : 0.0, distance = from_nearest.norm();
   double largest = 0.0;
   for (int k = first[at[0]]; k < first[at[0] + 1]; k++) {
     const std::array<int, 3> &other = triangles[incident[k]];
@@ -110,11 +111,12 @@ double MovingTriangles::leaning_into_others(int t, const Vec3 &weight, const Vec
     for (int s : other) {
       if (s == at[0] || (n == 2 && s == at[1])) continue;
       Vec3 direction = end[s] - a;
-      if (n == 2) direction -= edge.dot(direction) / edge.squaredNorm() * edge;
+      direction -= edge.dot(direction) * inv_sq * edge;
       largest = std::max(largest, leaning(direction, from_nearest));
+      if (largest > enough * distance) return largest / distance;
     }
   }
-  return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
+  return largest > 0.0 ? largest / distance : 0.0;
 }
 
 void MovingTriangles::push_held(int i, const Vec3 &impulse)

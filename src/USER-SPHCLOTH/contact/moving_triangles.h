@@ -63,9 +63,7 @@ class MovingTriangles : public TriangleSet {
     return {sphcloth::PairKind::POINT_TRIANGLE,
             {slot_of_particle(i), a, b, c},
             {-1, t},
-            Meeting::PARTICLE,
-            false,
-            0.0};
+            Meeting::PARTICLE};
   }
   void forget_particles();
   std::vector<int> particles;    // owned atoms, of those slots
@@ -79,17 +77,19 @@ class MovingTriangles : public TriangleSet {
 
   // Of a point at this vector from its nearest point in a triangle, which has these weights: how
   // far does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above
-  // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.
-  double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest,
+  // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.  What
+  // is more than `enough` need not be the most.
+  double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest, double enough,
                              int slot_of_point = -1) const;
-  double leaning_into_others(int t, const sphcloth::ClosestPoints &at, int slot_of_point = -1) const
+  double leaning_into_others(int t, const sphcloth::ClosestPoints &at, double enough,
+                             int slot_of_point = -1) const
   {
-    return leaning_into_others(t, {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector,
+    return leaning_into_others(t, {-at.weight[1], -at.weight[2], -at.weight[3]}, at.vector, enough,
                                slot_of_point);
   }
   bool is_nearer_to_another(int t, const Vec3 &weight, const Vec3 &from_nearest) const
   {
-    return leaning_into_others(t, weight, from_nearest) > sphcloth::SEAM;
+    return leaning_into_others(t, weight, from_nearest, sphcloth::SEAM) > sphcloth::SEAM;
   }
 
   // a held vertex takes an impulse, which is counted

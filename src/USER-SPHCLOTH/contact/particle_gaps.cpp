@@ -111,6 +111,8 @@ ParticleGaps::Gap ParticleGaps::gap_over(const Sweep &p, const Near &pair) const
       end{p.end, mesh.end[a], mesh.end[b], mesh.end[c]};
   const double kept = std::min(mesh.rules.thickness, pair.distance), slack = SLACK * kept,
                height = height_over(end), side = height_over(start) >= 0.0 ? 1.0 : -1.0;
+  if (side * height > 0.0 && distance_along_centers(PairKind::POINT_TRIANGLE, end) >= kept)
+    return gap;
   const Vec3 normal = (end[2] - end[1]).cross(end[3] - end[1]).normalized();
   if (side * height <= 0.0) {
     PairMotion motion{PairKind::POINT_TRIANGLE, start, {}};
@@ -144,8 +146,10 @@ bool ParticleGaps::recover(Gap &gap, const Vec3 &p, int t) const
   if (gap.max_approach == std::numeric_limits<double>::infinity()) return false;
   const auto &[a, b, c] = mesh.triangles[t];
   const double thickness = mesh.rules.thickness;
+  const FourPoints end{p, mesh.end[a], mesh.end[b], mesh.end[c]};
+  if (distance_along_centers(PairKind::POINT_TRIANGLE, end) >= thickness) return false;
   Vec3 weight;
-  const Vec3 vector = distance_vector(p, mesh.end[a], mesh.end[b], mesh.end[c], weight);
+  const Vec3 vector = distance_vector(end[0], end[1], end[2], end[3], weight);
   const double distance = vector.norm();
   if (distance == 0.0 || distance >= thickness) return false;
   if (mesh.is_nearer_to_another(t, weight, vector)) return false;

@@ -49,6 +49,8 @@ SheetSides::Nearest SheetSides::nearest_to(const Vec3 &p, double cutoff)
   discs.grid.nearest(p, cutoff, SEAM * cutoff, [&](int t) {
     const auto &[v0, v1, v2] = mesh.triangles[t];
     const Vec3 &a = mesh.end[v0], &b = mesh.end[v1], &c = mesh.end[v2];
+    const double at_least = distance_along_centers(PairKind::POINT_TRIANGLE, {p, a, b, c});
+    if (at_least > std::min(cutoff, nearest * (1.0 + 2.0 * SEAM))) return;
     Vec3 weight;
     const Vec3 out = distance_vector(p, a, b, c, weight);
     const double distance = out.norm();

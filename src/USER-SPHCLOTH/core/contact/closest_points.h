@@ -66,6 +66,24 @@ inline ClosestPoints closest_points(PairKind kind, const FourPoints &x)
   return at;
 }
 
+// They are no nearer than this, without a branch: both sides are apart by no less than along the line
+// between their centers.
+
+inline double distance_along_centers(PairKind kind, const FourPoints &x)
+{
+  if (kind == PairKind::POINT_TRIANGLE) {
+    const Vec3 center = (x[1] + x[2] + x[3]) / 3.0, line = x[0] - center;
+    const double sq = line.squaredNorm();
+    const double reach =
+        std::max({line.dot(x[1] - center), line.dot(x[2] - center), line.dot(x[3] - center)});
+    return sq > 0.0 ? (sq - reach) / std::sqrt(sq) : 0.0;
+  }
+  const Vec3 line = 0.5 * (x[0] + x[1] - x[2] - x[3]);
+  const double sq = line.squaredNorm();
+  const double reach = 0.5 * (std::fabs(line.dot(x[1] - x[0])) + std::fabs(line.dot(x[3] - x[2])));
+  return sq > 0.0 ? (sq - reach) / std::sqrt(sq) : 0.0;
+}
+
 // Are the closest points inside both edges, or inside the triangle?  If not, another pair is as
 // near.
 
@@ -95,10 +113,11 @@ inline double share_of_edges(const FourPoints &x, const ClosestPoints &at)
 // The same of a pair that leans, from its closest points, into what borders on one of them, by this
 // cosine: what borders is nearer.
 
+inline constexpr double LEANS_AWAY = 0.1;    // does not count from here on
+
 inline double share_of_leaning(double cosine)
 {
-  constexpr double NONE = 0.1;
-  return std::clamp(1.0 - cosine / NONE, 0.0, 1.0);
+  return std::clamp(1.0 - cosine / LEANS_AWAY, 0.0, 1.0);
 }
 
 }    // namespace sphcloth

@@ -104,9 +104,8 @@ void MeshPatches::assign(const Triangles &triangles, int n_vertices)
 {
   Growth growth(triangles, n_vertices);
   patch.swap(growth.patch);
-  boxes.resize(growth.n_patches);
   sort_into_buckets(
-      boxes.size(),
+      growth.n_patches,
       [this](auto add) {
         for (std::size_t s = 0; s < patch.size(); s++) add(patch[s], static_cast<int>(s));
       },
@@ -116,7 +115,7 @@ void MeshPatches::assign(const Triangles &triangles, int n_vertices)
 void MeshPatches::find_foreign(const Triangles &triangles)
 {
   sort_into_buckets(
-      boxes.size(),
+      size(),
       [&](auto add) {
         for (const std::array<int, 3> &t : triangles)
           for (const int s : t)
@@ -166,45 +165,62 @@ MeshPatches::Pose MeshPatches::pose_of(int p, const std::vector<Vec3> &positions
   return pose;
 }
 
+Box MeshPatches::box(int p, const std::vector<Vec3> &positions) const
+{
+  Box box;
+  for_vertices(p, [&](int s) { box.extend(positions[s]); });
+  return box;
+}
+
 void MeshPatches::start_from(const std::vector<Vec3> &positions)
 {
-  then = positions;
+  then = measured = positions;
   poses_then.resize(size());
   extent_then.resize(size());
   for (int p = 0; p < size(); p++) {
     poses_then[p] = pose_of(p, then);
-    boxes[p].setEmpty();
     double extent_sq = 0.0;
     for_vertices(p, [&](int s) {
-      boxes[p].extend(then[s]);
       extent_sq = std::max(extent_sq, (then[s] - poses_then[p].center).squaredNorm());
     });
     extent_then[p] = std::sqrt(extent_sq);
   }
 }
 
+MeshPatches::Motion MeshPatches::motion_of(int p, const std::vector<Vec3> &from,
+                                           const std::vector<Vec3> &to) const
+{
+  Motion move;
+  for (int n = first_member[p]; n < first_member[p + 1]; n++)
+    move.mean += to[members[n]] - from[members[n]];
+  move.mean /= static_cast<double>(first_member[p + 1] - first_member[p]);
+  double departed_sq = 0.0;
+  for_vertices(p, [&](int s) {
+    departed_sq = std::max(departed_sq, (to[s] - from[s] - move.mean).squaredNorm());
+  });
+  move.radius = std::sqrt(departed_sq);
+  return move;
+}
+
 void MeshPatches::measure(const std::vector<Vec3> &start, const std::vector<Vec3> &end)
 {
   turned.resize(size());
   moves.resize(size());
+  moves_since.resize(size());
   for (int p = 0; p < size(); p++) {
     Turned &now = turned[p];
     now.pose = pose_of(p, start);
     now.turn = now.pose.axes * poses_then[p].axes.transpose();
     const Vec3 shift = now.pose.center - now.turn * poses_then[p].center;
-    Motion &move = moves[p];
-    move.mean.setZero();
-    for (int n = first_member[p]; n < first_member[p + 1]; n++)
-      move.mean += end[members[n]] - start[members[n]];
-    move.mean /= static_cast<double>(first_member[p + 1] - first_member[p]);
-    double before_sq = 0.0, move_sq = 0.0;
+    double departed_sq = 0.0;
     for_vertices(p, [&](int s) {
-      before_sq = std::max(before_sq, (start[s] - now.turn * then[s] - shift).squaredNorm());
-      move_sq = std::max(move_sq, (end[s] - start[s] - move.mean).squaredNorm());
+      departed_sq = std::max(departed_sq, (start[s] - now.turn * then[s] - shift).squaredNorm());
     });
-    now.radius = std::sqrt(before_sq);
-    move.radius = std::sqrt(move_sq);
+    now.radius = std::sqrt(departed_sq);
+    moves[p] = motion_of(p, start, end);
+    moves_since[p] = motion_of(p, measured, start);
   }
+  measured = start;
 }
 
 // Of the distance that both would have if they had moved with p as one body.  Where q has turned by
@@ -241,6 +257,6 @@ double MeshPatches::approach_of_any(double limit) const
 
 double MeshPatches::bytes() const
 {
-  return bytes_of(first_member, members, patch, first_foreign, foreign, anchors, boxes, then,
-                  poses_then, extent_then, turned, moves);
+  return bytes_of(first_member, members, patch, first_foreign, foreign, anchors, then, poses_then,
+                  extent_then, turned, moves, moves_since, measured);
 }

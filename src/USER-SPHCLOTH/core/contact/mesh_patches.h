@@ -22,14 +22,15 @@ class MeshPatches {
 
   // A triangle, and an edge of one, is of the patch of its first vertex.
   void build(const Triangles &, const std::vector<Vec3> &positions);
-  int size() const { return static_cast<int>(boxes.size()); }
+  int size() const { return first_member.empty() ? 0 : static_cast<int>(first_member.size()) - 1; }
   int patch_of(int vertex) const { return patch[vertex]; }
   // vertices of patch p: members[first_member[p] .. first_member[p+1])
   std::vector<int> first_member, members;
+  // of all triangles of patch p
+  Box box(int p, const std::vector<Vec3> &positions) const;
 
   // Bounds are of motion since here.
   void start_from(const std::vector<Vec3> &positions);
-  const Box &box(int p) const { return boxes[p]; }    // there, of all its triangles
 
   // after each change: positions at the start and at the end of this step
   void measure(const std::vector<Vec3> &start, const std::vector<Vec3> &end);
@@ -37,20 +38,23 @@ class MeshPatches {
   // By which the sides of any pair of two patches may have come nearer: until this step, and in it.
   // In a step turning counts.
   double approach_before(int p, int q) const;
-  double approach_in_step(int p, int q) const
-  {
-    return (moves[p].mean - moves[q].mean).norm() + moves[p].radius + moves[q].radius;
-  }
+  double approach_in_step(int p, int q) const { return approach(moves[p], moves[q]); }
+  // The same between the start of the step that was measured before and that of this one.
+  double approach_since(int p, int q) const { return approach(moves_since[p], moves_since[q]); }
   // The same of any two patches; in this step it is taken to be at most `limit`.
   double approach_of_any(double limit) const;
 
   double bytes() const;
 
  private:
-  struct Motion {    // in a step
+  struct Motion {
     Vec3 mean = Vec3::Zero();
     double radius = 0.0;    // by which vertices depart from it
   };
+  static double approach(const Motion &a, const Motion &b)
+  {
+    return (a.mean - b.mean).norm() + a.radius + b.radius;
+  }
   struct Pose {
     Vec3 center = Vec3::Zero();
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -64,17 +68,18 @@ class MeshPatches {
   std::vector<int> patch;    // of a vertex
   std::vector<int> first_foreign, foreign;    // vertices of other patches in its triangles
   std::vector<std::array<int, 3>> anchors;    // three vertices that tell how a patch has turned
-  std::vector<Box> boxes;
   std::vector<Vec3> then;    // positions
   std::vector<Pose> poses_then;
   std::vector<double> extent_then;    // of a patch, from its center
   std::vector<Turned> turned;
-  std::vector<Motion> moves;
+  std::vector<Motion> moves, moves_since;    // in this step, and since the one before
+  std::vector<Vec3> measured;    // positions at the start of the step that was measured last
 
   void assign(const Triangles &, int n_vertices);
   void find_foreign(const Triangles &);
   void choose_anchors(const std::vector<Vec3> &positions);
   Pose pose_of(int p, const std::vector<Vec3> &positions) const;
+  Motion motion_of(int p, const std::vector<Vec3> &from, const std::vector<Vec3> &to) const;
   template <class Visit> void for_vertices(int p, Visit visit) const;
 };
 

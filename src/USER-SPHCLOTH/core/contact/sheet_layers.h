@@ -132,8 +132,9 @@ class SheetLayers : public Parting {
       nz.push_back(normal[2]);
       radius_sq.push_back(r_sq);
     }
-    // may a line from the particle cross those of a group that begins at n?
-    SPHCLOTH_INLINE bool may_cross(std::size_t n, double lx, double ly, double lz) const
+    // may a line from the particle cross those of a group that begins at n?  1 for each that it may
+    SPHCLOTH_INLINE bool may_cross(std::size_t n, double lx, double ly, double lz,
+                                   double *each) const
     {
       double count = 0.0;
 #pragma omp simd reduction(+ : count)
@@ -142,7 +143,8 @@ class SheetLayers : public Parting {
         const double by = nx[k] * lx + ny[k] * ly + nz[k] * lz, share = height / by;
         const double dx = share * lx - x[k], dy = share * ly - y[k], dz = share * lz - z[k];
         const bool inside = dx * dx + dy * dy + dz * dz <= radius_sq[k];
-        count += inside & (share >= 0.0) & (share <= 1.0) ? 1.0 : 0.0;
+        each[k - n] = inside & (share >= 0.0) & (share <= 1.0) ? 1.0 : 0.0;
+        count += each[k - n];
       }
       return count > 0.0;
     }
@@ -180,9 +182,11 @@ class SheetLayers : public Parting {
   SPHCLOTH_MULTIVERSION bool any_crosses(const Vec3 &p, const Vec3 &q) const
   {
     const double lx = q[0] - p[0], ly = q[1] - p[1], lz = q[2] - p[2];
+    alignas(64) double each[LANES];
     for (std::size_t n = 0; n < seen.x.size(); n += LANES) {
-      if (!seen.may_cross(n, lx, ly, lz)) continue;
+      if (!seen.may_cross(n, lx, ly, lz, each)) continue;
       for (std::size_t k = n; k < std::min(n + LANES, seen.triangle.size()); k++) {
+        if (each[k - n] == 0.0) continue;
         const auto &[a, b, c] = triangles[seen.triangle[k]];
         if (crosses(p, q, a, b, c)) return true;
       }

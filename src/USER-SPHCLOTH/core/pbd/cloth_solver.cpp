@@ -348,16 +348,38 @@ namespace {
     return largest;
   }
 
+  // with what it says most others say nothing new; -1: there is none
+
+  template <std::size_t N> int most_loaded(const Constraints<N> &c)
+  {
+    int most = -1;
+    double largest = -1.0;
+    for (int m = 0; m < c.size(); m++) {
+      const double load = std::fabs(c.lambda[m]) * c.weight[m] * c.per_size[m];
+      if (c.hard[m] && c.weight[m] > 0.0 && load > largest) {
+        largest = load;
+        most = m;
+      }
+    }
+    return most;
+  }
+
   template <std::size_t N>
   SolverError error_under_load(const Constraints<N> &c, const LoadedSolver &s)
   {
-    SolverError found;
-    double known = 0.0;
+    const int most = most_loaded(c);
+    if (most < 0) return {};
+    const auto load = [&](int m) { return std::fabs(c.lambda[m]) * s.inv_dt_sq; };
+    const auto error = [&](int m) {
+      return s.of(load(m), c.weight[m], c.compliance[m], c.per_size[m]);
+    };
+    SolverError found = error(most);
+    double known = s.without_news(found);
     for (int m = 0; m < c.size(); m++) {
       if (!c.hard[m] || c.weight[m] == 0.0) continue;
-      const double load = std::fabs(c.lambda[m]) * s.inv_dt_sq, size = c.per_size[m];
-      if (size > 0.0 && s.unloaded_error(load, c.weight[m], size) <= known) continue;
-      found.join(s.of(load, c.weight[m], c.compliance[m], size));
+      if (c.per_size[m] > 0.0 && s.unloaded_error(load(m), c.weight[m], c.per_size[m]) <= known)
+        continue;
+      found.join(error(m));
       known = s.without_news(found);
     }
     return found;

@@ -16,6 +16,7 @@
 #include "improper.h"
 #include "kspace.h"
 #include "lammps_util/arg_reader.h"
+#include "lammps_util/lammps_version.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
@@ -55,16 +56,16 @@ void SPHAdaptive::init()
   fluid_alone = fluid && fluid->is_of(force->pair);
 }
 
-// As Verlet::setup(), but for the first step: it follows from the forces of all fixes, and the first
-// output shows it.
+// As Verlet::setup(), but for the first step: it follows from the forces of all fixes, and the
+// first output shows it.
 
 void SPHAdaptive::setup(int flag)
 {
   if (comm->me == 0 && screen) {
-    utils::print(screen, "Setting up {} run ...\n", STYLE);
+    release::print(screen, "Setting up {} run ...\n", STYLE);
     if (flag) {
-      utils::print(screen, "  Unit style    : {}\n  Current step  : {}\n  Time step     : {}\n",
-                   update->unit_style, update->ntimestep, update->dt);
+      release::print(screen, "  Unit style    : {}\n  Current step  : {}\n  Time step     : {}\n",
+                     update->unit_style, update->ntimestep, update->dt);
       timer->print_timeout(screen);
     }
   }

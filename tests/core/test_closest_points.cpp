@@ -68,8 +68,8 @@ BOOST_AUTO_TEST_CASE(along_the_line_between_centers_they_are_no_farther)
       tightest = std::max(tightest, along / distance);
     }
     BOOST_TEST(tightest > 0.99);
-    const Vec3 place(0.1, -0.4, 2.0);
-    BOOST_TEST(distance_along_centers(kind, {place, place, place, place}) == 0.0);
+    const Vec3 point(0.1, -0.4, 2.0);
+    BOOST_TEST(distance_along_centers(kind, {point, point, point, point}) == 0.0);
   }
 }
 

@@ -3,9 +3,10 @@
 // a mesh that may meet in a step.  Each pair is on one rank: that of its vertex, or of the vertex
 // of both edges, of the cloth alone if the other is of an obstacle, that has the lowest ID.
 //
-// Lists are by pairs of patches of vertices.  Each is made with a margin, holds while its two patches
-// stay within that, also over list builds of LAMMPS that leave vertices where they were, and is made
-// anew alone.  A pair is measured where it may have come near since it was measured last.
+// Lists are by pairs of patches of vertices.  Each is made with a margin, holds while its two
+// patches stay within that, also over list builds of LAMMPS that leave vertices where they were,
+// and is made anew alone.  A pair is measured where it may have come near since it was measured
+// last.
 // Which pairs are visited, and in which order, does not depend on when a list was made.
 
 #ifndef SPHCLOTH_CONTACT_CLOTH_CANDIDATES_H

@@ -52,6 +52,13 @@ struct alignas(64) ContactRow {
   }
 };
 
+inline void add(sphcloth::Vertex &vertex, const Eigen::Vector3d &by)
+{
+  vertex.x += by[0];
+  vertex.y += by[1];
+  vertex.z += by[2];
+}
+
 // by what the mass of each vertex is split, and what rows push in a pass
 
 class SplitMasses {

@@ -37,8 +37,8 @@ static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
 static constexpr double NONE = -1.0;
 
-// By which the two sides of a row may move past one another before their closest points are found
-// anew, of the thickness.  Until then its distance is that along its normal, to second order.  Where
+// By which, of the thickness, the two sides of a row may move past one another before their closest
+// points are found anew.  Until then its distance is that along its normal, to second order.  Where
 // these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not push.
 // And of the distance to contact: before that has passed nothing pushes.
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05,
@@ -199,24 +199,19 @@ void ContactRows::project(Vertex *displacement)
   const WallTimer clock(mesh.counts.seconds);
   load_positions(displacement);
   for (int pass = 0; pass < passes; pass++) {
-    project_once();
+    masses.clear_impulses();
+    awake.clear();
+    for (std::size_t k = 0; k < rows.size(); k++)
+      if (awake_from[k] <= path_of(k)) awake.push_back(static_cast<int>(k));
+    for_ahead(awake, [this](int k) {
+      project_normal(k);
+      if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
+    });
     push_positions(displacement);
     if (pass < passes - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
     points.measure_paths(Vec3::Zero());
   }
-}
-
-void ContactRows::project_once()
-{
-  masses.clear_impulses();
-  awake.clear();
-  for (std::size_t k = 0; k < rows.size(); k++)
-    if (awake_from[k] <= path_of(k)) awake.push_back(static_cast<int>(k));
-  for_ahead(awake, [this](int k) {
-    project_normal(k);
-    if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
-  });
 }
 
 // vertices, by what rows of all ranks have pushed
@@ -228,7 +223,7 @@ void ContactRows::push_positions(Vertex *displacement)
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     if (masses.impulse[s].isZero(0.0)) continue;
     const Vec3 way = mesh.w_solver[s] * masses.impulse[s];
-    move(displacement[s], way);
+    add(displacement[s], way);
     mesh.end[s] = end_of(s, displacement);
     received[s] += masses.impulse[s] / substep_dt;
     max_sq = std::max(max_sq, way.squaredNorm());
@@ -241,13 +236,12 @@ void ContactRows::push_velocities(Vertex *v)
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     if (masses.impulse[s].isZero(0.0)) continue;
-    move(v[s], mesh.w_solver[s] * masses.impulse[s]);
+    add(v[s], mesh.w_solver[s] * masses.impulse[s]);
     received[s] += masses.impulse[s];
   }
 }
 
-// Where vertices are now.  What all have moved together, in about this direction before, does not
-// count.
+// What all vertices have moved together, in about this direction before, does not count.
 
 void ContactRows::load_positions(const Vertex *displacement)
 {
@@ -477,7 +471,7 @@ void ContactRows::recover_gaps()
       atom->x[mesh.halo.atom_of(s)][d] += mesh.w[s] * masses.impulse[s][d];
 }
 
-// Those miss nothing that cannot have come so near on their paths: which rows sleep does not matter.
+// Which rows sleep does not matter.
 
 void ContactRows::find_missing_gaps()
 {

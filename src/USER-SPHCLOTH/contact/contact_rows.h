@@ -86,13 +86,6 @@ class ContactRows : public SolverCoupling, protected Pointers {
   void start_rows();
   double max_slide(const ContactRow &) const;
   double asleep(const ContactRow &, double distance, double slid) const;
-  void project_once();
-  static void move(sphcloth::Vertex &vertex, const Vec3 &by)
-  {
-    vertex.x += by[0];
-    vertex.y += by[1];
-    vertex.z += by[2];
-  }
   Vec3 end_of(int slot, const sphcloth::Vertex *displacement) const
   {
     const sphcloth::Vertex &start = substep_start[slot], &by = displacement[slot];

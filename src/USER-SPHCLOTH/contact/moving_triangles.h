@@ -77,8 +77,8 @@ class MovingTriangles : public TriangleSet {
 
   // Of a point at this vector from its nearest point in a triangle, which has these weights: how
   // far does the vector lean into other triangles at the same edge or vertex, as a cosine?  Above
-  // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.  What
-  // is more than `enough` need not be the most.
+  // SEAM the point is nearer to one of these.  Triangles of which it is a vertex do not count.
+  // Above `enough` it may lean farther into others.
   double leaning_into_others(int t, const Vec3 &weight, const Vec3 &from_nearest, double enough,
                              int slot_of_point = -1) const;
   double leaning_into_others(int t, const sphcloth::ClosestPoints &at, double enough,

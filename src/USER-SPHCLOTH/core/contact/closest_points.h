@@ -66,8 +66,8 @@ inline ClosestPoints closest_points(PairKind kind, const FourPoints &x)
   return at;
 }
 
-// They are no nearer than this, without a branch: both sides are apart by no less than along the line
-// between their centers.
+// They are no nearer than this, without a branch: both sides are apart by no less than along the
+// line between their centers.
 
 inline double distance_along_centers(PairKind kind, const FourPoints &x)
 {

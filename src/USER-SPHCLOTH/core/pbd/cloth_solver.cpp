@@ -348,32 +348,32 @@ namespace {
     return largest;
   }
 
-  // with what it says most others say nothing new; -1: there is none
+  // with what it says others hardly say anything new; -1: there is none
 
-  template <std::size_t N> int most_loaded(const Constraints<N> &c)
+  template <std::size_t N> int with_largest_load(const Constraints<N> &c)
   {
-    int most = -1;
+    int found = -1;
     double largest = -1.0;
     for (int m = 0; m < c.size(); m++) {
       const double load = std::fabs(c.lambda[m]) * c.weight[m] * c.per_size[m];
       if (c.hard[m] && c.weight[m] > 0.0 && load > largest) {
         largest = load;
-        most = m;
+        found = m;
       }
     }
-    return most;
+    return found;
   }
 
   template <std::size_t N>
   SolverError error_under_load(const Constraints<N> &c, const LoadedSolver &s)
   {
-    const int most = most_loaded(c);
-    if (most < 0) return {};
+    const int first = with_largest_load(c);
+    if (first < 0) return {};
     const auto load = [&](int m) { return std::fabs(c.lambda[m]) * s.inv_dt_sq; };
     const auto error = [&](int m) {
       return s.of(load(m), c.weight[m], c.compliance[m], c.per_size[m]);
     };
-    SolverError found = error(most);
+    SolverError found = error(first);
     double known = s.without_news(found);
     for (int m = 0; m < c.size(); m++) {
       if (!c.hard[m] || c.weight[m] == 0.0) continue;

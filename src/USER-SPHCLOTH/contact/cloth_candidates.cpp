@@ -47,7 +47,7 @@ void ClothCandidates::measure()
   }
 }
 
-// How both have moved as one body counts only step by step.
+// How both have moved as one body is taken out only where the path alone would end the list.
 
 void ClothCandidates::measure(PatchPair &both) const
 {

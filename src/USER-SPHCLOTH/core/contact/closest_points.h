@@ -110,10 +110,10 @@ inline double share_of_edges(const FourPoints &x, const ClosestPoints &at)
   return std::min(1.0, inside) * std::min(1.0, sine_sq / FULL_SINE_SQ);
 }
 
+inline constexpr double LEANS_AWAY = 0.1;    // from this cosine on a pair does not count
+
 // The same of a pair that leans, from its closest points, into what borders on one of them, by this
 // cosine: what borders is nearer.
-
-inline constexpr double LEANS_AWAY = 0.1;    // does not count from here on
 
 inline double share_of_leaning(double cosine)
 {

@@ -17,7 +17,14 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src/USER-SPHCLOTH"
 MARK = "#pragma omp simd"
 CORE_TESTS = ROOT / "tests/core"
-KERNEL = SOURCE / "core/sph/fluid_wendland_c2.cpp"
+# the loops of one kernel in mixed precision, half of core/sph/fluid_wendland_c2.cpp
+KERNEL = """
+#include "core/sph/density_loops.h"
+#include "core/sph/force_loops.h"
+#include "core/sph/rate_loops.h"
+#include "core/sph/stiffness_loops.h"
+template class sphcloth::FluidLoops<sphcloth::WendlandC2, sphcloth::MixedPrecision>;
+"""
 # the files that have such loops, and what to compile for them
 UNITS = {
     "core/pbd/cloth_solver.cpp": (SOURCE / "core/pbd/cloth_solver.cpp",),
@@ -75,13 +82,15 @@ def includes() -> list[str]:
 
 
 @cache
-def report(unit: Path) -> str:
-    """Return what the compiler tells of its vectors."""
+def report(unit: Path | str) -> str:
+    """Return what the compiler tells of its vectors in a file, or in a text."""
     compiler = shutil.which("g++")
     if compiler is None:
         pytest.skip("no g++ here, whose report this reads")
+    file = unit if isinstance(unit, Path) else "-"
     done = subprocess.run(
-        [compiler, *FLAGS, f"-I{SOURCE}", *includes(), "-c", unit, "-o", "/dev/null"],
+        [compiler, *FLAGS, f"-I{SOURCE}", *includes(), "-xc++", "-c", file, "-o", "/dev/null"],
+        input=None if isinstance(unit, Path) else unit,
         capture_output=True,
         text=True,
     )
@@ -89,7 +98,7 @@ def report(unit: Path) -> str:
     return done.stderr
 
 
-def vector_lines(unit: Path, name: str) -> set[int]:
+def vector_lines(unit: Path | str, name: str) -> set[int]:
     """Return the lines of a file at which the compiler tells of a loop of vectors."""
     told = rf"^\S*{re.escape(name)}:(\d+):\d+: optimized: loop vectorized"
     return {int(each[1]) for each in re.finditer(told, report(unit), re.M)}

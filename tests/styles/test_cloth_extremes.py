@@ -148,7 +148,7 @@ def finite_motion(cloth, folder):
     return x, v
 
 
-@examples(600)
+@examples(300)
 @given(cloth=cloths())
 def test_free_cloth_stays_finite_and_keeps_momentum(folder, cloth):
     x, v = finite_motion(cloth, folder)

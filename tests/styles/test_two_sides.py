@@ -116,7 +116,7 @@ def test_the_sheet_carries_the_pool_on_it():
     lmp = pools(
         ("above",),
         "",
-        "fix g fluid gravity 9.81 vector 0 0 -1\nfix drag fluid viscous 2.0\nrun 4000",
+        "fix g fluid gravity 9.81 vector 0 0 -1\nfix drag fluid viscous 2.0\nrun 2500",
     )
     kind = by_id(lmp, "type")
     weight = (kind == 1).sum() * 0.125 * 9.81

@@ -41,13 +41,13 @@ def orders(errors: Sequence[float], resolutions: Sequence[float]) -> dict[str, f
     """Return the orders of convergence over several runs, the coarse one first.
 
     ``order`` is the slope of the logarithms by least squares, ``order_least`` the smallest order
-    between two runs in a row; NaN where an error is zero or no number.
+    between two runs in a row; NaN where an error is zero or no number, and for a single run.
 
     Args:
         errors: of the runs; the sign does not matter.
         resolutions: as in :func:`order`.
     """
-    if not (np.all(errors) and np.all(np.isfinite(errors))):
+    if len(errors) < 2 or not (np.all(errors) and np.all(np.isfinite(errors))):
         return {"order": math.nan, "order_least": math.nan}
     slope = np.polyfit(np.log(resolutions), -np.log(np.abs(errors)), 1)[0]
     pairs = zip(pairwise(errors), pairwise(resolutions), strict=True)

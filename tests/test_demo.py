@@ -12,6 +12,7 @@ SPHCLOTH = Path(sys.executable).parent / "sphcloth"
 VARIANTS = {
     "as it is": [],
     "corners": ["--set", "hold=corners", "--set", "pinned=0.1"],
+    "over a tank": ["--set", "ground=tank", "--set", "t_end=1.0"],
     "two sources, other sheet": [
         *("--set", "sources=2", "--set", "apart=0.25", "--set", "size=0.8", "--set", "hold=sides"),
         *("--set", "areal=8.0", "--set", "scheme=constant", "--set", "dt=4e-4"),

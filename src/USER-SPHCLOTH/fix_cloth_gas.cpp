@@ -10,13 +10,11 @@
 #include "contact/contact_mesh.h"
 #include "error.h"
 #include "force.h"
-#include "input.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,13 +76,14 @@ void FixClothGas::read(ArgReader &args)
     law.start = args.positive("pressure p0 of the start");
     law.ambient = args.at_least("ambient pressure", 0.0);
   } else
-    constant = read_input(args, "pressure");
+    constant.read(args, "pressure", 0.0);
   options.needs_volume = has_law;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword == "inflow")
-      inflow = read_input(args, "inflow");
-    else if (keyword == "valve")
+    if (keyword == "inflow") {
+      inflow.read(args, keyword, 0.0);
+      has_inflow = true;
+    } else if (keyword == "valve")
       law.limit = args.positive(keyword);
     else if (keyword == "burst")
       burst = args.positive(keyword);
@@ -108,7 +107,7 @@ void FixClothGas::check(ArgReader &args)
               "'polytropic'");
   };
   if (!has_law) {
-    if (inflow.given) refuse("inflow", inflow.value);
+    if (has_inflow) refuse("inflow", inflow.value());
     if (law.limit < NEVER) refuse("valve", law.limit);
     if (burst < NEVER) refuse("burst", burst);
     if (options.closes_holes)
@@ -130,28 +129,11 @@ void FixClothGas::check(ArgReader &args)
         fmt::format("the valve keeps the pressure at {:g}: leave one of both away", law.limit));
 }
 
-FixClothGas::Input FixClothGas::read_input(ArgReader &args, const std::string &what)
-{
-  Input one;
-  one.given = true;
-  if (args.more() && utils::strmatch(args.peek(), "^v_"))
-    one.variable = args.word(what).substr(2);
-  else
-    one.value = args.at_least(what, 0.0);
-  return one;
-}
-
 int FixClothGas::setmask() { return POST_FORCE | MIN_POST_FORCE | POST_NEIGHBOR | PRE_EXCHANGE; }
 
 void FixClothGas::init()
 {
-  for (const Input &one : {constant, inflow}) {
-    if (one.variable.empty()) continue;
-    const int index = input->variable->find(one.variable.c_str());
-    if (index < 0 || !input->variable->equalstyle(index))
-      error->all(FLERR, "{}: {} is 'v_{}': define an equal-style variable of this name", label,
-                 has_law ? "inflow" : "pressure", one.variable);
-  }
+  for (NumberOrVariable *one : {&constant, &inflow}) one->check(lmp, label);
   chambers.gather(groupbit, false);
   chambers.require_ghosts();
   begin_chambers();
@@ -197,12 +179,7 @@ double FixClothGas::inverse_mass(int i) const
 
 void FixClothGas::evaluate(Phase phase)
 {
-  const bool any_variable = !constant.variable.empty() || !inflow.variable.empty();
-  if (any_variable) modify->clearstep_compute();
-  constant.value = present(constant);
-  inflow.value = present(inflow);
-  if (any_variable) modify->addstep_compute(update->ntimestep + 1);
-
+  NumberOrVariable::evaluate(lmp, label, igroup, {&constant, &inflow});
   std::vector<GasChambers::Frame> frames;
   for (const Chamber &chamber : states) frames.push_back(chamber.frame);
   const auto volumes = chambers.measure(frames);
@@ -212,16 +189,6 @@ void FixClothGas::evaluate(Phase phase)
     push.push_back(states[c].applied / force->nktv2p);
   }
   chambers.push(push);
-}
-
-double FixClothGas::present(Input &of) const
-{
-  if (of.variable.empty()) return of.value;
-  const double value = input->variable->compute_equal(input->variable->find(of.variable.c_str()));
-  if (!std::isfinite(value))
-    error->all(FLERR, "{}: variable {} is '{}' at step {}: correct it", label, of.variable, value,
-               update->ntimestep);
-  return value;
 }
 
 void FixClothGas::follow(Chamber &chamber, const GasChambers::Volume &now, Phase phase)
@@ -262,7 +229,7 @@ void FixClothGas::begin(Chamber &chamber, const GasChambers::Volume &now) const
   chamber.before = now.value - chamber.dt * now.rate;
   chamber.earlier = chamber.before - chamber.dt * now.rate;
   chamber.gas = now.value;
-  chamber.excess = chamber.excess_before = has_law ? law.start - law.ambient : constant.value;
+  chamber.excess = chamber.excess_before = has_law ? law.start - law.ambient : constant.value();
   if (has_law && chamber.before > 0.0)
     chamber.excess_before = law.excess(chamber.gas, chamber.before);
 }
@@ -273,14 +240,14 @@ void FixClothGas::let_flow(Chamber &chamber, Phase phase)
 {
   const double by_volume = chamber.volume / force->nktv2p;
   if (!has_law) {
-    chamber.received -= (constant.value - chamber.excess) * by_volume;
-    chamber.excess = constant.value;
-    chamber.energy = -constant.value * by_volume;
+    chamber.received -= (constant.value() - chamber.excess) * by_volume;
+    chamber.excess = constant.value();
+    chamber.energy = -constant.value() * by_volume;
     return;
   }
   if (chamber.flow == BURST) return;
-  if (phase == Phase::STEP && inflow.given)
-    set_gas(chamber, chamber.gas + inflow.value * update->dt);
+  if (phase == Phase::STEP && has_inflow)
+    set_gas(chamber, chamber.gas + inflow.value() * update->dt);
   const double closed = law.pressure(chamber.gas, chamber.volume) - law.ambient;
   chamber.flow = closed > law.limit ? VENTING : CLOSED;
   if (chamber.flow == VENTING) set_gas(chamber, law.gas_at(law.limit, chamber.volume));

@@ -14,6 +14,7 @@ FixStyle(cloth/gas,FixClothGas);
 
 #include "cloth/gas_chambers.h"
 #include "core/pbd/gas_law.h"
+#include "lammps_util/number_or_variable.h"
 
 #include <string>
 #include <vector>
@@ -46,11 +47,6 @@ class FixClothGas : public Fix {
   enum class Phase { STEP, AGAIN, MINIMIZE };
   enum Flow { CLOSED, VENTING, BURST };
 
-  struct Input {    // a number, or an equal-style variable
-    std::string variable;
-    double value = 0.0;
-    bool given = false;
-  };
   struct Chamber {    // plain, for restart files
     double first_id, started, flow;
     GasChambers::Frame frame;
@@ -65,7 +61,8 @@ class FixClothGas : public Fix {
   std::string label;
   sphcloth::GasLaw law;    // of no use where the pressure is constant
   bool has_law;
-  Input constant, inflow;
+  NumberOrVariable constant, inflow;
+  bool has_inflow = false;
   double burst;
   GasChambers::Options options;
   GasChambers chambers;
@@ -74,8 +71,6 @@ class FixClothGas : public Fix {
 
   void read(class ArgReader &);
   void check(ArgReader &);
-  Input read_input(ArgReader &, const std::string &what);
-  double present(Input &) const;
   void begin_chambers();
   double inverse_mass(int) const;
   void evaluate(Phase);

@@ -10,14 +10,12 @@
 #include "error.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
-#include "input.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +39,7 @@ static int face_of(const std::string &name)
 
 FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), fluid(nullptr), slip(false),
-    any_variable(false), any_moves(false), reflection(1.0), summed(false)
+    any_moves(false), reflection(1.0), summed(false)
 {
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
@@ -58,9 +56,9 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
                    "xlo, xhi, ylo, yhi, zlo, zhi before the keywords slip, pressure, velocity");
   }
 
-  restart_global = std::any_of(walls.begin(), walls.end(), [](const Wall &w) {
-    return w.position_kind != PositionKind::NUMBER;
-  });
+  restart_global =
+      std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return !w.has_place(); });
+  for (Wall &wall : walls) positions.push_back(&wall.given);
   scalar_flag = vector_flag = 1;
   size_vector = 3 * static_cast<int>(walls.size());
   global_freq = 1;
@@ -84,18 +82,12 @@ void FixWallSPH::read_walls(ArgReader &args)
       args.fail("face", name, "a 2-D simulation has walls in x and y only");
     const std::string position = fmt::format("position of {}", name);
     if (!args.more()) args.word(position);
-    const std::string value = args.peek();
-    if (value == "EDGE") {
-      wall.position_kind = PositionKind::EDGE;
+    if (args.peek() == std::string("EDGE")) {
+      wall.at_edge = true;
       args.word(position);
-    } else if (utils::strmatch(value, "^v_")) {
-      wall.position_kind = PositionKind::VARIABLE;
-      wall.variable = args.word(position).substr(2);
-      any_variable = true;
-    } else {
-      wall.position_kind = PositionKind::NUMBER;
-      wall.position = args.number(position);
-    }
+    } else
+      wall.given.read(args, position);
+    wall.position = wall.given.value();
     walls.push_back(wall);
   }
   if (walls.empty()) {
@@ -136,11 +128,7 @@ void FixWallSPH::init()
   found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
-    if (wall.position_kind != PositionKind::VARIABLE) continue;
-    wall.variable_index = input->variable->find(wall.variable.c_str());
-    if (wall.variable_index < 0 || !input->variable->equalstyle(wall.variable_index))
-      error->all(FLERR, "{}: position of {} is 'v_{}': define an equal-style variable of this name",
-                 label, FACES[wall.face], wall.variable);
+    wall.given.check(lmp, label);
   }
 }
 
@@ -152,7 +140,7 @@ void FixWallSPH::check_face(const Wall &wall) const
   if (domain->periodicity[axis])
     error->all(FLERR, "{}: {} is a wall across a periodic dimension: use 'boundary f' there", label,
                FACES[wall.face]);
-  if (wall.position_kind == PositionKind::EDGE && domain->boundary[axis][wall.face % 2] != 1)
+  if (wall.at_edge && domain->boundary[axis][wall.face % 2] != 1)
     error->all(FLERR,
                "{}: position of {} is 'EDGE', which follows the particles at a shrink-wrapped "
                "face: use 'boundary f' there, or a number",
@@ -174,10 +162,9 @@ void FixWallSPH::begin()
 {
   // the time may be reset between runs
   const double elapsed = update->setupflag ? 0.0 : update->dt;
-  if (any_variable) modify->clearstep_compute();
+  NumberOrVariable::evaluate(lmp, label, igroup, {positions.data(), positions.size()});
   for (Wall &wall : walls) locate(wall, elapsed);
   any_moves = std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.moves(); });
-  if (any_variable) modify->addstep_compute(update->ntimestep + 1);
   find_open_space();
   std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
@@ -209,18 +196,12 @@ void FixWallSPH::find_open_space()
 void FixWallSPH::locate(Wall &wall, double elapsed)
 {
   const double before = wall.position;
-  switch (wall.position_kind) {
-    case PositionKind::NUMBER: return;
-    case PositionKind::EDGE:
-      wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
-      break;
-    case PositionKind::VARIABLE:
-      wall.position = input->variable->compute_equal(wall.variable_index);
-      if (!std::isfinite(wall.position))
-        error->all(FLERR, "{}: position of {} is '{}' at step {}: correct variable {}", label,
-                   FACES[wall.face], wall.position, update->ntimestep, wall.variable);
-      break;
-  }
+  if (wall.at_edge)
+    wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
+  else if (wall.given.is_variable())
+    wall.position = wall.given.value();
+  else
+    return;
   if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
 }
 
@@ -456,6 +437,5 @@ void FixWallSPH::restart(char *buf)
 {
   const auto record = read_record<Record>(buf, label, error);
   for (Wall &wall : walls)
-    if (wall.position_kind != PositionKind::NUMBER)
-      wall.velocity[wall.axis()] = record.velocity[wall.face];
+    if (!wall.has_place()) wall.velocity[wall.axis()] = record.velocity[wall.face];
 }

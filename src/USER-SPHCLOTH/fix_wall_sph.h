@@ -15,6 +15,7 @@ FixStyle(wall/sph,FixWallSPH);
 #include "core/sph/plane_wall.h"
 #include "core/sph/shifting.h"
 #include "fluid/fluid_boundary.h"
+#include "lammps_util/number_or_variable.h"
 
 #include <algorithm>
 #include <array>
@@ -57,17 +58,15 @@ class FixWallSPH : public Fix, public FluidBoundary {
  private:
   struct Record;    // in restart files
 
-  enum class PositionKind { NUMBER, EDGE, VARIABLE };
-
   struct Wall {
     int face;             // 0 to 5: xlo, xhi, ylo, yhi, zlo, zhi
-    PositionKind position_kind;
-    std::string variable;
-    int variable_index;
+    bool at_edge;         // of the box, wherever that is
+    NumberOrVariable given;
     double position;
     double velocity[3];    // along the plane as given, across it from the motion of the plane
 
     int axis() const { return face / 2; }
+    bool has_place() const { return !at_edge && !given.is_variable(); }
     bool moves() const { return velocity[0] != 0.0 || velocity[1] != 0.0 || velocity[2] != 0.0; }
     double inwards() const { return face % 2 == 0 ? 1.0 : -1.0; }
     double distance(const double *x) const { return inwards() * (x[axis()] - position); }
@@ -81,7 +80,8 @@ class FixWallSPH : public Fix, public FluidBoundary {
   std::string label;
   FluidState *fluid;
   std::vector<Wall> walls;
-  bool slip, any_variable, any_moves;
+  std::vector<NumberOrVariable *> positions;
+  bool slip, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
   std::array<double, 3> open_low, open_high;    // out of reach of all walls
   sphcloth::WallTable table;

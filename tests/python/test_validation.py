@@ -311,7 +311,7 @@ def test_a_flow_is_roughly_right_at_coarse_resolution(
     limits: dict[str, float],
     request: pytest.FixtureRequest,
 ) -> None:
-    if name != "dam-break":    # its front is extrapolated from three
+    if name != "dam-break":  # its front is extrapolated from three
         request.getfixturevalue("finest_only")
     case, console = validate.find_case(name), Console(file=io.StringIO())
     result = validate.validate(case, settings, 1, True, tmp_path, console)

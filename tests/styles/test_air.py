@@ -224,10 +224,17 @@ ERRORS = {
     "gust": (AIR + "gust -1 1 1", r"rms velocity of 'gust' is '-1': give a number >= 0"),
     "length": (AIR + "gust 1 0 1", r"length of 'gust' is '0': give a number > 0"),
     "seed": (AIR + "gust 1 1 0", r"seed of 'gust' is '0': give a whole number from 1"),
-    "variable": (AIR + "wind 1 v_none 0", r"wind along y is 'v_none': define this variable before"),
+    "variable": (
+        AIR + "wind 1 v_none 0",
+        r"wind along y is 'v_none': define an equal- or atom-style variable of this name",
+    ),
     "style": (
         START + "variable w string abc\n" + WINDY + "wind v_w 0 0\nrun 0",
-        r"wind along x is 'v_w': this variable has another style, use one of style equal or atom",
+        r"wind along x is 'v_w': define an equal- or atom-style variable of this name",
+    ),
+    "no number": (
+        START + "variable w equal exp(1000*(step>2))\n" + WINDY + "wind 0 v_w 0\nrun 5",
+        r"fix a cloth/air: wind along y is 'inf' at step 3: correct variable w",
     ),
     "gust and atoms": (
         START + "variable w atom x\n" + WINDY + "wind v_w 0 0 gust 1 1 1\nrun 0",

@@ -214,6 +214,35 @@ def test_pins_move_as_variables_say():
     assert by_id(lmp, "v")[0] == pytest.approx([0.4, 0.2, -0.1], rel=0.01)
 
 
+def test_pins_follow_a_compute():
+    """Half of the speed of the other vertex, which falls, in steps without output too."""
+    lmp = one_edge(
+        "0",
+        1,
+        "unfix sheet\ngroup free id 2\ncompute falls free reduce ave vz\n"
+        "variable w equal 0.5*c_falls\nfix sheet all pbd/cloth pin pins velocity 0 0 v_w\n"
+        "timestep 1e-3\nthermo 1000\nrun 1",
+    )
+    for _ in range(2):
+        lmp.command("run 5 pre no post no")
+        pinned, free = by_id(lmp, "v")[:, 2]
+        assert pinned == pytest.approx(0.5 * (free + 9.81e-3), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("variable", "what"),
+    [
+        ("equal exp(1000*(step>2))", "velocity"),
+        ("atom exp(1000*(step>2)*(id==1))", "velocity of atom 1"),
+    ],
+)
+def test_a_velocity_that_is_no_number_is_said(variable, what):
+    lmp = one_edge("1.0", 10, f"unfix sheet\nvariable w {variable}\n")
+    lmp.command("fix sheet all pbd/cloth pin pins velocity 0 0 v_w")
+    with pytest.raises(Exception, match=rf"{what} is 'inf' at step 3: correct variable w"):
+        lmp.command("run 5")
+
+
 def test_rest_shape_from_a_property():
     """The cloth starts stretched by 10 % and returns to the rest positions it was given."""
     lmp = instance()

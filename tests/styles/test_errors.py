@@ -173,12 +173,12 @@ CASES = [
     case(
         "cloth: velocity of no variable",
         SHEET + "fix s cloth pbd/cloth pin cloth velocity 0 v_speed 1",
-        r"fix s pbd/cloth: velocity is 'v_speed': define that variable before",
+        r"fix s pbd/cloth: velocity is 'v_speed': define an equal- or atom-style variable",
     ),
     case(
         "cloth: velocity of a string",
         SHEET + "variable speed string fast\nfix s cloth pbd/cloth pin cloth velocity 0 v_speed 1",
-        r"fix s pbd/cloth: velocity is 'v_speed': make it an equal- or atom-style variable",
+        r"fix s pbd/cloth: velocity is 'v_speed': define an equal- or atom-style variable",
     ),
     case(
         "cloth: atom style",

@@ -8,11 +8,7 @@
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
-#include "input.h"
 #include "lammps_util/arg_reader.h"
-#include "modify.h"
-#include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 
@@ -23,16 +19,8 @@ static constexpr const char *AXES = "xyz";
 void Wind::read_mean(ArgReader &args)
 {
   for (int d = 0; d < 3; d++) {
-    const std::string what = fmt::format("wind along {}", AXES[d]);
-    variable[d].clear();
-    if (args.more() && utils::strmatch(args.peek(), "^v_")) {
-      variable[d] = args.word(what).substr(2);
-      mean[d] = 0.0;
-      if (input->variable->find(variable[d].c_str()) < 0)
-        args.fail(what, "v_" + variable[d],
-                  "define this variable before the fix, or give a number");
-    } else
-      mean[d] = args.number(what);
+    along[d].read(args, fmt::format("wind along {}", AXES[d]));
+    along[d].check(lmp, owner);
   }
 }
 
@@ -45,16 +33,11 @@ void Wind::read_gust(ArgReader &args)
   gust = sphcloth::GustField(sigma, length, static_cast<std::uint64_t>(seed));
 }
 
-bool Wind::varies() const
-{
-  return std::any_of(variable.begin(), variable.end(), [](const auto &v) { return !v.empty(); });
-}
-
 void Wind::check()
 {
-  for (int d = 0; d < 3; d++)
-    if (!variable[d].empty()) check_variable(d);
-  if (!gust.empty() && std::any_of(per_atom.begin(), per_atom.end(), [](bool b) { return b; }))
+  for (NumberOrVariable &one : along) one.check(lmp, owner);
+  if (!gust.empty() &&
+      std::any_of(along.begin(), along.end(), [](const auto &one) { return one.is_per_atom(); }))
     error->all(
         FLERR,
         "{}: 'gust' is carried by one wind for all, and that of 'wind' is a variable of style "
@@ -62,46 +45,19 @@ void Wind::check()
         owner);
 }
 
-void Wind::check_variable(int d)
-{
-  const char *name = variable[d].c_str();
-  index[d] = input->variable->find(const_cast<char *>(name));
-  if (index[d] < 0)
-    error->all(FLERR, "{}: wind along {} is 'v_{}': this variable is gone, define it again", owner,
-               AXES[d], name);
-  per_atom[d] = input->variable->atomstyle(index[d]);
-  if (!per_atom[d] && !input->variable->equalstyle(index[d]))
-    error->all(
-        FLERR,
-        "{}: wind along {} is 'v_{}': this variable has another style, use one of style equal "
-        "or atom",
-        owner, AXES[d], name);
-  if (!per_atom[d]) of_atom[d].clear();
-}
-
 void Wind::find(int igroup)
 {
-  if (!varies()) return;
-  modify->clearstep_compute();
-  for (int d = 0; d < 3; d++) {
-    if (variable[d].empty()) continue;
-    if (!per_atom[d]) {
-      mean[d] = input->variable->compute_equal(index[d]);
-      continue;
-    }
-    of_atom[d].resize(std::max(1, atom->nmax));
-    input->variable->compute_atom(index[d], igroup, of_atom[d].data(), 1, 0);
-  }
-  modify->addstep_compute(update->ntimestep + 1);
+  NumberOrVariable::evaluate(lmp, owner, igroup, {&along[0], &along[1], &along[2]});
 }
 
 void Wind::add_to(const VertexHalo &halo, std::vector<Vec3> &velocities)
 {
   const int n = halo.n_owned();
-  for (int s = 0; s < n; s++) velocities[s] += mean;
+  const Vec3 of_all = mean();
+  for (int s = 0; s < n; s++) velocities[s] += of_all;
   for (int d = 0; d < 3; d++)
-    if (per_atom[d])
-      for (int s = 0; s < n; s++) velocities[s][d] += of_atom[d][halo.atom_of(s)];
+    if (along[d].is_per_atom())
+      for (int s = 0; s < n; s++) velocities[s][d] += along[d].of(halo.atom_of(s));
   if (gust.empty()) return;
   for (int d = 0; d < 3; d++) {
     point[d].resize(n);
@@ -121,6 +77,6 @@ void Wind::add_to(const VertexHalo &halo, std::vector<Vec3> &velocities)
 double Wind::bytes() const
 {
   double sum = 0.0;
-  for (int d = 0; d < 3; d++) sum += sphcloth::bytes_of(of_atom[d], point[d], velocity[d]);
+  for (int d = 0; d < 3; d++) sum += along[d].bytes() + sphcloth::bytes_of(point[d], velocity[d]);
   return sum;
 }

@@ -5,6 +5,7 @@
 #define SPHCLOTH_AIR_WIND_H
 
 #include "core/air/gust_field.h"
+#include "lammps_util/number_or_variable.h"
 #include "pointers.h"
 
 #include <Eigen/Core>
@@ -36,22 +37,21 @@ class Wind : protected Pointers {
   void add_to(const VertexHalo &, std::vector<Vec3> &velocities);
 
   // The gust is carried as far in a step; how far it has come is kept in restart files.
-  void carry(double dt) { carried += dt * mean; }
+  void carry(double dt) { carried += dt * mean(); }
   Vec3 carried = Vec3::Zero();
 
   double bytes() const;
 
  private:
   const std::string owner;
-  std::array<std::string, 3> variable;    // names; empty: numbers
-  std::array<int, 3> index{-1, -1, -1};
-  std::array<bool, 3> per_atom{};
-  Vec3 mean = Vec3::Zero();    // 0 of what differs between atoms
+  static constexpr auto STYLES = NumberOrVariable::Styles::EQUAL_OR_ATOM;
+  std::array<NumberOrVariable, 3> along{NumberOrVariable(STYLES), NumberOrVariable(STYLES),
+                                        NumberOrVariable(STYLES)};
   sphcloth::GustField gust;
-  std::array<std::vector<double>, 3> of_atom, point, velocity;
+  std::array<std::vector<double>, 3> point, velocity;
 
-  bool varies() const;
-  void check_variable(int d);
+  // 0 of what differs between atoms
+  Vec3 mean() const { return {along[0].value(), along[1].value(), along[2].value()}; }
 };
 
 }    // namespace LAMMPS_NS

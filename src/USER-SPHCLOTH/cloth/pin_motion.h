@@ -4,14 +4,11 @@
 #ifndef SPHCLOTH_CLOTH_PIN_MOTION_H
 #define SPHCLOTH_CLOTH_PIN_MOTION_H
 
-#include "atom.h"
-#include "input.h"
-#include "lammps_util/arg_reader.h"
-#include "variable.h"
+#include "lammps_util/number_or_variable.h"
+#include "pointers.h"
 
 #include <array>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -21,12 +18,9 @@ class PinMotion : protected Pointers {
 
   void read(ArgReader &args)
   {
-    for (Axis &axis : axes) {
-      if (args.more() && utils::strmatch(args.peek(), "^v_")) {
-        axis.text = args.word("velocity").substr(2);
-        find(axis);
-      } else
-        axis.value = args.number("velocity of the pins");
+    for (NumberOrVariable &along : axes) {
+      along.read(args, "velocity");
+      along.check(lmp, owner);
     }
     moves = true;
   }
@@ -36,43 +30,16 @@ class PinMotion : protected Pointers {
   // collective, once a step
   void evaluate(int igroup)
   {
-    for (Axis &axis : axes) {
-      if (axis.text.empty()) continue;
-      find(axis);
-      Variable *variables = input->variable;
-      if (variables->equalstyle(axis.index)) {
-        axis.value = variables->compute_equal(axis.index);
-        continue;
-      }
-      axis.by_atom.resize(atom->nmax);
-      variables->compute_atom(axis.index, igroup, axis.by_atom.data(), 1, 0);
-    }
+    NumberOrVariable::evaluate(lmp, owner, igroup, {&axes[0], &axes[1], &axes[2]});
   }
-  double velocity(int atom_index, int d) const
-  {
-    return axes[d].by_atom.empty() ? axes[d].value : axes[d].by_atom[atom_index];
-  }
+  double velocity(int atom_index, int d) const { return axes[d].of(atom_index); }
 
  private:
+  static constexpr auto STYLES = NumberOrVariable::Styles::EQUAL_OR_ATOM;
   std::string owner;
-  struct Axis {
-    std::string text;    // name of the variable, or empty
-    int index = -1;
-    double value = 0.0;
-    std::vector<double> by_atom;
-  };
-  std::array<Axis, 3> axes;
+  std::array<NumberOrVariable, 3> axes{NumberOrVariable(STYLES), NumberOrVariable(STYLES),
+                                       NumberOrVariable(STYLES)};
   bool moves = false;
-
-  void find(Axis &axis)
-  {
-    axis.index = input->variable->find(axis.text.c_str());
-    if (axis.index < 0)
-      error->all(FLERR, "{}: velocity is 'v_{}': define that variable before", owner, axis.text);
-    if (!input->variable->equalstyle(axis.index) && !input->variable->atomstyle(axis.index))
-      error->all(FLERR, "{}: velocity is 'v_{}': make it an equal- or atom-style variable", owner,
-                 axis.text);
-  }
 };
 
 }    // namespace LAMMPS_NS

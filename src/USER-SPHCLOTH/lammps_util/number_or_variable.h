@@ -29,7 +29,7 @@ class NumberOrVariable {
   bool is_variable() const { return !name.empty(); }
   bool is_per_atom() const { return per_atom; }
 
-  // Does the variable exist, in a style that is allowed?  owner: who asks.
+  // Does the variable exist, in a style that is allowed?  owner: the style, for errors.
   void check(LAMMPS *, const std::string &owner);
 
   // Those of several that are variables, once a step; collective.  igroup: the group whose atoms

@@ -107,13 +107,15 @@ def test_a_drop_on_a_free_sheet_keeps_momentum(tmp_path: Path) -> None:
         assert result.metrics[name].passed, (name, result.metrics[name].value)
 
 
-@pytest.mark.parametrize("coupling", ["contact", "pressure"])
-def test_rigid_edges_return_hardly_more_than_they_stored(tmp_path: Path, coupling: str) -> None:
+@pytest.mark.parametrize(("coupling", "limit"), [("contact", 0.02), ("pressure", 0.01)])
+def test_rigid_edges_return_hardly_more_than_they_stored(
+    tmp_path: Path, coupling: str, limit: float
+) -> None:
     """What they store is in no sum; as stiff as each step makes them they gained 11 and 3 %."""
     settings = {"across": "3", "length": "8", "width": "6", "most_ranks": "1", "radius": "0.05"}
-    settings |= {"compliance": "0", "coupling": coupling, "scheme": "global", "fastest": "0.5"}
+    settings |= {"compliance": "0", "coupling": coupling, "scheme": "global"}
     result = run_case("blob-on-free-sheet", tmp_path, **settings)
-    assert result.metrics["energy_rise"].value < 0.02
+    assert result.metrics["energy_rise"].value < limit
 
 
 @pytest.mark.usefixtures("finest_only")

@@ -70,6 +70,7 @@ BLOCK_SHEET = "tests/styles/test_block_sheet.py"
 PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 STABILITY = "tests/styles/test_stability.py"
+SCALING = "tests/styles/test_mass_scaling.py"
 OBSTACLES, SUBSTEPS = "tests/styles/test_obstacles.py", "tests/styles/test_substeps.py"
 FIRST_KICK, PORES = "tests/styles/test_first_kick.py", "tests/styles/test_pores.py"
 LEE = "tests/styles/test_lee_and_added_mass.py"
@@ -106,6 +107,13 @@ BUGS = [
         "(1.0 + std::min(harder, MAX_HARDENING))", "(1.0 + 0.0 * harder)", CORE),
     Bug("cloth: a hardened edge pulls back along its secant", "core/pbd/cloth_solver.cpp",
         "a + s.steeper * std::min(a, hardens)", "a", CORE),
+    Bug("mass scaling: fluid of other ranks gets nothing", "fluid/scaled_mass.cpp",
+        "  ghosts.add_from_ghosts(GhostData::IMPULSE);\n", "", SCALING),
+    Bug("mass scaling: constraints move the vertex alone", "fluid/scaled_vertices.cpp",
+        "kept = row.mass.scaled(by_constraints);", "kept = by_constraints;",
+        f"{SCALING}::test_a_sheet_that_hangs_carries_its_water"),
+    Bug("mass scaling: vertices do not feel where the water goes", "core/sph/mass_scaling.h",
+        "kept * (change + inverse_mass * carried)", "kept * change", SCALING),
     Bug("steps: a short step arrives at an output time", "core/timestep/step_limits.h",
         "remaining / std::max(1.0, steps)", "std::min(dt, remaining)",
         "tests/styles/test_stability.py::test_output_times_feed_nothing"),

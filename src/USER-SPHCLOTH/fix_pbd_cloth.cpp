@@ -36,8 +36,8 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
     held(lmp, this, options), mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
     reference(lmp, label, options.reference, constraints), vertices(lmp), holders(lmp, vertices),
-    substepping(lmp, label, options.solving, constraints, vertices), holder_force{}, measured(true),
-    last_residual(0.0), last_energy(0.0), last_unconverged(0.0)
+    substepping(lmp, label, options.solving, constraints, vertices), scaled(lmp, vertices),
+    holder_force{}, measured(true), last_residual(0.0), last_energy(0.0), last_unconverged(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -120,6 +120,7 @@ void FixPBDCloth::init()
 {
   couplings.clear();
   solved_here = {this};
+  scaled.init();
   const ClothInput made_of(lmp, this, label);
   made_of.check_vertices();
   held.stop_pins();
@@ -205,12 +206,15 @@ void FixPBDCloth::post_integrate()
   }
   for (int n = 0; n < substeps; n++) Substepping::substep(n, solvers);
   for (FixPBDCloth *cloth : solved_here) cloth->end_step();
+  for (FixPBDCloth *cloth : solved_here)
+    if (cloth->scaled.on()) cloth->scaled.move_fluid();
 }
 
 void FixPBDCloth::begin_step(int substeps)
 {
   held.move_pins(vertices.halo);
   substepping.begin_step(update->dt, substeps, present, holders);
+  if (scaled.on()) scaled.scale_forces(update->dt, substepping.part_with_forces());
   if (half_kick.on()) half_kick.apply(vertices, substeps, update->dt, force->ftm2v, atom);
   load();
   if (holders.wanted()) holders.begin_step();
@@ -248,11 +252,10 @@ void FixPBDCloth::solve_together(const std::vector<FixPBDCloth *> &cloths)
 void FixPBDCloth::begin_couplings()
 {
   present.clear();
-  if (couplings.empty()) return;
   const double dt = update->dt;
   Vertices &p = vertices.p;
   const Vertices &start = vertices.start, &v = vertices.v;
-  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+  for (int s = 0; !couplings.empty() && s < vertices.halo.n_owned(); s++) {
     const double *f = atom->f[vertices.halo.atom_of(s)];
     const double by = dt * force->ftm2v * vertices.inverse_mass[s];
     p[s].x = start[s].x + dt * (v[s].x + by * f[0]);
@@ -261,6 +264,7 @@ void FixPBDCloth::begin_couplings()
   }
   for (SolverCoupling *coupling : couplings)
     if (coupling->begin_step(start.data(), p.data(), dt)) present.push_back(coupling);
+  if (scaled.on()) present.push_back(&scaled);
 }
 
 // A held vertex is on its way from where its velocity says that it was to where it is.
@@ -464,5 +468,6 @@ void FixPBDCloth::restart(char *buf)
 double FixPBDCloth::memory_usage()
 {
   return rest_x.bytes() + holders.columns.bytes() + half_kick.impulse.bytes() +
-      constraints.distance.bytes() + constraints.bending.bytes() + vertices.bytes();
+      constraints.distance.bytes() + constraints.bending.bytes() + vertices.bytes() +
+      scaled.bytes();
 }

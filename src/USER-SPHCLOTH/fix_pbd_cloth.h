@@ -23,6 +23,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/solver_coupling.h"
 #include "cloth/substepping.h"
 #include "contact/contact_mesh.h"
+#include "fluid/scaled_vertices.h"
 #include "lammps_util/ghost_reach.h"
 #include "stepping/limited_vertices.h"
 
@@ -112,6 +113,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   HolderForces holders;
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;
+  ScaledVertices scaled;    // of those beside fluid
   std::vector<SolverCoupling *> couplings, present;    // those that are near in this step
   std::vector<FixPBDCloth *> solved_here;    // cloths that this fix solves: itself, or none
 

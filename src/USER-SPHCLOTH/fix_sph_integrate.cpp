@@ -98,6 +98,7 @@ void FixSPHIntegrate::init()
                "due alone: use 'run_style verlet' before",
                label, scheme_name(scheme));
   limits.init(fluid, scheme);
+  if (options.scales_mass(scheme)) fluid->scaled_mass().want(groupbit);
   control.init(fluid, limits.shortest_sound_time());
   first_kick.begin_run(atom);
   stepper->init(fluid);

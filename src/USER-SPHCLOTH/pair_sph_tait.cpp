@@ -34,6 +34,7 @@ PairSPHTait::PairSPHTait(LAMMPS *lmp_) : Pair(lmp_), fluid(lmp_, this, *this)
   writedata = 1;
   no_virial_fdotr_compute = 1;
   comm_forward = 2;
+  comm_reverse = FluidEvaluation::ghost_size(GhostData::IMPULSE);
 }
 
 PairSPHTait::~PairSPHTait()
@@ -188,6 +189,22 @@ int PairSPHTait::pack_forward_comm(int n, int *sendlist, double *buf, int, int *
 void PairSPHTait::unpack_forward_comm(int n, int first, double *buf)
 {
   fluid.unpack(for_ghosts, n, first, buf);
+}
+
+void PairSPHTait::add_from_ghosts(GhostData what)
+{
+  for_ghosts = what;
+  comm->reverse_comm(this);
+}
+
+int PairSPHTait::pack_reverse_comm(int n, int first, double *buf)
+{
+  return fluid.pack_reverse(for_ghosts, n, first, buf);
+}
+
+void PairSPHTait::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  fluid.add(for_ghosts, n, list, buf);
 }
 
 /* ----------------------------------------------------------------------

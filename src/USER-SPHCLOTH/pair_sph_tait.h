@@ -34,7 +34,10 @@ class PairSPHTait : public Pair, public GhostExchange {
   void write_data_all(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
   void send_to_ghosts(GhostData) override;
+  void add_from_ghosts(GhostData) override;
   double memory_usage() override;
   // what fixes, computes and commands ask, see FluidState::find()
   void *extract(const char *, int &) override;

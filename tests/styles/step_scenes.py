@@ -1,17 +1,24 @@
 """Scenes of time steps that several files of tests use."""
 
-from harness import instance
+import numpy as np
+from harness import by_id, instance
 from scenes import (
     FLUID,
     box,
+    cloth_box,
+    cloth_styles,
     filled,
     gravity,
     header,
     lattice,
     neighbor,
+    sheet,
     sph_tait,
 )
 
+SPACING, SOUND, RHO0 = 0.05, 20.0, 1000.0  # of soaked()
+LATTICE_SUM = 1.033835  # sum of W dx^3 on the lattice
+VOLUME = SPACING**3 / LATTICE_SUM
 CEILING, FLOOR, GROWTH, FLUCTUATION, OUTPUT = range(9, 14)
 
 
@@ -31,6 +38,57 @@ def free_particles(speed=0.0, options="", extra="", run="run 0", nu=0.0, timeste
         {run}"""
     )
     return lmp
+
+
+def soaked_sheet(areal, step, fluid=f"c0 {SOUND}"):
+    """Water in a periodic box, and in the place of one of its layers a sheet of loose vertices."""
+    half = 4 * SPACING
+    return (
+        header("p p p")
+        + cloth_box(f"-{half} {half} -{half} {half} -{half} {half}")
+        + f"mass 1 {RHO0 * SPACING**3 / LATTICE_SUM}\n"
+        + sheet(2, areal, "0.35 0.35", SPACING)
+        + f"lattice sc {SPACING} origin 0.5 0.5 0\n"
+        + "region layer block INF INF INF INF -0.01 0.01 side out units box\n"
+        + "create_atoms 1 region layer\ngroup fluid type 1\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} {fluid}",
+            f"2 2 boundary pressure own volume {VOLUME}",
+            options="tension yes",
+        )
+        + cloth_styles("0", "0")
+        + neighbor(0.03)
+        + f"timestep 1e-3\nfix step fluid sph/integrate {step}\n"
+        + "fix sheet cloth pbd/cloth\n"
+    )
+
+
+def soaked(areal, step, fluid=f"c0 {SOUND}"):
+    lmp = instance()
+    lmp.commands_string(soaked_sheet(areal, step, fluid) + "run 0 post no")
+    return lmp
+
+
+def stir(lmp):
+    """Give all small velocities."""
+    lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
+
+
+def growth_in(lmp, run):
+    """By how much the energy of small velocities grows."""
+    stir(lmp)
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+    before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
+    lmp.commands_string(run)
+    return mass @ (by_id(lmp, "v") ** 2).sum(axis=1) / before
+
+
+def momentum_with_sheet(lmp):
+    """Return it without the half-kick correction, and the sum of its absolute values."""
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+    each = mass[:, None] * by_id(lmp, "v")
+    correction = [lmp.extract_fix("sheet", 0, 1, n) for n in (7, 8, 9)]
+    return each.sum(axis=0) - correction, np.abs(each).sum()
 
 
 def dt_and_limit(lmp):

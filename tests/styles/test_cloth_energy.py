@@ -96,7 +96,7 @@ neighbor 0.03 bin
 neigh_modify every 1 delay 0 check yes
 timestep 0.004
 fix gravity all gravity 9.81 vector 0 0 -1
-fix step water sph/integrate global until {until}
+fix step water sph/integrate global mass_scaling no until {until}
 run_style sph/adaptive {scheme}
 fix sheet cloth pbd/cloth pin pins damping 2.0 iterations 20 {more}
 fix contact water cloth/contact 0.005

@@ -2,45 +2,16 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance
-from scenes import cloth_box, cloth_styles, header, neighbor, sheet, sph_tait
-from step_scenes import dt_and_limit
+from harness import by_id
+from step_scenes import RHO0, SOUND, SPACING, VOLUME, dt_and_limit, growth_in, soaked
 from test_stepping import ACOUSTIC, VISCOUS, WETTED
 
-SPACING, SOUND, RHO0 = 0.05, 20.0, 1000.0
-ALONE = "velocity 0 force 0 density 0 max 1"
-LATTICE_SUM = 1.033835  # sum of W dx^3 on the lattice
-VOLUME = SPACING**3 / LATTICE_SUM
+ALONE = "velocity 0 force 0 density 0 max 1 mass_scaling no"
 
 
 def wendland_slope(r, support):
     """Return (1/r) dW/dr of Wendland C2 in space."""
     return -20 * 21 / (2 * np.pi * support**5) * np.maximum(1 - r / support, 0) ** 3
-
-
-def soaked(areal, step, fluid=f"c0 {SOUND}"):
-    """Water in a periodic box, and in the place of one of its layers a sheet of loose vertices."""
-    half = 4 * SPACING
-    lmp = instance()
-    lmp.commands_string(
-        header("p p p")
-        + cloth_box(f"-{half} {half} -{half} {half} -{half} {half}")
-        + f"mass 1 {RHO0 * SPACING**3 / LATTICE_SUM}\n"
-        + sheet(2, areal, "0.35 0.35", SPACING)
-        + f"lattice sc {SPACING} origin 0.5 0.5 0\n"
-        + "region layer block INF INF INF INF -0.01 0.01 side out units box\n"
-        + "create_atoms 1 region layer\ngroup fluid type 1\n"
-        + sph_tait(
-            f"1 1 fluid {RHO0} {fluid}",
-            f"2 2 boundary pressure own volume {VOLUME}",
-            options="tension yes",
-        )
-        + cloth_styles("0", "0")
-        + neighbor(0.03)
-        + f"timestep 1e-3\nfix step fluid sph/integrate {step}\n"
-        + "fix sheet cloth pbd/cloth\nrun 0 post no"
-    )
-    return lmp
 
 
 def longest_stable_step(lmp, support=2 * SPACING):
@@ -80,14 +51,6 @@ def growth(areal, step, n):
     """By how much the energy of small velocities grows in constant steps."""
     with soaked(areal, "constant") as lmp:
         return growth_in(lmp, f"timestep {step}\nrun {n} post no")
-
-
-def growth_in(lmp, run):
-    lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
-    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
-    before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
-    lmp.commands_string(run)
-    return mass @ (by_id(lmp, "v") ** 2).sum(axis=1) / before
 
 
 @pytest.mark.parametrize("scheme", ["global", "individual", "block"])

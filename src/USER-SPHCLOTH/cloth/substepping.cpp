@@ -72,6 +72,12 @@ void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCo
   damping_groups = SubstepGroups(substeps, options.damping * dt, MAX_DAMPING);
 }
 
+// from velocities at the time of the positions to those of half a substep later
+
+double Substepping::first_kick() const { return options.from_start && !started ? 0.5 : 1.0; }
+
+double Substepping::part_with_forces() const { return 1.0 - (1.0 - first_kick()) / n_substeps; }
+
 // of all ranks
 
 double Substepping::strain_at_start() const
@@ -151,8 +157,7 @@ void Substepping::begin_substep(int n)
   // before the forces: weight is not damped
   if (const int together = damping_groups.done_in(n); options.damping > 0.0 && together)
     damp(together);
-  // from velocities at the time of the positions to those of half a step later
-  apply_forces((options.from_start && !started && n == 0 ? 0.5 : 1.0) * dt * force->ftm2v);
+  apply_forces((n == 0 ? first_kick() : 1.0) * dt * force->ftm2v);
   predict(n == n_substeps - 1);
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   hinges_for = hinge_groups.done_in(n);

@@ -61,6 +61,8 @@ class Substepping : protected Pointers {
   // summed where they are wanted
   void begin_step(double dt, int substeps, const std::vector<SolverCoupling *> &, HolderForces &);
   int substeps() const { return n_substeps; }
+  // for which forces act in the step that has begun, over its length
+  double part_with_forces() const;
   const std::vector<SolverCoupling *> &present() const { return *couplings; }
   double substep_dt() const { return step_dt / n_substeps; }
 
@@ -110,6 +112,7 @@ class Substepping : protected Pointers {
   void sweep();
   bool is_done();
   void end_substep();
+  double first_kick() const;
   void apply_forces(double dt);
   void predict(bool last);
   void set_velocities();

@@ -47,6 +47,7 @@ void FluidEvaluation::begin_run()
   active = nullptr;    // until a fix sets the active particles
   hooks = nullptr;
   stability.forget();
+  scaled.forget();
   pressures_follow = false;
   boundaries = find_fluid_boundaries(modify);
   find_sides();
@@ -172,6 +173,7 @@ void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 
 void FluidEvaluation::end()
 {
+  if (scaled.wanted()) scaled.find(*core, particles(), stability);
   if (stability.wanted()) find_frequencies();
   if (hooks) hooks->apply_impulses();
   for (FluidBoundary *boundary : boundaries) boundary->end();
@@ -388,7 +390,12 @@ void FluidEvaluation::find_frequencies()
   stability.find_fluid(*core, p, boundaries);
   stability.find_vertices(*core, p, boundaries);
   if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
-  stability.find_rows(*core, p, boundaries);
+  stability.find_rows(*core, p, boundaries, scaled.on());
+  if (!scaled.on()) return;
+  core->for_active_fluid([this](int i, int) {
+    if (scaled.is_beside_vertices(i))
+      stability.set_fluid_sq(i, scaled.frequency_sq(i, stability[i].fluid_sq));
+  });
 }
 
 // Inactive particles keep their pressure until lists are built: then it follows from the density.
@@ -425,6 +432,9 @@ int FluidEvaluation::ghost_size(GhostData what)
     case GhostData::DENSITY: return 2;
     case GhostData::GRADIENT: return 3;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
+    case GhostData::STRENGTH: return 1;
+    case GhostData::KICK:
+    case GhostData::IMPULSE: return 3;
   }
   return 0;
 }
@@ -442,6 +452,7 @@ int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) c
         break;
       case GhostData::GRADIENT: end = std::copy_n(&gradient[3 * i], 3, end); break;
       case GhostData::STIFFNESS: end = stability.pack(i, end); break;
+      default: end += scaled.pack(what, i, end);
     }
   }
   return static_cast<int>(end - buf);
@@ -461,12 +472,25 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
         buf += 3;
         break;
       case GhostData::STIFFNESS: buf = stability.unpack(i, buf); break;
+      default: buf += scaled.unpack(what, i, buf);
     }
   }
 }
 
+int FluidEvaluation::pack_reverse(GhostData what, int n, int first, double *buf) const
+{
+  int size = 0;
+  for (int i = first; i < first + n; i++) size += scaled.pack(what, i, buf + size);
+  return size;
+}
+
+void FluidEvaluation::add(GhostData, int n, const int *list, const double *buf)
+{
+  for (int k = 0; k < n; k++) scaled.add(list[k], buf + 3 * k);
+}
+
 double FluidEvaluation::bytes() const
 {
-  return (core ? core->bytes() : 0.0) + stability.bytes() +
+  return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, rate, gradient, approach, active_fluid);
 }

@@ -11,22 +11,10 @@
 
 namespace LAMMPS_NS {
 
-// what ghosts get from their owners: one number, density and pressure, three, or what a vertex has
-
-enum class GhostData { MASS_OR_VOLUME, DENSITY, GRADIENT, STIFFNESS };
-
-class GhostExchange {
- public:
-  virtual void send_to_ghosts(GhostData) = 0;
-
- protected:
-  ~GhostExchange() = default;
-};
-
 class FluidEvaluation : public FluidState {
  public:
   FluidEvaluation(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
-      FluidState(lmp_, pair_), ghosts(ghosts_)
+      FluidState(lmp_, pair_, ghosts_)
   {
   }
 
@@ -48,11 +36,13 @@ class FluidEvaluation : public FluidState {
   static int ghost_size(GhostData);
   int pack(GhostData, int n, const int *list, double *buf) const;
   void unpack(GhostData, int n, int first, const double *buf);
+  // from ghosts back to their owners
+  int pack_reverse(GhostData, int n, int first, double *buf) const;
+  void add(GhostData, int n, const int *list, const double *buf);
 
   double bytes() const;
 
  private:
-  GhostExchange &ghosts;
   std::vector<double> list_reach;    // of pairs of types, (ntypes+1)^2, 0: never
   bool new_lists = false;    // in this evaluation
   // on any rank, at the last list build: boundary particles whose volume is measured, those whose

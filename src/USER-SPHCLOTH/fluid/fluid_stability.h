@@ -48,6 +48,13 @@ class FluidStability : protected Pointers {
   bool wanted() const { return mobility && now; }
   // is any vertex a boundary particle, on any rank?
   bool any_vertices() const { return has_vertices; }
+  // Boundary types that have such vertices, [ntypes + 1], once this has been called in an
+  // evaluation; collective
+  const std::vector<int> &vertex_types()
+  {
+    if (new_lists) begin_lists();
+    return is_vertex;
+  }
 
   void lists_have_changed() { new_lists = true; }
   // Of the active fluid; then of vertices, collective
@@ -55,13 +62,15 @@ class FluidStability : protected Pointers {
                   const std::vector<FluidBoundary *> &);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
-  // ghosts of vertices have their numbers
+  // ghosts of vertices have their numbers; those that are scaled have no part in it
   void find_rows(sphcloth::Fluid &, const sphcloth::Particles &,
-                 const std::vector<FluidBoundary *> &);
+                 const std::vector<FluidBoundary *> &, bool scaled);
+  void set_fluid_sq(int i, double frequency_sq) { found[i].fluid_sq = frequency_sq; }
 
   const Frequencies &operator[](int i) const { return found[i]; }
   // s_k of fluid
   double sound_over_density(int i) const { return sounds[i]; }
+  double find_sound(int i) const;
   double *pack(int i, double *end) const;
   const double *unpack(int i, const double *from);
 
@@ -84,7 +93,6 @@ class FluidStability : protected Pointers {
   std::vector<Lattice> lattices;
 
   void begin_lists();
-  double find_sound(int i) const;
   const sphcloth::LatticeModes &modes(int type, double mass);
 };
 

@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_stability.h"
+#include "fluid/scaled_mass.h"
 #include "fluid/sph_materials.h"
 
 #include <algorithm>
@@ -27,8 +28,9 @@ class FluidState : public SPHMaterials {
   // name of extract() of the pair style
   static constexpr const char *EXTRACT = "fluid_state";
 
-  FluidState(class LAMMPS *lmp_, Pair *pair_) :
-      SPHMaterials(lmp_), stability(lmp_, *this), pair(pair_)
+  FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
+      SPHMaterials(lmp_), ghosts(ghosts_), stability(lmp_, *this), scaled(lmp_, ghosts_),
+      pair(pair_)
   {
   }
   // of the pair style in use; null if it is not sph/tait
@@ -74,6 +76,7 @@ class FluidState : public SPHMaterials {
   void want_frequencies(const VertexMobility *vertices) { stability.want(vertices); }
   void want_frequencies_now(bool whether) { stability.want_now(whether); }
   const Frequencies &frequencies(int i) const { return stability[i]; }
+  ScaledMass &scaled_mass() { return scaled; }
   double approach_speed(int i);
   Wetting wetting(int i);
   // the rates of a type of fluid, of this viscosity at the boundary
@@ -106,7 +109,9 @@ class FluidState : public SPHMaterials {
                      const double *span);
 
  protected:
+  GhostExchange &ghosts;
   FluidStability stability;
+  ScaledMass scaled;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;

@@ -3,6 +3,7 @@
 
 #include "stepping/particle_limits.h"
 
+#include "core/sph/mass_scaling.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
@@ -36,7 +37,10 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back({fix, dynamic_cast<LimitedVertices *>(fix)});
 
-  if (scheme == SteppingScheme::CONSTANT) return;
+  if (scheme == SteppingScheme::CONSTANT) {
+    if (options.scales_mass(scheme)) fluid->want_frequencies(this);
+    return;
+  }
   fluid->want_density_rate();
   if (lambda.relative > 0.0) fluid->want_approach();
   if (options.lambda.stability > 0.0)
@@ -192,6 +196,26 @@ StepLimit ParticleLimits::of_vertex(int i, const LimitedVertices &vertices) cons
   return vertex_limit(lambda, vertex_state(i), edge);
 }
 
+// The longer a step, the more mass is added to a vertex beside fluid: from the step that the vertex
+// alone allows to longer ones.
+
+double ParticleLimits::scaled_acceleration(int i, double unscaled) const
+{
+  constexpr int ROUNDS = 3;
+  const ScaledMass &scaled = fluid->scaled_mass();
+  const int n = scaled.row(i);
+  if (n < 0) return unscaled;
+  const double mass = atom_mass(atom, i), support = types[atom->type[i]].support;
+  const Eigen::Vector3d alone = force->ftm2v / mass * Eigen::Vector3d(atom->f[i]);
+  double result = unscaled;
+  for (int k = 0; k < ROUNDS; k++) {
+    const double dt = lambda.force * std::sqrt(support / result);
+    if (!(dt < options.ceiling)) break;
+    result = MassScaling(scaled.stiffness(n), 1.0 / mass, dt).scaled(alone).norm();
+  }
+  return result;
+}
+
 // Fluid acts on a light vertex like a spring on a light mass: the sound that limits the step is
 // faster by the root of the ratio of the masses (added mass).  Friction is faster by that ratio.
 
@@ -199,7 +223,11 @@ StepState ParticleLimits::vertex_state(int i) const
 {
   StepState s{};
   const double mass = set_motion(i, atom->f[i], s);
-  if (options.lambda.stability > 0.0) return s;
+  if (options.lambda.stability > 0.0) {
+    if (fluid->scaled_mass().on() && lambda.force > 0.0)
+      s.accel_sq = std::pow(scaled_acceleration(i, std::sqrt(s.accel_sq)), 2);
+    return s;
+  }
   const Wetting wet = fluid->wetting(i);
   const double ratio = std::max(1.0, wet.fluid_mass / mass), smoothing = 0.5 * s.support;
   s.sound = smoothing * wet.sound_rate * std::sqrt(ratio);

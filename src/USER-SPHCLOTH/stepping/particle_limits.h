@@ -107,6 +107,7 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   double set_motion(int i, const double *force, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int i, const double *force) const;
   sphcloth::StepState vertex_state(int i) const;
+  double scaled_acceleration(int i, double unscaled) const;
   double set_frequencies(int i, sphcloth::StepState &) const;
   double until_pressed(int i, double gap, double by_sound) const;
 };

@@ -69,6 +69,8 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
       block.gain = args.at_least(keyword, 1.0);
     else if (keyword == "waking")
       block.waking = args.choice(keyword, {"no", "yes"});
+    else if (keyword == "mass_scaling")
+      mass_scaling = args.choice(keyword, {"no", "yes"});
     else if (keyword == "overdue")
       overdue = args.choice(keyword, {"no", "yes"});
     else if (keyword == "sleep")
@@ -88,10 +90,15 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
       args.unknown(
           keyword,
           "velocity, force, stability, acoustic, wetted, viscous, density, relative, cloth, "
-          "fluctuation, output, until, ratio, gain, waking, sleep, overdue, min, max, growth, "
-          "below");
+          "fluctuation, output, until, ratio, gain, waking, sleep, overdue, mass_scaling, min, "
+          "max, growth, below");
   }
   choose_stability(args, stability, acoustic, viscous, force, lambda);
+}
+
+bool StepOptions::scales_mass(SteppingScheme scheme_in_force) const
+{
+  return mass_scaling.value_or(scheme_in_force == SteppingScheme::GLOBAL && lambda.stability > 0.0);
 }
 
 void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times,
@@ -103,7 +110,13 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                "timestep that divides {}",
                label, times.interval, times.interval);
   const bool individual = scheme_in_force == SteppingScheme::INDIVIDUAL;
-  if (!individual && scheme_in_force != SteppingScheme::BLOCK) return;
+  const bool unequal = individual || scheme_in_force == SteppingScheme::BLOCK;
+  if (mass_scaling.value_or(false) && (unequal || lambda.stability == 0.0))
+    error->all(FLERR,
+               "{}: mass_scaling yes is for one step of all that follows from stability: leave it "
+               "out, or use the scheme global without acoustic, viscous and wetted",
+               label);
+  if (!unequal) return;
   if (integrates_density)
     error->all(
         FLERR,

@@ -7,6 +7,7 @@
 #include "core/timestep/step_limits.h"
 #include "stepping/stepping_scheme.h"
 
+#include <optional>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -36,6 +37,8 @@ struct StepOptions {
   double growth = 2.0;    // largest ratio of a step to the one before
   bool ceiling_given = false;
   bool clamp_at_floor = false;    // go on with the floor where a limit is below it
+  std::optional<bool>
+      mass_scaling;    // of vertices beside fluid; not given: with the scheme global
   bool overdue = false;    // individual steps: are particles updated when their step has passed?
   BlockOptions block;
 
@@ -43,6 +46,8 @@ struct StepOptions {
 
   // the keywords after the scheme, up to the end of the command
   void read(ArgReader &, OutputTimes &);
+  // is the mass of vertices beside fluid scaled with this scheme?
+  bool scales_mass(SteppingScheme) const;
   // an error, in the name of the fix, where they do not go with the scheme in force
   void check(SteppingScheme, const OutputTimes &, bool integrates_density, const std::string &label,
              Error *) const;

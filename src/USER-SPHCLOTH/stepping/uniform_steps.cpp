@@ -17,13 +17,13 @@ void UniformSteps::init(FluidState *style)
 {
   Stepper::init(style);
   if (!constant) parts.control.watch.begin_run(parts.limits.settings());
-  fluid->want_frequencies_now(parts.control.watch.due());
+  fluid->want_frequencies_now(!constant && parts.control.watch.due());
 }
 
 void UniformSteps::move()
 {
   parts.control.watch.begin_step();
-  fluid->want_frequencies_now(parts.control.watch.due());
+  fluid->want_frequencies_now(!constant && parts.control.watch.due());
   const UpdateRows &rows = parts.rows;
   const Moved n = kick_and_drift(
       atom, update, force, parts.fix->groupbit,

@@ -20,6 +20,7 @@
 #include "core/sph/kernel.h"
 #include "core/sph/stiffness.h"
 #include "core/sph/tait.h"
+#include "core/sph/vertex_pairs.h"
 
 namespace sphcloth {
 
@@ -186,6 +187,12 @@ class Fluid {
                                 VertexStiffness *) = 0;
   virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
                            VertexRow *) = 0;
+  // For mass scaling: of every active fluid particle the sum of |d rho/d x_j| e e^T over vertices
+  // j, e along both; and the fluid beside each owned vertex that has a strength above 0, with the
+  // stiffness strength |d rho/d x_j|
+  virtual void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) = 0;
+  virtual void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
+                            VertexPairs &) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);

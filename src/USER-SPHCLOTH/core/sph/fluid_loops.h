@@ -59,6 +59,9 @@ template <class K, class P> class FluidLoops : public Fluid {
                         VertexStiffness *) override;
   void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
                    VertexRow *) override;
+  void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) override;
+  void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
+                    VertexPairs &) override;
   double bytes() const override
   {
     return lists.bytes() + records.bytes() + bytes_of(selection.slots, acts);

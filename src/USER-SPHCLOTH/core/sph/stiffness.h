@@ -45,17 +45,32 @@ struct Stiffness {
   }
 };
 
-// Of a vertex: the sum over fluid, T_j once it has V_j^2/m_j; and the rate at which fluid would
-// stop it.
+// sums of products of two components of unit vectors
 
-struct VertexStiffness {
-  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0, friction = 0.0;
+struct DirectionSums {
+  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
 
+  void add(double times, double x, double y, double z)
+  {
+    xx += times * x * x;
+    yy += times * y * y;
+    zz += times * z * z;
+    xy += times * x * y;
+    xz += times * x * z;
+    yz += times * y * z;
+  }
   double trace() const { return xx + yy + zz; }
   double along(double x, double y, double z) const
   {
     return x * (xx * x + 2.0 * (xy * y + xz * z)) + y * (yy * y + 2.0 * yz * z) + zz * z * z;
   }
+};
+
+// Of a vertex: the sum over fluid, T_j once it has V_j^2/m_j; and the rate at which fluid would
+// stop it.
+
+struct VertexStiffness : public DirectionSums {
+  double friction = 0.0;
 };
 
 // of the vertices around a fluid particle: sum over j of |g_kj|/V_j sqrt(tr T . e^T T e), and the

@@ -100,13 +100,7 @@ void FluidLoops<K, P>::vertex_stiffness(const Particles &p, const int *is_vertex
           const int i = near.of[k];
           const Press s = press(p, i, j, t);
           v.friction += friction_of(t) * p.mass_or_volume[i] * s.slope / p.rho[i];
-          const double each = weight[i] * s.size;
-          v.xx += each * s.x * s.x;
-          v.yy += each * s.y * s.y;
-          v.zz += each * s.z * s.z;
-          v.xy += each * s.x * s.y;
-          v.xz += each * s.x * s.z;
-          v.yz += each * s.y * s.z;
+          v.add(weight[i] * s.size, s.x, s.y, s.z);
         }
       }
       of[j] = v;
@@ -136,6 +130,54 @@ void FluidLoops<K, P>::vertex_rows(const Particles &p, const int *is_vertex,
         }
       }
       of[i] = row;
+    }
+  }
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex, DirectionSums *of)
+{
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      DirectionSums sums;
+      for (const int other : lists.present_types()) {
+        if (!is_vertex[other]) continue;
+        const NeighborSpan near = lists(slot, other);
+        for (int k = 0; k < near.n; k++) {
+          const int j = near.of[k];
+          const Press s = press(p, i, j, model.pair(t, other));
+          sums.add(p.mass_or_volume[j] * std::fabs(s.size), s.x, s.y, s.z);
+        }
+      }
+      of[i] = sums;
+    }
+  }
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
+                                    const double *strength, VertexPairs &pairs)
+{
+  pairs.clear();
+  for (int type = 1; type <= model.n_types; type++) {
+    if (!is_vertex[type]) continue;
+    for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
+      const int j = lists.at(slot);
+      for (const int other : lists.present_types()) {
+        if (!is_fluid(other)) continue;
+        const PairTerms &t = model.pair(type, other);
+        const NeighborSpan near = lists(slot, other);
+        for (int k = 0; k < near.n; k++) {
+          const int i = near.of[k];
+          if (!(strength[i] > 0.0)) continue;
+          const Press s = press(p, i, j, t);
+          const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
+          if (stiffness > 0.0) pairs.add({i, s.x, s.y, s.z, stiffness});
+        }
+      }
+      pairs.end_vertex(j);
     }
   }
 }

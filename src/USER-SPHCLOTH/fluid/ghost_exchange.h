@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the pair style sends between the owners of particles and their ghosts.
+
+#ifndef SPHCLOTH_FLUID_GHOST_EXCHANGE_H
+#define SPHCLOTH_FLUID_GHOST_EXCHANGE_H
+
+namespace LAMMPS_NS {
+
+// one number, density and pressure, three, what a vertex has; for mass scaling one, three and three
+
+enum class GhostData { MASS_OR_VOLUME, DENSITY, GRADIENT, STIFFNESS, STRENGTH, KICK, IMPULSE };
+
+class GhostExchange {
+ public:
+  virtual void send_to_ghosts(GhostData) = 0;
+  virtual void add_from_ghosts(GhostData) = 0;
+
+ protected:
+  ~GhostExchange() = default;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the pairs, and moves the fluid by its part.
+
+#include "fluid/scaled_mass.h"
+
+#include "atom.h"
+#include "core/sph/mass_scaling.h"
+#include "core/util/bytes.h"
+#include "fluid/fluid_stability.h"
+#include "force.h"
+#include "lammps_util/atom_tools.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability)
+{
+  kicks_known = false;
+  const std::vector<int> &is_vertex = stability.vertex_types();
+  any_vertices = stability.any_vertices();
+  if (!any_vertices) return;
+  gradients.resize(atom->nmax);
+  strength.assign(atom->nmax, 0.0);
+  core.vertex_gradients(p, is_vertex.data(), gradients.data());
+  core.for_active_fluid([&](int i, int) {
+    const double sum = gradients[i].trace();
+    if (sum == 0.0 || !(atom->mask[i] & groupbit)) return;
+    const double sound = stability.find_sound(i);
+    strength[i] = sound * sound * sum;
+  });
+  ghosts.send_to_ghosts(GhostData::STRENGTH);
+  beside.clear();
+  for (int i = 0; i < p.n_all; i++)
+    if (strength[i] > 0.0) beside.push_back(i);
+  core.vertex_pairs(p, is_vertex.data(), strength.data(), vertex_pairs);
+  stiffnesses.clear();
+  rows.assign(atom->nlocal, -1);
+  for (int n = 0; n < vertex_pairs.size(); n++) {
+    stiffnesses.push_back(stiffness_of(vertex_pairs, n));
+    rows[vertex_pairs.vertices[n]] = n;
+  }
+}
+
+double ScaledMass::frequency_sq(int i, double alone_sq) const
+{
+  return MassScaling::frequency_sq(alone_sq, strength[i], gradients[i], atom_mass(atom, i));
+}
+
+void ScaledMass::find_kicks(double dt)
+{
+  if (kicks_known) return;
+  kicks_known = true;
+  kicks.resize(3 * static_cast<std::size_t>(atom->nmax));
+  impulses.resize(kicks.size());
+  for (const int i : beside) {
+    Vec3::Map(&impulses[3 * static_cast<std::size_t>(i)]).setZero();
+    if (i >= atom->nlocal) continue;
+    const double by = dt * force->ftm2v / atom_mass(atom, i);
+    for (int d = 0; d < 3; d++) kicks[3 * static_cast<std::size_t>(i) + d] = by * atom->f[i][d];
+  }
+  ghosts.send_to_ghosts(GhostData::KICK);
+}
+
+// It has drifted already.
+
+void ScaledMass::move_fluid(double dt)
+{
+  ghosts.add_from_ghosts(GhostData::IMPULSE);
+  for (const int i : beside) {
+    double *impulse = &impulses[3 * static_cast<std::size_t>(i)];
+    if (i < atom->nlocal)
+      for (int d = 0; d < 3; d++) {
+        const double change = impulse[d] / atom_mass(atom, i);
+        atom->v[i][d] += change;
+        atom->x[i][d] += dt * change;
+      }
+    std::fill_n(impulse, 3, 0.0);
+  }
+}
+
+int ScaledMass::pack(GhostData what, int i, double *buf) const
+{
+  if (what == GhostData::STRENGTH) {
+    *buf = strength[i];
+    return 1;
+  }
+  const std::vector<double> &of = what == GhostData::KICK ? kicks : impulses;
+  std::copy_n(&of[3 * static_cast<std::size_t>(i)], 3, buf);
+  return 3;
+}
+
+int ScaledMass::unpack(GhostData what, int i, const double *buf)
+{
+  if (what == GhostData::STRENGTH) {
+    strength[i] = *buf;
+    return 1;
+  }
+  std::copy_n(buf, 3, &kicks[3 * static_cast<std::size_t>(i)]);
+  return 3;
+}
+
+void ScaledMass::add(int i, const double *buf)
+{
+  for (int d = 0; d < 3; d++) impulses[3 * static_cast<std::size_t>(i) + d] += buf[d];
+}
+
+double ScaledMass::bytes() const
+{
+  return vertex_pairs.bytes() +
+      bytes_of(gradients, strength, beside, rows, stiffnesses, kicks, impulses);
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Mass scaling of vertices beside fluid (core/sph/mass_scaling.h): which pairs take part, from
+// evaluation to evaluation, and what the fluid gets in a step.
+
+#ifndef SPHCLOTH_FLUID_SCALED_MASS_H
+#define SPHCLOTH_FLUID_SCALED_MASS_H
+
+#include "pointers.h"
+
+#include "core/sph/fluid.h"
+#include "fluid/ghost_exchange.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FluidStability;
+
+class ScaledMass : protected Pointers {
+ public:
+  using Vec3 = Eigen::Vector3d;
+  ScaledMass(class LAMMPS *lmp_, GhostExchange &ghosts_) : Pointers(lmp_), ghosts(ghosts_) {}
+
+  // Anew for each run: of the fluid of a group, which a uniform step moves
+  void forget() { groupbit = 0; }
+  void want(int groupbit_) { groupbit = groupbit_; }
+  bool wanted() const { return groupbit != 0; }
+  // is anything scaled?  Known from the first evaluation of a run on, the same on all ranks.
+  bool on() const { return groupbit != 0 && any_vertices; }
+
+  // in an evaluation, collective
+  void find(sphcloth::Fluid &, const sphcloth::Particles &, FluidStability &);
+  // square of the frequency that bounds the step of a fluid particle beside vertices
+  double frequency_sq(int i, double alone_sq) const;
+  bool is_beside_vertices(int i) const { return strength[i] > 0.0; }
+
+  const sphcloth::VertexPairs &pairs() const { return vertex_pairs; }
+  const Eigen::Matrix3d &stiffness(int n) const { return stiffnesses[n]; }
+  // of an owned atom; -1: it is no vertex beside fluid
+  int row(int i) const { return rows[i]; }
+  // changes of velocity by the forces of a step, of fluid of all ranks; collective once in a step
+  void find_kicks(double dt);
+  Vec3 kick(int fluid) const { return Vec3::Map(&kicks[3 * static_cast<std::size_t>(fluid)]); }
+  void give(int fluid, const Vec3 &impulse)
+  {
+    Vec3::Map(&impulses[3 * static_cast<std::size_t>(fluid)]) += impulse;
+  }
+  // moves the fluid by what it was given; collective
+  void move_fluid(double dt);
+
+  int pack(GhostData, int i, double *buf) const;
+  int unpack(GhostData, int i, const double *buf);
+  void add(int i, const double *buf);
+  double bytes() const;
+
+ private:
+  GhostExchange &ghosts;
+  int groupbit = 0;
+  bool any_vertices = false, kicks_known = false;
+  std::vector<sphcloth::DirectionSums> gradients;    // over vertices, of owned fluid
+  // s_i^2 times their trace, of all atoms; 0 of what has no vertex near
+  std::vector<double> strength;
+  std::vector<int> beside;    // all atoms of a strength above 0
+  sphcloth::VertexPairs vertex_pairs;
+  std::vector<int> rows;    // of owned atoms
+  std::vector<Eigen::Matrix3d> stiffnesses;    // of its vertices
+  std::vector<double> kicks, impulses;    // [n][3], of all atoms
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

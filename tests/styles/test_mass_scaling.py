@@ -1,0 +1,170 @@
+"""Light vertices beside water: their mass is scaled, and the step is that of the water."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance, last_frame, run, write
+from scenes import (
+    cloth_box,
+    cloth_styles,
+    filled,
+    gravity,
+    header,
+    neighbor,
+    sheet,
+    sph_tait,
+)
+from step_scenes import (
+    LATTICE_SUM,
+    SPACING,
+    dt_and_limit,
+    growth_in,
+    momentum_with_sheet,
+    soaked,
+    soaked_sheet,
+    stir,
+)
+from test_stepping import ACOUSTIC
+
+ALONE = "velocity 0 force 0 density 0 max 1"
+BOX = 8 * SPACING
+EXPLODES = {4.0: 3, 0.1: 2}  # kg/m^2, steps
+
+
+def test_the_step_is_that_of_water_whatever_the_mass():
+    steps = []
+    for areal in (200.0, 4.0, 0.1, 0.002):
+        with soaked(areal, f"global {ALONE}") as lmp:
+            step, by = dt_and_limit(lmp)
+        assert by == ACOUSTIC
+        assert growth(areal, step, 200, "yes") < 3
+        if areal in EXPLODES:
+            assert growth(areal, step, EXPLODES[areal], "no") > 30
+        steps.append(step)
+    assert np.ptp(steps) < 1e-9 * step
+
+
+def growth(areal, step, n, scaled):
+    """By how much the energy of small velocities grows in constant steps."""
+    with soaked(areal, f"constant mass_scaling {scaled}") as lmp:
+        return growth_in(lmp, f"timestep {step}\nrun {n} post no")
+
+
+def test_momentum_is_exact():
+    with soaked(0.5, f"global {ALONE}") as lmp:
+        stir(lmp)
+        start, scale = momentum_with_sheet(lmp)
+        lmp.command("run 40 post no")
+        end, _ = momentum_with_sheet(lmp)
+    assert np.abs(end - start).max() < 1e-13 * scale
+
+
+def hanging(step):
+    """Four layers of water on a light sheet that two of its sides hold, at rest after a while."""
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f")
+        + cloth_box("-0.25 0.25 -0.25 0.25 -0.2 0.4")
+        + f"mass 1 {1000 * SPACING**3 / LATTICE_SUM}\n"
+        + "region held block -0.19 0.19 -0.19 0.19 INF INF side out units box\n"
+        + sheet(2, 0.4, "0.4 0.4", SPACING, "group cloth pin held pins")
+        + f"lattice sc {SPACING} origin 0.5 0.5 0\n"
+        + filled("water", "-0.2 0.2 -0.2 0.2 0.08 0.27")
+        + "group fluid type 1\n"
+        + sph_tait("1 1 fluid 1000 c0 20 nu 0.05", "2 2 boundary")
+        + cloth_styles("compliance 1e-5", "compliance 1000")
+        + neighbor(0.03)
+        + gravity()
+        + f"timestep 2e-3\nfix step fluid sph/integrate {step} until 1\n"
+        + "fix sheet cloth pbd/cloth pin pins damping 20\n"
+        + "fix walls fluid wall/sph xlo -0.2 xhi 0.2 ylo -0.2 yhi 0.2\n"
+        + "fix contact fluid cloth/contact 0.02\nrun 100000 post no"
+    )
+    return lmp
+
+
+@pytest.mark.parametrize("step", ["global", "global mass_scaling no"])
+def test_a_sheet_that_hangs_carries_its_water(step):
+    with hanging(step) as lmp:
+        weight = 9.81 * lmp.numpy.extract_atom("mass")[by_id(lmp, "type")].sum()
+        pulls = []
+        for k in range(40):
+            lmp.command(f"fix step fluid sph/integrate {step} until {1.002 + 0.002 * k}")
+            lmp.command("run 100 post no")
+            pulls.append(lmp.extract_fix("sheet", 0, 1, 2))
+        assert by_id(lmp, "x")[:, 2].min() > -0.6 * SPACING
+    assert np.mean(pulls) == pytest.approx(weight, rel=0.03)
+
+
+def test_slow_motions_do_not_change():
+    """What scaling does is of the order of the step squared, as leapfrog itself."""
+    change = []
+    for steps in (30, 60, 120):
+        x = []
+        for scaled in ("no", "yes"):
+            with soaked(4.0, f"constant mass_scaling {scaled}") as lmp:
+                stir(lmp)
+                lmp.commands_string(f"timestep {6e-3 / steps}\nrun {steps} post no")
+                x.append(by_id(lmp, "x"))
+        change.append(np.sqrt(((x[1] - x[0]) ** 2).sum(axis=1).mean()))
+    assert 0 < change[2] < 0.02 * 6e-3 * 1e-2
+    assert 3.3 < change[1] / change[2] < 4.8
+
+
+def test_ranks_and_restart(tmp_path):
+    """Water and vertices are on other ranks, and images of each other."""
+    with instance() as lmp:
+        lmp.commands_string(soaked_sheet(0.5, f"global {ALONE}"))
+        lmp.command("displace_atoms all random 0.004 0.004 0.004 7 units box")
+        lmp.commands_string(f"run 20\nwrite_restart {tmp_path}/half\nrun 20")
+        whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
+    for ranks in (1, 2, 4):
+        folder = tmp_path / str(ranks)
+        folder.mkdir()
+        run(write(folder, AGAIN), ranks=ranks)
+        apart = last_frame(folder / "end.txt")[:, 1:] - whole
+        apart[:, :3] -= BOX * np.round(apart[:, :3] / BOX)
+        assert np.abs(apart).max() < 1e-11
+
+
+AGAIN = f"""read_restart ../half
+fix step fluid sph/integrate global {ALONE}
+fix sheet cloth pbd/cloth
+dump end all custom 40 end.txt id x y z vx vy vz
+dump_modify end sort id format float %.17g
+run 20
+"""
+
+
+@pytest.mark.parametrize(
+    ("step", "same"),
+    [
+        ("global", False),
+        ("constant mass_scaling yes", False),
+        ("global mass_scaling no", True),
+        ("global acoustic 0.5", True),
+        ("global stability 0", True),
+    ],
+)
+def test_nothing_is_added_where_it_is_not_asked_for(step, same):
+    x = []
+    for each in ("constant", f"{step} max 1e-5"):
+        with soaked(0.5, each) as lmp:
+            stir(lmp)
+            lmp.commands_string("timestep 1e-5\nrun 3 post no")
+            x.append(by_id(lmp, "x"))
+    assert np.array_equal(*x) == same
+
+
+@pytest.mark.parametrize(
+    ("words", "scheme"),
+    [
+        ("", "block"),
+        ("", "individual"),
+        ("acoustic 0.5", "global"),
+        ("stability 0", "global"),
+    ],
+)
+def test_bad_input_is_named(words, scheme):
+    script = soaked_sheet(4.0, f"global {words} mass_scaling yes")
+    with instance() as lmp, pytest.raises(Exception, match="yes is for one step of all"):
+        lmp.commands_string(f"{script}run_style sph/adaptive {scheme}\nrun 0")

@@ -10,8 +10,8 @@ SIZE   ?= small
 # of mutants
 SEED   ?= 1
 COUNT  ?= 200
-# tests that run side by side
-WORKERS ?= 2
+# tests that run side by side: ranks that wait for each other leave a quarter of two cores idle
+WORKERS ?= 3
 SOURCES := $(shell find src cmake python examples -type f -not -name '*.pyc') CMakeLists.txt pyproject.toml
 
 CTEST = $(BIN)/ctest --output-on-failure -j $(WORKERS) --test-dir

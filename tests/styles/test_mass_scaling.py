@@ -59,7 +59,7 @@ def test_momentum_is_exact():
 
 
 def hanging(step):
-    """Four layers of water on a light sheet that two of its sides hold, at rest after a while."""
+    """Four layers of water on a light sheet that is held along its rim, at rest after a while."""
     lmp = instance()
     lmp.commands_string(
         header("f f f")

@@ -42,8 +42,8 @@ class MassScaling {
   using Mat3 = Eigen::Matrix3d;
 
   static constexpr double SHARE = 0.5;    // a
-  // Square of the frequency of fluid beside vertices, over that of it alone.  No more than 2 is
-  // needed, for the worst of all motions; among disordered fluid on both sides of a sheet 1.4 is.
+  // Square of the frequency of fluid beside vertices, over that of it alone.  For the worst of all
+  // motions 2 would be needed; in order and disorder, on both sides of a sheet, 1.2 is enough.
   static constexpr double OF_FLUID = 1.2;
   // of the mass of a fluid particle: what may be added to vertices around it
   static constexpr double MAX_ADDED = 0.9;

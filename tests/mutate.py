@@ -70,6 +70,7 @@ BLOCK_SHEET = "tests/styles/test_block_sheet.py"
 PAIR, CLOTH = "tests/styles/test_pair_sph_tait.py", "tests/styles/test_cloth.py"
 CONTACT, WATCH = "tests/styles/test_contact.py", "tests/styles/test_watch.py"
 STABILITY = "tests/styles/test_stability.py"
+CALIBRATED = "tests/styles/test_calibrated_density.py"
 SCALING = "tests/styles/test_mass_scaling.py"
 OBSTACLES, SUBSTEPS = "tests/styles/test_obstacles.py", "tests/styles/test_substeps.py"
 FIRST_KICK, PORES = "tests/styles/test_first_kick.py", "tests/styles/test_pores.py"
@@ -107,6 +108,14 @@ BUGS = [
         "(1.0 + std::min(harder, MAX_HARDENING))", "(1.0 + 0.0 * harder)", CORE),
     Bug("cloth: a hardened edge pulls back along its secant", "core/pbd/cloth_solver.cpp",
         "a + s.steeper * std::min(a, hardens)", "a", CORE),
+    Bug("calibrated density: its slope is left out of the forces", "fluid/fluid_evaluation.cpp",
+        "if (calibrates()) term *= lattices.slope(t, rho);", "",
+        f"{CALIBRATED}::test_forces_beside_walls_are_the_gradient_of_the_energy"),
+    Bug("calibrated wall: half the gradient that a layer lacks", "core/sph/wall_profile.h",
+        "2.0 * missing.gradient", "missing.gradient", CORE),
+    Bug("calibrated density: a wall of particles adds what it would to a sum",
+        "fluid/fluid_evaluation.cpp", "t.rho0 *= lattices.sum(is_fluid(i) ? i : j);", ";",
+        f"{CALIBRATED}::test_a_wall_of_boundary_particles_completes_a_lattice"),
     Bug("mass scaling: fluid of other ranks gets nothing", "fluid/scaled_mass.cpp",
         "  ghosts.add_from_ghosts(GhostData::IMPULSE);\n", "", SCALING),
     Bug("mass scaling: constraints move the vertex alone", "fluid/scaled_vertices.cpp",

@@ -134,9 +134,9 @@ void FixSPHEmit::init()
         FLERR,
         "{}: type {} is no fluid: use 'pair_style sph/tait' and 'pair_coeff {} {} fluid ...'",
         label, itype, itype, itype);
-  // the mass with which a lattice of this spacing is water at rest, by the density sum
+  // with it a lattice of this spacing is water at rest
   rho0 = fluid->equation_of_state(itype).rho0;
-  const double at_rest = rho0 / fluid->lattice_sum(itype, spacing);
+  const double at_rest = fluid->lattices.mass(itype, spacing);
   if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
     error->all(FLERR,
@@ -270,11 +270,10 @@ struct FixSPHEmit::Record {
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, Record{emitted,
-                          layers,
-                          start,
-                          {momentum[0], momentum[1], momentum[2]},
-                          physical_time(update)});
+  write_record(
+      fp,
+      Record{
+          emitted, layers, start, {momentum[0], momentum[1], momentum[2]}, physical_time(update)});
 }
 
 void FixSPHEmit::restart(char *buf)

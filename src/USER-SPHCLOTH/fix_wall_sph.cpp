@@ -125,6 +125,7 @@ void FixWallSPH::init()
   if (modify->get_fix_by_style("^wall/sph$").size() > 1)
     error->all(FLERR, "{}: there is another fix wall/sph: give all faces to one", label);
   table = fluid->wall_table();
+  profiles = fluid->lattices.wall_profiles(table, reflection);
   found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
@@ -253,24 +254,26 @@ bool FixWallSPH::measure(int i, double back)
 double FixWallSPH::density(int i, double of_particles)
 {
   if (!query(i)) return of_particles;
-  return of_particles + fluid->equation_of_state(atom->type[i]).rho0 * joint_lambda(near);
+  const int type = atom->type[i];
+  added.set(near, profiles[type]);
+  return of_particles + fluid->equation_of_state(type).rho0 * added.lambda();
 }
 
 double FixWallSPH::density_rate(int i, double of_particles, double back)
 {
   if (!measure(i, back)) return of_particles;
+  added.set(near, profiles[atom->type[i]]);
   double rate = 0.0;
-  for (std::size_t k = 0; k < walls.size(); k++)
-    rate += slope(i, k, joint_share(near, k)) * departure(i, k);
+  for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
   return of_particles + rate;
 }
 
-// d rho_i / d distance from wall k, which keeps this share beside the other walls
+// d rho_i / d distance from wall k, beside the others
 
-double FixWallSPH::slope(int i, std::size_t k, double share) const
+double FixWallSPH::slope(int i, std::size_t k) const
 {
   const int type = atom->type[i];
-  return share * fluid->equation_of_state(type).rho0 * near[k].slope / fluid->support(type);
+  return fluid->equation_of_state(type).rho0 * added.slope(k) / fluid->support(type);
 }
 
 // velocity of particle i away from wall k
@@ -304,13 +307,14 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
   const double support = fluid->support(type), nu = slip ? 0.0 : fluid->type(type).nu;
   const double mass = atom_mass(atom, i), to_force = mass / force->ftm2v;
   const double *x = atom->x[i], *v = atom->v[i];
+  added.set(near, profiles[type]);
 
   for (std::size_t k = 0; k < walls.size(); k++) {
     const Wall &wall = walls[k];
     const int axis = wall.axis();
     const double delta = wall.distance(x) / support;
     if (delta >= 1.0) continue;
-    const double share = joint_share(near, k), denser = slope(i, k, share);
+    const double share = joint_share(near, k), denser = slope(i, k);
     const double strain = stop_strain(delta);
     const double stop = eos.k * strain / (STOPPING_DEPTH * support);
     const double friction = nu > 0.0
@@ -359,11 +363,19 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
   const Tait &eos = fluid->equation_of_state(type);
   const double support = fluid->support(type), rho = atom->rho[i];
   const double nu = slip ? 0.0 : fluid->type(type).nu;
+  added.set(near, profiles[type]);
   for (std::size_t k = 0; k < walls.size(); k++) {
     const double delta = walls[k].distance(atom->x[i]) / support;
     if (delta >= 1.0) continue;
     const double share = joint_share(near, k);
-    s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k, share);
+    s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k);
+    if (profiles[type].changes()) {
+      // what pressure on a curved function adds, in the units of the others
+      const double sound = eos.sound_speed(rho), bend = added.curvature(k) / (support * support);
+      s.spring[walls[k].axis()] +=
+          std::max(0.0, reflection * fluid->acting_pressure(eos, rho) * eos.rho0 * bend) /
+          (atom_mass(atom, i) * sound * sound * fluid->lattices.slope(type, rho));
+    }
     if (delta < 0.0) {
       const double of_spring = rho / (STOPPING_DEPTH * support);
       s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);

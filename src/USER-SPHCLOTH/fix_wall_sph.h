@@ -14,6 +14,7 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "core/sph/plane_wall.h"
 #include "core/sph/shifting.h"
+#include "core/sph/wall_profile.h"
 #include "fluid/fluid_boundary.h"
 #include "lammps_util/number_or_variable.h"
 
@@ -85,9 +86,11 @@ class FixWallSPH : public Fix, public FluidBoundary {
   double reflection;    // 1, and the pressure behind the plane over the particle's own
   std::array<double, 3> open_low, open_high;    // out of reach of all walls
   sphcloth::WallTable table;
+  std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
 
-  std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall
-  // the same, one after another, of those that were found in reach in this evaluation, and where by
+  std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall: the half-space
+  sphcloth::JointWalls added;    // to its density over rho0
+  // `near`, one after another, of those that were found in reach in this evaluation, and where by
   // particle
   enum { UNKNOWN = -1, OUT_OF_REACH = -2 };
   std::vector<sphcloth::WallTable::Value> found;
@@ -103,7 +106,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void find_open_space();
   bool query(int i);
   bool measure(int i, double back = 0.0);
-  double slope(int, std::size_t, double share) const;
+  double slope(int, std::size_t) const;
   double departure(int, std::size_t) const;
   void push(int i, double p_over_rho2, double times, bool first);
   double output(int);

@@ -64,14 +64,14 @@ void PairSPHTait::settings(int narg, char **arg)
 {
   fluid.forget();
   fluid.read_options(narg, arg);
-  fluid.set_lattice_masses();
+  fluid.lattices.set_masses();
 }
 
 void PairSPHTait::coeff(int narg, char **arg)
 {
   if (!allocated) allocate();
   fluid.read(narg, arg, setflag);
-  fluid.set_lattice_masses();
+  fluid.lattices.set_masses();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -90,7 +90,7 @@ void PairSPHTait::init_style()
                "{}: neigh_modify exclude group or molecule would hide neighbors from the sums: "
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
-  fluid.set_lattice_masses();    // 'mass' may have come since
+  fluid.lattices.set_masses();    // 'mass' may have come since
   comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;
   fluid.begin_run();
 }

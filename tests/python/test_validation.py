@@ -331,6 +331,27 @@ def test_a_column_may_stand_on_a_plane(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("finest_only")
+@pytest.mark.parametrize("sound", ["10", "50"])
+def test_calibrated_density_is_right_at_two_spacings(tmp_path: Path, sound: str) -> None:
+    metrics = run_hydrostatic(
+        tmp_path,
+        dimension="3",
+        layers="20",
+        support="2",
+        floor="plane",
+        wall="own",
+        density="calibrated",
+        sound=sound,
+        time="0.5",
+    ).metrics
+    assert abs(metrics["base_force"].value) < 0.01
+    assert metrics["pressure"].value < 0.02
+    assert metrics["pressure_everywhere"].value < 0.025
+    assert abs(metrics["lowest"].value) < 0.05
+    assert metrics["lowest_height"].value == pytest.approx(0.5, abs=0.03)
+
+
+@pytest.mark.usefixtures("finest_only")
 @pytest.mark.parametrize(
     ("settings", "largest"),
     [

@@ -27,6 +27,7 @@ SETTINGS = {
     "continuity": "density continuity",
     "delta": "density continuity delta 0.4",
     "reinit": "density continuity reinit 3",
+    "calibrated": "density calibrated",
 }
 BEFORE_READING = header("p p f")
 

@@ -82,7 +82,11 @@ CASES = [
     ),
     case("pair: delta", "pair_style sph/tait 0.1 delta -1", r"delta is '-1'.*>= 0"),
     case("pair: precision", "pair_style sph/tait 0.1 precision half", r"'half'.*double or mixed"),
-    case("pair: density", "pair_style sph/tait 0.1 density sum", r"'sum'.*summation or continuity"),
+    case(
+        "pair: density",
+        "pair_style sph/tait 0.1 density sum",
+        r"'sum'.*summation or continuity or calibrated",
+    ),
     case(
         "init: support in other units than the box",
         SHEET.replace("sph/tait 0.1", "sph/tait 1e300") + "run 0",

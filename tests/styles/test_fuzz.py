@@ -51,7 +51,7 @@ SQUARE = [[word] for word in ["size", "0.4", "0.6", "spacing", "0.1"]]
 STYLES = {
     "pair": ("pair_style sph/tait", "", [["0.1", "0.2"]], {
         "kernel": [["wendland/c2", "wendland/c4", "cubic", "quintic"]], "tension": [YES],
-        "precision": [["double", "mixed"]], "density": [["summation", "continuity"]],
+        "precision": [["double", "mixed"]], "density": [["summation", "continuity", "calibrated"]],
         "delta": [NUMBER], "reinit": [COUNT]}),
     "coeff": ("pair_coeff", "1 1", [["fluid", "boundary", "none"], ["1000"]], {
         "k": [NUMBER], "c0": [["10", "30"]], "fluctuation": [["0.01"], ["2"]],

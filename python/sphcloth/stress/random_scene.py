@@ -274,4 +274,6 @@ def _draw_steps(r: random.Random, s: dict[str, Any]) -> None:
         s["dt"] = min(limits) * r.uniform(0.4, 1.0)
     else:
         s["dt"] = 0.5 * h / c0 * r.uniform(0.5, 4.0)
+    if s["density"] == "summation" and r.random() < 0.4:
+        s["density"] = "calibrated"
     s["steps"] = 300

@@ -9,6 +9,7 @@ from sphcloth.validation.case import Parameter, Value
 from sphcloth.validation.lattice import KERNELS, cubic_density_sum, density_sum
 
 GRAVITY = Parameter("gravity", 9.81, "m/s^2", "acceleration g", 1e-3, 1e3)
+DENSITIES = ("summation", "continuity", "calibrated")
 REST_DENSITY = Parameter("rho0", 1000.0, "kg/m^3", "rest density", 1.0, 1e5)
 
 
@@ -44,7 +45,7 @@ def numerics(
         Parameter("support", support, "1", "support radius over spacing", 2.0, 6.0),
         Parameter("tension", tension, "1", "whether negative pressure acts", choices=("no", "yes")),
         Parameter("precision", "double", "1", "of the pair loops", choices=("double", "mixed")),
-        Parameter("density", density, "1", "how it is found", choices=("summation", "continuity")),
+        Parameter("density", density, "1", "how it is found", choices=DENSITIES),
         Parameter("delta", delta, "1", "diffusion of the density, with continuity", 0.0, 1.0),
         Parameter("disorder", disorder, "1", "displacement at the start over spacing", 0.0, 0.3),
         Parameter("seed", 1234, "1", "seed of the disorder", 1, 900_000_000),
@@ -58,16 +59,17 @@ def numerics(
 def lattice_density(values: Mapping[str, Value], height_over_width: float = 1.0) -> float:
     """Return the density that particles on a lattice find over their mass per area.
 
-    With continuity every particle starts with the rest density, whatever its neighbors are.
+    With continuity every particle starts with the rest density, whatever its neighbors are; a
+    calibrated density is the rest density on a lattice.
     """
-    if values["density"] == "continuity":
+    if values["density"] != "summation":
         return 1.0
     return density_sum(values["kernel"], values["support"], height_over_width)
 
 
 def lattice_density_in_space(values: Mapping[str, Value]) -> float:
     """Return the same for a cubic lattice, over mass per volume."""
-    if values["density"] == "continuity":
+    if values["density"] != "summation":
         return 1.0
     return cubic_density_sum(values["kernel"], values["support"])
 

@@ -52,6 +52,7 @@ void FluidEvaluation::begin_run()
   boundaries = find_fluid_boundaries(modify);
   find_sides();
   cache_pair_values();
+  lattices.calibrate();
   if (!core) core = Fluid::create(options.kernel, options.precision);
   FluidModel &model = core->model;
   const int n = atom->ntypes + 1;
@@ -72,8 +73,7 @@ void FluidEvaluation::begin_run()
     model.pressure_scale[i] = rho0 / first * (rho0 / first);
   }
   list_reach.assign(n * n, 0.0);
-  moved.assign(n, 0);
-  moved_here = moved;
+  moved = moved_here = std::vector<int>(n, 0);
 }
 
 void FluidEvaluation::set_pair(int i, int j, double listed)
@@ -83,6 +83,8 @@ void FluidEvaluation::set_pair(int i, int j, double listed)
   PairTerms t = mix(i, j);
   const double scale = model.pressure_scale[i] * model.pressure_scale[j];
   t.stiffness /= is_fluid(i) && is_fluid(j) ? std::sqrt(scale) : scale;
+  // as much as fluid in the place of a wall
+  if (is_measured(i) || is_measured(j)) t.rho0 *= lattices.sum(is_fluid(i) ? i : j);
   // density diffuses within a fluid, not across the step between two
   if (i == j && integrates_density())
     t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);
@@ -148,16 +150,18 @@ void FluidEvaluation::find_forces()
   core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
+  if (!calibrates()) return;    // else, so far, the rates of the sums
+  for_each_fluid([this](int i, int t) { atom->drho[i] *= lattices.slope(t, atom->rho[i]); });
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
 
 void FluidEvaluation::push(FluidBoundary &boundary)
 {
-  const auto push_one = [&](int i, const Tait &) { boundary.push(i, p_over_rho2[i]); };
+  const auto push_one = [&](int i, int) { boundary.push(i, p_over_rho2[i]); };
   if (!pressures_follow) return for_each_fluid(push_one);
   for (int i = 0; i < atom->nlocal; i++)
-    if (const int t = atom->type[i]; is_fluid(t)) push_one(i, equation_of_state(t));
+    if (const int t = atom->type[i]; is_fluid(t)) push_one(i, t);
 }
 
 void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
@@ -229,7 +233,7 @@ void FluidEvaluation::select(const Particles &p)
   if (!core->select(p)) return;
   if (!hooks) return;
   active_fluid.clear();
-  core->for_active_fluid([this](int i, int) { active_fluid.push_back(i); });
+  for_each_fluid([this](int i, int) { active_fluid.push_back(i); });
 }
 
 Fluid::Box FluidEvaluation::box() const
@@ -325,8 +329,9 @@ void FluidEvaluation::find_densities(const Particles &p)
   if (!integrates_density()) {
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
-      for_each_fluid([&](int i, const Tait &) { p.rho[i] = boundary->density(i, p.rho[i]); });
-    return;
+      for_each_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
+    if (!calibrates()) return;
+    return for_each_fluid([&](int i, int t) { p.rho[i] = lattices.density(t, p.rho[i]); });
   }
   check_densities();
   core->record(p);
@@ -345,14 +350,13 @@ void FluidEvaluation::integrate_density(const Particles &p)
   if (!(dt > 0.0)) return;
   find_density_rates(p, back);
   for (FluidBoundary *boundary : boundaries)
-    for_each_fluid(
-        [&](int i, const Tait &) { rate[i] = boundary->density_rate(i, rate[i], back); });
-  for_each_fluid([&](int i, const Tait &) { p.rho[i] += dt * rate[i]; });
+    for_each_fluid([&](int i, int) { rate[i] = boundary->density_rate(i, rate[i], back); });
+  for_each_fluid([&](int i, int) { p.rho[i] += dt * rate[i]; });
   elapsed = 0.0;
   if (const int every = options.reinit; every && update->ntimestep % every == 0) {
     ghosts.send_to_ghosts(GhostData::DENSITY);
     core->smooth_densities(p, rate.data());
-    for_each_fluid([&](int i, const Tait &) { p.rho[i] = rate[i]; });
+    for_each_fluid([&](int i, int) { p.rho[i] = rate[i]; });
   }
 }
 
@@ -392,7 +396,7 @@ void FluidEvaluation::find_frequencies()
   if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
   stability.find_rows(*core, p, boundaries, scaled.on());
   if (!scaled.on()) return;
-  core->for_active_fluid([this](int i, int) {
+  for_each_fluid([this](int i, int) {
     if (scaled.is_beside_vertices(i))
       stability.set_fluid_sq(i, scaled.frequency_sq(i, stability[i].fluid_sq));
   });
@@ -403,10 +407,11 @@ void FluidEvaluation::find_frequencies()
 void FluidEvaluation::find_pressures(const Particles &p)
 {
   const double min = options.tension ? -std::numeric_limits<double>::max() : 0.0;
-  const auto find = [&](int i, const Tait &eos) {
+  const auto find = [&](int i, int t) {
     const double rho = p.rho[i];
     double &term = p_over_rho2[i];
-    term = std::max(eos.pressure(rho), min) / (rho * rho);
+    term = std::max(equation_of_state(t).pressure(rho), min) / (rho * rho);
+    if (calibrates()) term *= lattices.slope(t, rho);
     // a density that is renormalized has a gradient that is
     for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number
@@ -415,10 +420,9 @@ void FluidEvaluation::find_pressures(const Particles &p)
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
   };
-  const bool of_all = pressures_follow || new_lists;
-  if (!of_all || !active) return for_each_fluid(find);
+  if (!active || !(pressures_follow || new_lists)) return for_each_fluid(find);
   for (int i = 0; i < p.n_owned; i++)
-    if (is_fluid(p.type[i])) find(i, equation_of_state(p.type[i]));
+    if (is_fluid(p.type[i])) find(i, p.type[i]);
 }
 
 /* ----------------------------------------------------------------------

@@ -68,11 +68,8 @@ class FluidEvaluation : public FluidState {
   void find_boundary_pressures(const sphcloth::Particles &);
   void find_frequencies();
 
-  // act(i, equation of state) for active fluid particles
-  template <class Act> void for_each_fluid(Act &&act) const
-  {
-    core->for_active_fluid([&](int i, int t) { act(i, equation_of_state(t)); });
-  }
+  // act(i, type) for active fluid particles
+  template <class Act> void for_each_fluid(Act act) const { core->for_active_fluid(act); }
 };
 
 }    // namespace LAMMPS_NS

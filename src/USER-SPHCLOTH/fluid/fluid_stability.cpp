@@ -7,6 +7,7 @@
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "fluid/fluid_boundary.h"
+#include "fluid/fluid_lattices.h"
 #include "fluid/sph_materials.h"
 #include "fluid/vertex_mobility.h"
 #include "lammps_util/atom_tools.h"
@@ -55,9 +56,13 @@ const LatticeModes &FluidStability::modes(int type, double mass)
 
 double FluidStability::find_sound(int i) const
 {
-  const Tait &eos = materials.equation_of_state(atom->type[i]);
+  const int type = atom->type[i];
+  const Tait &eos = materials.equation_of_state(type);
   const double rho = atom->rho[i];
-  return eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
+  const double sound =
+      eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
+  // gradients are those of the density sum
+  return materials.calibrates() ? sound * of_fluids.slope(type, rho) : sound;
 }
 
 void FluidStability::find_fluid(Fluid &core, const Particles &p,

@@ -16,6 +16,7 @@
 namespace LAMMPS_NS {
 
 class FluidBoundary;
+class FluidLattices;
 class SPHMaterials;
 class VertexMobility;
 
@@ -31,8 +32,9 @@ class FluidStability : protected Pointers {
  public:
   static constexpr int GHOST_SIZE = 7;    // numbers of a vertex
 
-  FluidStability(class LAMMPS *lmp_, const SPHMaterials &materials_) :
-      Pointers(lmp_), materials(materials_)
+  FluidStability(class LAMMPS *lmp_, const SPHMaterials &materials_,
+                 const FluidLattices &of_fluids_) :
+      Pointers(lmp_), materials(materials_), of_fluids(of_fluids_)
   {
   }
 
@@ -78,6 +80,7 @@ class FluidStability : protected Pointers {
 
  private:
   const SPHMaterials &materials;
+  const FluidLattices &of_fluids;
   const VertexMobility *mobility = nullptr;
   bool now = true, new_lists = true, has_vertices = false;
   std::vector<int> is_vertex;    // [ntypes + 1]

@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "fluid/fluid_boundary.h"
+#include "fluid/fluid_lattices.h"
 #include "fluid/fluid_stability.h"
 #include "fluid/scaled_mass.h"
 #include "fluid/sph_materials.h"
@@ -29,10 +30,12 @@ class FluidState : public SPHMaterials {
   static constexpr const char *EXTRACT = "fluid_state";
 
   FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
-      SPHMaterials(lmp_), ghosts(ghosts_), stability(lmp_, *this), scaled(lmp_, ghosts_),
-      pair(pair_)
+      SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_), stability(lmp_, *this, lattices),
+      scaled(lmp_, ghosts_), pair(pair_)
   {
   }
+  FluidLattices lattices;
+
   // of the pair style in use; null if it is not sph/tait
   static FluidState *find(Force *);
 

@@ -261,6 +261,8 @@ void MeshBoundary::init(FluidState *of_pair_style)
         "or 'wall no'",
         label);
   table = fluid->wall_table();
+  adds = fluid->calibrates();
+  profiles = fluid->lattices.wall_profiles(table, 1.0);
   sheets.clear();
 }
 
@@ -340,8 +342,17 @@ template <class Do> void MeshBoundary::for_closest_points(int i, Do something)
     something(closest_points[k]);
 }
 
+double MeshBoundary::density(int i, double of_particles)
+{
+  if (!adds) return of_particles * inverse_gamma(i);
+  double added = 0.0;
+  for_closest_points(i, [&](const ClosestPoint &closest) { added += profile(closest).lambda; });
+  return of_particles + fluid->equation_of_state(atom->type[i]).rho0 * added;
+}
+
 double MeshBoundary::inverse_gamma(int i)
 {
+  if (adds) return 1.0;
   double gamma = 1.0;
   for_closest_points(i, [&](const ClosestPoint &closest) { gamma *= 1.0 - covered(closest); });
   return 1.0 / gamma;
@@ -365,6 +376,13 @@ double MeshBoundary::covered(const ClosestPoint &closest)
   return closest.share * closest.value.lambda * (1.0 - closest.beyond.lambda);
 }
 
+// what that adds to its density over rho0, and the slope over the share
+
+WallTable::Value MeshBoundary::profile(const ClosestPoint &closest) const
+{
+  return profiles[atom->type[closest.particle]]({covered(closest), 1.0, 0.0});
+}
+
 // the gradient of its density where it is moved
 
 Eigen::Vector3d MeshBoundary::rise(const ClosestPoint &closest) const
@@ -372,7 +390,9 @@ Eigen::Vector3d MeshBoundary::rise(const ClosestPoint &closest) const
   const int i = closest.particle;
   const Vec3 slope = closest.value.slope * (1.0 - closest.beyond.lambda) * closest.normal -
       closest.value.lambda * closest.beyond.slope * closest.from_border;
-  return atom->rho[i] * closest.share / (support(i) * (1.0 - covered(closest))) * slope;
+  const double times = adds ? fluid->equation_of_state(atom->type[i]).rho0 * profile(closest).slope
+                            : atom->rho[i] / (1.0 - covered(closest));
+  return times * closest.share / support(i) * slope;
 }
 
 Eigen::Vector3d MeshBoundary::velocity_from(const ClosestPoint &closest) const

@@ -9,6 +9,7 @@
 
 #include "contact/triangle_set.h"
 #include "core/sph/plane_wall.h"
+#include "core/sph/wall_profile.h"
 #include "fluid/fluid_boundary.h"
 
 #include <array>
@@ -32,7 +33,7 @@ struct ClosestPoint {
       Eigen::Vector3d::Zero();    // in the plane, unit; 0: the border is far
   double border_distance = 0.0;
   double share = 1.0;    // of what fills, beside other meshes
-  sphcloth::WallTable::Value value{0.0, 0.0}, beyond{0.0, 0.0};    // of plane and border
+  sphcloth::WallTable::Value value{}, beyond{};    // of plane and border
 };
 
 class BoundaryMesh : protected Pointers {
@@ -112,8 +113,10 @@ class BoundaryMesh : protected Pointers {
 
 // All meshes of a scene together.  Where they cover a share lambda of the kernel of a particle, its
 // density is the sum over particles over gamma = 1 - lambda, and forces are the gradient of the
-// energy with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  Where
-// several meshes are near, each counts as far as it does not lie behind nearer ones.
+// energy with this density: Feldman & Bonet, Int. J. Numer. Meth. Engng 72 (2007) 295.  With a
+// calibrated density they add to the sum what a calibrated wall adds for the same share,
+// core/sph/wall_profile.h.  Where several meshes are near, each counts as far as it does not lie
+// behind nearer ones.
 
 class MeshBoundary : protected Pointers, public FluidBoundary {
  public:
@@ -131,9 +134,9 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   void update_candidates();    // after each list build
 
   void begin() override;
-  bool renormalizes() const override { return true; }
+  bool renormalizes() const override { return !adds; }
   double inverse_gamma(int i) override;
-  double density(int i, double of_particles) override { return of_particles * inverse_gamma(i); }
+  double density(int i, double of_particles) override;
   double density_rate(int i, double of_particles, double back) override;
   void push(int i, double p_over_rho2) override;
   void push_more(int i, double p_over_rho2, double times) override;
@@ -157,6 +160,8 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   const int groupbit;
   FluidState *fluid = nullptr;
   sphcloth::WallTable table;
+  bool adds = false;    // instead of renormalizing
+  std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
   std::vector<BoundaryMesh> sheets;
   std::vector<ClosestPoint> closest_points;    // of one particle together, the nearest first
   std::vector<int> first;    // of an owned particle, -1: none
@@ -167,6 +172,7 @@ class MeshBoundary : protected Pointers, public FluidBoundary {
   template <class Do> void for_closest_points(int i, Do something);
   void push(int i, double p_over_rho2, double times, bool first_push);
   double support(int i) const;
+  sphcloth::WallTable::Value profile(const ClosestPoint &) const;
   double friction(const ClosestPoint &) const;
   void find_wetting();
   static double covered(const ClosestPoint &);

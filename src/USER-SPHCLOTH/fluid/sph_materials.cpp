@@ -56,7 +56,8 @@ void SPHMaterials::read_options(int narg, char **arg)
       options.precision = args.choice(keyword, {"double", "mixed"}) ? Precision::MIXED
                                                                     : Precision::DOUBLE;
     else if (keyword == "density")
-      options.continuity = args.choice(keyword, {"summation", "continuity"});
+      options.density =
+          static_cast<Density>(args.choice(keyword, {"summation", "continuity", "calibrated"}));
     else if (keyword == "delta")
       options.delta = args.at_least(keyword, 0.0);
     else if (keyword == "reinit")
@@ -191,49 +192,6 @@ SPHMaterials::PairData SPHMaterials::read_pair(ArgReader &args) const
                    "boundary for one type");
   }
   return p;
-}
-
-/* ----------------------------------------------------------------------
-   the mass of a lattice at rest
-------------------------------------------------------------------------- */
-
-double SPHMaterials::lattice_sum(int i, double spacing) const
-{
-  return with_kernel(options.kernel, [&](auto k) {
-    return sphcloth::lattice_sum<decltype(k)>(support(i, i), spacing, domain->dimension);
-  });
-}
-
-// A mass that was set here follows a new kernel, support or spacing; one of the user must agree.
-
-void SPHMaterials::set_lattice_masses()
-{
-  constexpr double TOLERANCE = 1e-3, MAX_NEIGHBORS_ALONG_AXIS = 50.0;
-  for (std::size_t k = 1; k < types.size(); k++) {
-    TypeData &t = types[k];
-    const int i = static_cast<int>(k);
-    if (t.spacing == 0.0) continue;
-    const double radius = support(i, i);
-    if (t.spacing > radius || radius > MAX_NEIGHBORS_ALONG_AXIS * t.spacing)
-      error->all(FLERR,
-                 "{}: spacing of type {} is '{}' with a support of {}: give the distance between "
-                 "neighbors on the lattice, from {} to {}",
-                 COEFF, i, t.spacing, radius, radius / MAX_NEIGHBORS_ALONG_AXIS, radius);
-    const double mass = t.eos.rho0 / lattice_sum(i, t.spacing);
-    if (atom->rmass)
-      error->all(FLERR,
-                 "{}: spacing of type {} is '{}', but every particle has a mass of its own here: "
-                 "leave out 'spacing' and use 'set type {} mass {:.16g}'",
-                 COEFF, i, t.spacing, i, mass);
-    const bool given = atom->mass_setflag[i] && atom->mass[i] != t.lattice_mass;
-    if (given && std::fabs(atom->mass[i] / mass - 1.0) > TOLERANCE)
-      error->all(FLERR,
-                 "{}: spacing of type {} is '{}', which makes its mass {:.8g}, but 'mass {}' is "
-                 "{:.8g}: leave out 'mass {}' or 'spacing'",
-                 COEFF, i, t.spacing, mass, i, atom->mass[i], i);
-    atom->set_mass(FLERR, i, mass);
-    t.lattice_mass = mass;
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -437,5 +395,5 @@ std::string SPHMaterials::words(int i, int j) const
         only_if(t.volume, "volume");
   return fmt::format("fluid {} k {} gamma {} nu {} alpha {}", t.eos.rho0, t.eos.k, t.eos.gamma,
                      t.nu, t.alpha) +
-      only_if(of_pair.support, "support");
+      only_if(of_pair.support, "support") + (atom->rmass ? only_if(t.spacing, "spacing") : "");
 }

@@ -21,18 +21,22 @@ class SPHMaterials : protected Pointers {
  public:
   SPHMaterials(class LAMMPS *lmp_) : Pointers(lmp_) {}
 
+  // by summation, from its rate, or by a summation that is right for a lattice
+  enum class Density : int { SUMMATION, CONTINUITY, CALIBRATED };
+
   struct Options {    // of pair_style, plain for the restart file
     sphcloth::KernelName kernel = sphcloth::KernelName::WENDLAND_C2;
     sphcloth::Precision precision = sphcloth::Precision::DOUBLE;
     double support = 0.0;
-    int tension = 0;       // 1: negative pressure acts, 0: it counts as zero
-    int continuity = 0;    // 1: density from its rate, 0: by summation
-    double delta = 0.1;    // diffusion of the density in the rate
-    int reinit = 0;        // steps between re-initializations of that density, 0: never
+    int tension = 0;    // 1: negative pressure acts, 0: it counts as zero
+    Density density = Density::SUMMATION;
+    double delta = 0.1;    // diffusion of the density in its rate
+    int reinit = 0;    // steps between re-initializations of that density, 0: never
   } options;
   void read_options(int narg, char **arg);
-  bool integrates_density() const { return options.continuity; }
-  bool diffuses() const { return options.continuity && options.delta > 0.0; }
+  bool integrates_density() const { return options.density == Density::CONTINUITY; }
+  bool diffuses() const { return integrates_density() && options.delta > 0.0; }
+  bool calibrates() const { return options.density == Density::CALIBRATED; }
 
   // of a boundary: none of its own; as much as each fluid particle; the mean of the fluid around it
   enum class Pressure : int { OWN, MIRROR, EXTRAPOLATE };
@@ -79,10 +83,7 @@ class SPHMaterials : protected Pointers {
   // both until the next read()
   void cache_pair_values();
   void forget_pair_values();
-  // number density of a square or cubic lattice by summation (1)
-  double lattice_sum(int i, double spacing) const;
-  // gives the types with a spacing the mass with which such a lattice has the rest density
-  void set_lattice_masses();
+  void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
   // what acts and what is stored, per mass, at a density: nothing below rest without tension
   double acting_pressure(const sphcloth::Tait &, double rho) const;
   double stored_energy(const sphcloth::Tait &, double rho) const;

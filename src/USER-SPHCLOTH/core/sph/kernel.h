@@ -142,23 +142,6 @@ template <class Kernel> KernelScale kernel_scale(double support, int dim)
   return s;
 }
 
-// sum_j W_ij, the particle itself included, on a square or cubic lattice
-
-template <class Kernel> double lattice_sum(double support, double spacing, int dim)
-{
-  const KernelScale s = kernel_scale<Kernel>(support, dim);
-  const int reach = static_cast<int>(support / spacing);
-  const int reach_z = dim == 3 ? reach : 0;
-  double sum = 0.0;
-  for (int i = -reach; i <= reach; i++)
-    for (int j = -reach; j <= reach; j++)
-      for (int k = -reach_z; k <= reach_z; k++) {
-        const double r = spacing * std::sqrt(static_cast<double>(i * i + j * j + k * k));
-        sum += s.w * Kernel::shape(r / support);
-      }
-  return sum;
-}
-
 }    // namespace sphcloth
 
 #endif

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "core/sph/kernel.h"
@@ -34,21 +35,22 @@ inline constexpr double NEAREST_FRICTION = 0.125;
 // times H: what comes slower than sound is sent back before that depth.
 inline constexpr double STOPPING_DEPTH = 0.5;
 
-// lambda and dlambda/ddelta, by cubic Hermite interpolation of exact values and slopes.  The slope
-// is that of the interpolation, so that a force made from it is the gradient of an energy.
+// lambda and its derivatives with respect to delta, by cubic Hermite interpolation of exact values
+// and slopes.  The slope is that of the interpolation, so that a force made from it is the gradient
+// of an energy.
 
 class WallTable {
  public:
   struct Value {
-    double lambda, slope;
+    double lambda, slope, curvature;
   };
 
   Value operator()(double delta) const
   {
-    if (!(delta < 1.0)) return {0.0, 0.0};    // nor is there a wall for what is no number
+    if (!(delta < 1.0)) return {0.0, 0.0, 0.0};    // nor is there a wall for what is no number
     if (delta < 0.0) {
       const Value front = (*this)(-delta);
-      return {1.0 - front.lambda, front.slope};
+      return {1.0 - front.lambda, front.slope, -front.curvature};
     }
     const double table_index = delta * PIECES;
     const int k = static_cast<int>(table_index);
@@ -57,7 +59,9 @@ class WallTable {
     const double sa = a.slope / PIECES, sb = b.slope / PIECES;
     const double rise = b.lambda - a.lambda;
     return {a.lambda + rise * t * t * (3.0 - 2.0 * t) + t * u * (sa * u - sb * t),
-            PIECES * (6.0 * rise * t * u + sa * u * (1.0 - 3.0 * t) + sb * t * (1.0 - 3.0 * u))};
+            PIECES * (6.0 * rise * t * u + sa * u * (1.0 - 3.0 * t) + sb * t * (1.0 - 3.0 * u)),
+            static_cast<double>(PIECES) * PIECES *
+                (6.0 * rise * (u - t) + sa * (6.0 * t - 4.0) + sb * (6.0 * t - 2.0))};
   }
 
  private:

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a wall adds to the density over rho0, a function of lambda.  The half-space adds lambda.
+// Its force is the gradient of the energy of the particles alone, half of what two fluids have
+// together, and so their pressure doubles at the wall.  This function has, at each layer of a
+// lattice that begins half a spacing away, what the layer lacks of its density, and twice what it
+// lacks of its gradient: the lattice is in equilibrium with one density and pressure.  Between the
+// layers it is the cubic Hermite interpolation of log f over log lambda; nearer than all it is
+// linear in lambda, since a steeper one would be stiffer than fluid, and farther a power of it.
+
+#ifndef SPHCLOTH_CORE_SPH_WALL_PROFILE_H
+#define SPHCLOTH_CORE_SPH_WALL_PROFILE_H
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "core/sph/calibration.h"
+#include "core/sph/plane_wall.h"
+
+namespace sphcloth {
+
+class WallProfile {
+ public:
+  WallProfile() = default;
+  // `reflection`: 1, or 2 where the wall has the pressure of the particle, too
+  WallProfile(const WallTable &, const LatticeSums &, double support_over_spacing,
+              double reflection);
+
+  bool changes() const { return !knots.empty(); }
+  WallTable::Value operator()(const WallTable::Value &of) const;
+
+ private:
+  struct Knot {    // log lambda, log f and its derivative; by falling lambda
+    double at, value, slope;
+  };
+  std::vector<Knot> knots;
+};
+
+inline WallProfile::WallProfile(const WallTable &table, const LatticeSums &lattice,
+                                double support_over_spacing, double reflection)
+{
+  constexpr double SMALLEST = 1e-4;    // of the first layer
+  for (const LatticeSums::Missing &missing : lattice.layers) {
+    if (missing.sum < SMALLEST * lattice.layers.front().sum) break;
+    const WallTable::Value wall =
+        table((static_cast<double>(knots.size()) + 0.5) / support_over_spacing);
+    const double fall = -wall.slope / (support_over_spacing * wall.lambda);
+    knots.push_back({std::log(wall.lambda), std::log(missing.sum),
+                     2.0 * missing.gradient / (reflection * missing.sum * fall)});
+  }
+}
+
+inline WallTable::Value WallProfile::operator()(const WallTable::Value &of) const
+{
+  if (knots.empty() || !(of.lambda > 0.0)) return of;
+  const double at = std::log(of.lambda);
+  const Knot &nearest = knots.front(), &farthest = knots.back();
+  if (at >= nearest.at) {
+    const double f = std::exp(nearest.value), rise = f * nearest.slope / std::exp(nearest.at);
+    return {f * (1.0 - nearest.slope) + rise * of.lambda, rise * of.slope, rise * of.curvature};
+  }
+  double value = farthest.value + farthest.slope * (at - farthest.at), slope = farthest.slope,
+         curvature = 0.0;
+  if (at > farthest.at) {
+    std::size_t k = 1;
+    while (at < knots[k].at) k++;
+    const Knot &a = knots[k - 1], &b = knots[k];
+    const double length = a.at - b.at, t = (at - b.at) / length, u = 1.0 - t;
+    const double rise = a.value - b.value, sa = a.slope * length, sb = b.slope * length;
+    value = b.value + rise * t * t * (3.0 - 2.0 * t) + t * u * (sb * u - sa * t);
+    slope = (6.0 * rise * t * u + sb * u * (1.0 - 3.0 * t) + sa * t * (1.0 - 3.0 * u)) / length;
+    curvature =
+        (6.0 * rise * (u - t) + sb * (6.0 * t - 4.0) + sa * (6.0 * t - 2.0)) / (length * length);
+  }
+  const double f = std::exp(value), fall = of.slope / of.lambda;
+  return {
+      f, f * slope * fall,
+      f * ((slope * (slope - 1.0) + curvature) * fall * fall + slope * of.curvature / of.lambda)};
+}
+
+// What several walls add together.  Half-spaces add the part of the kernel that they miss together;
+// with a profile, whose values may exceed 1, only a bounded part g = f/(1 + f^2) of each overlaps
+// with that of the others, so that each keeps a share of its force above 0.
+
+class JointWalls {
+ public:
+  void set(const std::vector<WallTable::Value> &half_spaces, const WallProfile &profile)
+  {
+    overlap = profile.changes();
+    walls = half_spaces;
+    for (WallTable::Value &wall : walls) wall = profile(wall);
+  }
+
+  double lambda() const;
+  // its derivative with respect to that of wall k
+  double share(std::size_t k) const;
+  // its derivatives with respect to delta of wall k; the second without that of the share
+  double slope(std::size_t k) const { return share(k) * walls[k].slope; }
+  double curvature(std::size_t k) const { return share(k) * walls[k].curvature; }
+
+ private:
+  bool overlap = false;
+  std::vector<WallTable::Value> walls;
+
+  static double common(double f) { return f / (1.0 + f * f); }
+};
+
+inline double JointWalls::lambda() const
+{
+  if (!overlap) return joint_lambda(walls);
+  double open = 1.0, sum = 0.0;
+  for (const WallTable::Value &wall : walls) {
+    open *= 1.0 - common(wall.lambda);
+    sum += wall.lambda - common(wall.lambda);
+  }
+  return 1.0 - open + sum;
+}
+
+inline double JointWalls::share(std::size_t k) const
+{
+  if (!overlap) return joint_share(walls, k);
+  double open = 1.0;
+  for (std::size_t l = 0; l < walls.size(); l++)
+    if (l != k) open *= 1.0 - common(walls[l].lambda);
+  const double sq = walls[k].lambda * walls[k].lambda;
+  return 1.0 - (1.0 - sq) / ((1.0 + sq) * (1.0 + sq)) * (1.0 - open);
+}
+
+}    // namespace sphcloth
+
+#endif

@@ -118,7 +118,7 @@ int FixPBDCloth::setmask()
 
 void FixPBDCloth::init()
 {
-  couplings.clear();
+  couplings = {&scaled};
   solved_here = {this};
   scaled.init();
   const ClothInput made_of(lmp, this, label);
@@ -255,7 +255,7 @@ void FixPBDCloth::begin_couplings()
   const double dt = update->dt;
   Vertices &p = vertices.p;
   const Vertices &start = vertices.start, &v = vertices.v;
-  for (int s = 0; !couplings.empty() && s < vertices.halo.n_owned(); s++) {
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
     const double *f = atom->f[vertices.halo.atom_of(s)];
     const double by = dt * force->ftm2v * vertices.inverse_mass[s];
     p[s].x = start[s].x + dt * (v[s].x + by * f[0]);
@@ -264,7 +264,6 @@ void FixPBDCloth::begin_couplings()
   }
   for (SolverCoupling *coupling : couplings)
     if (coupling->begin_step(start.data(), p.data(), dt)) present.push_back(coupling);
-  if (scaled.on()) present.push_back(&scaled);
 }
 
 // A held vertex is on its way from where its velocity says that it was to where it is.

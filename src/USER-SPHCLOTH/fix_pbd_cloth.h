@@ -77,7 +77,10 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   bool is_attached(int i) const { return held.is_attached(i); }
 
   // takes part in the projections until the next init()
-  void register_coupling(SolverCoupling *coupling) { couplings.push_back(coupling); }
+  void register_coupling(SolverCoupling *coupling)
+  {
+    couplings.insert(couplings.end() - 1, coupling);
+  }
   void register_first_coupling(SolverCoupling *coupling)
   {
     couplings.insert(couplings.begin(), coupling);
@@ -114,7 +117,8 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;
   ScaledVertices scaled;    // of those beside fluid
-  std::vector<SolverCoupling *> couplings, present;    // those that are near in this step
+  std::vector<SolverCoupling *> couplings;    // the last: `scaled`, which sees what others did
+  std::vector<SolverCoupling *> present;    // those that are near in this step
   std::vector<FixPBDCloth *> solved_here;    // cloths that this fix solves: itself, or none
 
   double holder_force[3];    // in the last step, this rank's part

@@ -3,7 +3,6 @@
 
 #include "core/sph/mass_scaling.h"
 
-#include "core/sph/lattice_modes.h"
 #include "water_and_sheet.h"
 
 #include <boost/test/unit_test.hpp>
@@ -27,9 +26,7 @@ class Scaled {
     std::vector<Stiffness> stiff(n);
     of.fluid->stiffness(of.p, stiff.data());
     of.fluid->vertex_gradients(of.p, is_vertex.data(), gradients.data());
-    const double factor = with_kernel(s.kernel, [&](auto kernel) {
-      return lattice_modes<decltype(kernel)>(s.support / SPACING, s.dim).sound;
-    });
+    const double factor = lattice_factor(s);
     for (std::size_t i = 0; i < n; i++) {
       if (s.type[i] != WATER) continue;
       const double sound_sq = of.sound[i] * of.sound[i];

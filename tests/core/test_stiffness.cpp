@@ -3,7 +3,6 @@
 
 #include "core/sph/stiffness.h"
 
-#include "core/sph/lattice_modes.h"
 #include "water_and_sheet.h"
 
 #include <boost/test/unit_test.hpp>
@@ -37,15 +36,13 @@ Frequency frequency(const Scene &s)
   std::vector<VertexRow> rows(n);
   const std::vector<int> is_vertex{0, 0, 1};
   of.fluid->stiffness(of.p, stiff.data());
-  const double factor = with_kernel(s.kernel, [&](auto kernel) {
-    return lattice_modes<decltype(kernel)>(s.support / SPACING, s.dim).sound;
-  });
+  const double factor = lattice_factor(s);
   of.fluid->vertex_stiffness(of.p, is_vertex.data(), of.sound.data(), vertices.data());
   for (std::size_t i = 0; i < n; i++)
     for (double *each : {&vertices[i].xx, &vertices[i].yy, &vertices[i].zz, &vertices[i].xy,
                          &vertices[i].xz, &vertices[i].yz})
       *each *= s.volume * s.volume / s.mass[i];
-  of.fluid->vertex_rows(of.p, is_vertex.data(), vertices.data(), rows.data());
+  of.fluid->vertex_rows(of.p, is_vertex.data(), vertices.data(), false, rows.data());
   double bound_sq = 0.0;
   for (std::size_t i = 0; i < n; i++)
     if (s.type[i] == WATER)

@@ -5,6 +5,7 @@
 #define SPHCLOTH_TESTS_CORE_WATER_AND_SHEET_H
 
 #include "core/sph/fluid.h"
+#include "core/sph/lattice_modes.h"
 
 #include <Eigen/Dense>
 
@@ -75,6 +76,15 @@ inline Scene lattice(int dim, int n, double disorder, double areal = 0.0, double
       s.add(SHEET, SPACING * Vector3d(n / 2 - 1, mesh * j, mesh * k),
             areal * std::pow(mesh * SPACING, dim - 1));
   return s;
+}
+
+// square of the fastest motion of a lattice of water, over what one of its particles sees alone
+
+inline double lattice_factor(const Scene &s)
+{
+  return with_kernel(s.kernel, [&](auto kernel) {
+    return lattice_modes<decltype(kernel)>(s.support / SPACING, s.dim).sound;
+  });
 }
 
 // Row k: s_k times the gradient of the density of fluid k over the positions of all

@@ -112,8 +112,8 @@ SolverError Substepping::error_of(const Constraints<N> &c, double allowed, doubl
       c, {inv_dt_sq(substeps), longest_sq, allowed, 1.0 / share - SINGLE_SWEEP_SOFTNESS});
 }
 
-// The last couplings of all cloths come last, and together: what couples cloths is the last of
-// each.
+// Couplings of all cloths that have as many behind them are called together: what couples cloths is
+// as near the end in each.
 
 template <class Do>
 static void for_each_coupling(const std::vector<Substepping *> &cloths, Do something)

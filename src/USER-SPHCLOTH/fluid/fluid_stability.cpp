@@ -105,10 +105,9 @@ void FluidStability::find_vertices(Fluid &core, const Particles &p,
 void FluidStability::find_rows(Fluid &core, const Particles &p,
                                const std::vector<FluidBoundary *> &boundaries, bool scaled)
 {
-  if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), rows.data());
+  if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), scaled, rows.data());
   core.for_active_fluid([&](int i, int) {
     VertexRow row = has_vertices ? rows[i] : VertexRow();
-    if (scaled) row.sum = 0.0;
     for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
     found[i].vertices_sq = sounds[i] * row.sum;
     found[i].friction += row.friction;

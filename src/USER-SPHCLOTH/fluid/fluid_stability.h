@@ -64,7 +64,7 @@ class FluidStability : protected Pointers {
                   const std::vector<FluidBoundary *> &);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
-  // ghosts of vertices have their numbers; those that are scaled have no part in it
+  // ghosts of vertices have their numbers; of those that are scaled friction alone counts
   void find_rows(sphcloth::Fluid &, const sphcloth::Particles &,
                  const std::vector<FluidBoundary *> &, bool scaled);
   void set_fluid_sq(int i, double frequency_sq) { found[i].fluid_sq = frequency_sq; }

@@ -55,7 +55,6 @@ void ScaledMass::find_kicks(double dt)
   kicks.resize(3 * static_cast<std::size_t>(atom->nmax));
   impulses.resize(kicks.size());
   for (const int i : beside) {
-    Vec3::Map(&impulses[3 * static_cast<std::size_t>(i)]).setZero();
     if (i >= atom->nlocal) continue;
     const double by = dt * force->ftm2v / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) kicks[3 * static_cast<std::size_t>(i) + d] = by * atom->f[i][d];
@@ -76,7 +75,7 @@ void ScaledMass::move_fluid(double dt)
         atom->v[i][d] += change;
         atom->x[i][d] += dt * change;
       }
-    std::fill_n(impulse, 3, 0.0);
+    std::fill_n(impulse, 3, 0.0);    // each cloth of a step gives its part anew
   }
 }
 

@@ -181,12 +181,13 @@ class Fluid {
 
   // For the limit of stability, of every active fluid particle, also without pressure.  Vertices
   // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
-  // weights, of all; then the rows, of vertices whose stiffness is complete, ghosts too
+  // weights, of all; then the rows, of vertices whose stiffness is complete, ghosts too; of
+  // scaled ones friction alone
   virtual void stiffness(const Particles &, Stiffness *) = 0;
   virtual void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                                 VertexStiffness *) = 0;
   virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
-                           VertexRow *) = 0;
+                           bool scaled, VertexRow *) = 0;
   // For mass scaling: of every active fluid particle the sum of |d rho/d x_j| e e^T over vertices
   // j, e along both; and the fluid beside each owned vertex that has a strength above 0, with the
   // stiffness strength |d rho/d x_j|

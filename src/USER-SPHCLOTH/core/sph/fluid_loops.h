@@ -57,7 +57,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void stiffness(const Particles &p, Stiffness *of) override { all_stiffness(p, of); }
   void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                         VertexStiffness *) override;
-  void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
+  void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *, bool scaled,
                    VertexRow *) override;
   void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) override;
   void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,

@@ -57,7 +57,6 @@ class MassScaling {
     return std::max(OF_FLUID * alone_sq, 4.0 * added / (MAX_ADDED * mass));
   }
 
-  MassScaling() = default;
   // A vertex of this inverse mass, and stiffness D_j, in a step of dt
   MassScaling(const Mat3 &stiffness, double inverse_mass_, double dt) :
       inverse_mass(inverse_mass_),
@@ -74,8 +73,8 @@ class MassScaling {
   }
 
  private:
-  double inverse_mass = 0.0;
-  Mat3 kept = Mat3::Identity();
+  double inverse_mass;
+  Mat3 kept;
 };
 
 inline Eigen::Vector3d direction(const VertexPairs::Pair &pair) { return {pair.x, pair.y, pair.z}; }

@@ -83,103 +83,108 @@ SPHCLOTH_INLINE typename FluidLoops<K, P>::Press FluidLoops<K, P>::press(const P
   return {dx * inv_r, dy * inv_r, dz * inv_r, t.response * slope * r, slope};
 }
 
+// Of the lists: the vertices, and the pairs of vertices and fluid
+
+struct VertexWalk {
+  const FluidModel &model;
+  const DualLists &lists;
+  const int *is_vertex;
+
+  // act(j, type) for every owned one
+  template <class Act> SPHCLOTH_INLINE void for_vertices(Act act) const
+  {
+    for (int t = 1; t <= model.n_types; t++)
+      if (is_vertex[t])
+        for (int slot = lists.begin(t); slot < lists.begin(t + 1); slot++) act(lists.at(slot), t);
+  }
+  // act(neighbor, terms)
+  template <class Act> SPHCLOTH_INLINE void for_fluid_beside(int vertex, int type, Act act) const
+  {
+    const auto is_fluid = [this](int t) SPHCLOTH_LAMBDA { return model.role[t] == Role::FLUID; };
+    for_pairs(vertex, type, is_fluid, act);
+  }
+  template <class Act> SPHCLOTH_INLINE void for_vertices_beside(int fluid, int type, Act act) const
+  {
+    for_pairs(fluid, type, [this](int t) SPHCLOTH_LAMBDA { return is_vertex[t] != 0; }, act);
+  }
+
+ private:
+  template <class IsPartner, class Act>
+  SPHCLOTH_INLINE void for_pairs(int of, int type, IsPartner is_partner, Act act) const
+  {
+    const int slot = lists.slot(of);
+    for (const int other : lists.present_types()) {
+      if (!is_partner(other)) continue;
+      const PairTerms &terms = model.pair(type, other);
+      const NeighborSpan near = lists(slot, other);
+      for (int k = 0; k < near.n; k++) act(near.of[k], terms);
+    }
+  }
+};
+
 template <class K, class P>
 void FluidLoops<K, P>::vertex_stiffness(const Particles &p, const int *is_vertex,
                                         const double *weight, VertexStiffness *of)
 {
-  for (int type = 1; type <= model.n_types; type++) {
-    if (!is_vertex[type]) continue;
-    for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
-      const int j = lists.at(slot);
-      VertexStiffness v;
-      for (const int other : lists.present_types()) {
-        if (!is_fluid(other)) continue;
-        const PairTerms &t = model.pair(type, other);
-        const NeighborSpan near = lists(slot, other);
-        for (int k = 0; k < near.n; k++) {
-          const int i = near.of[k];
-          const Press s = press(p, i, j, t);
-          v.friction += friction_of(t) * p.mass_or_volume[i] * s.slope / p.rho[i];
-          v.add(weight[i] * s.size, s.x, s.y, s.z);
-        }
-      }
-      of[j] = v;
-    }
-  }
+  const VertexWalk walk{model, lists, is_vertex};
+  walk.for_vertices([&](int j, int type) SPHCLOTH_LAMBDA {
+    VertexStiffness v;
+    walk.for_fluid_beside(j, type, [&](int i, const PairTerms &t) SPHCLOTH_LAMBDA {
+      const Press s = press(p, i, j, t);
+      v.friction += friction_of(t) * p.mass_or_volume[i] * s.slope / p.rho[i];
+      v.add(weight[i] * s.size, s.x, s.y, s.z);
+    });
+    of[j] = v;
+  });
 }
 
 template <class K, class P>
 void FluidLoops<K, P>::vertex_rows(const Particles &p, const int *is_vertex,
-                                   const VertexStiffness *vertices, VertexRow *of)
+                                   const VertexStiffness *vertices, bool scaled, VertexRow *of)
 {
-  for (int t = 1; t <= model.n_types; t++) {
-    if (!is_fluid(t)) continue;
-    for (const int slot : selection.of(t)) {
-      const int i = lists.at(slot);
-      VertexRow row;
-      for (const int other : lists.present_types()) {
-        if (!is_vertex[other]) continue;
-        const NeighborSpan near = lists(slot, other);
-        for (int k = 0; k < near.n; k++) {
-          const int j = near.of[k];
-          const Press s = press(p, i, j, model.pair(t, other));
-          if (s.slope == 0.0) continue;
-          const VertexStiffness &v = vertices[j];
-          row.sum += s.size * std::sqrt(v.trace() * v.along(s.x, s.y, s.z));
-          row.friction = std::max(row.friction, v.friction);
-        }
-      }
-      of[i] = row;
-    }
-  }
+  const VertexWalk walk{model, lists, is_vertex};
+  for_active_fluid([&](int i, int type) SPHCLOTH_LAMBDA {
+    VertexRow row;
+    walk.for_vertices_beside(i, type, [&](int j, const PairTerms &t) SPHCLOTH_LAMBDA {
+      const Press s = press(p, i, j, t);
+      if (s.slope == 0.0) return;
+      const VertexStiffness &v = vertices[j];
+      if (!scaled) row.sum += s.size * std::sqrt(v.trace() * v.along(s.x, s.y, s.z));
+      row.friction = std::max(row.friction, v.friction);
+    });
+    of[i] = row;
+  });
 }
 
 template <class K, class P>
 void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex, DirectionSums *of)
 {
-  for (int t = 1; t <= model.n_types; t++) {
-    if (!is_fluid(t)) continue;
-    for (const int slot : selection.of(t)) {
-      const int i = lists.at(slot);
-      DirectionSums sums;
-      for (const int other : lists.present_types()) {
-        if (!is_vertex[other]) continue;
-        const NeighborSpan near = lists(slot, other);
-        for (int k = 0; k < near.n; k++) {
-          const int j = near.of[k];
-          const Press s = press(p, i, j, model.pair(t, other));
-          sums.add(p.mass_or_volume[j] * std::fabs(s.size), s.x, s.y, s.z);
-        }
-      }
-      of[i] = sums;
-    }
-  }
+  const VertexWalk walk{model, lists, is_vertex};
+  for_active_fluid([&](int i, int type) SPHCLOTH_LAMBDA {
+    DirectionSums sums;
+    walk.for_vertices_beside(i, type, [&](int j, const PairTerms &t) SPHCLOTH_LAMBDA {
+      const Press s = press(p, i, j, t);
+      sums.add(p.mass_or_volume[j] * std::fabs(s.size), s.x, s.y, s.z);
+    });
+    of[i] = sums;
+  });
 }
 
 template <class K, class P>
 void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
                                     const double *strength, VertexPairs &pairs)
 {
+  const VertexWalk walk{model, lists, is_vertex};
   pairs.clear();
-  for (int type = 1; type <= model.n_types; type++) {
-    if (!is_vertex[type]) continue;
-    for (int slot = lists.begin(type); slot < lists.begin(type + 1); slot++) {
-      const int j = lists.at(slot);
-      for (const int other : lists.present_types()) {
-        if (!is_fluid(other)) continue;
-        const PairTerms &t = model.pair(type, other);
-        const NeighborSpan near = lists(slot, other);
-        for (int k = 0; k < near.n; k++) {
-          const int i = near.of[k];
-          if (!(strength[i] > 0.0)) continue;
-          const Press s = press(p, i, j, t);
-          const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
-          if (stiffness > 0.0) pairs.add({i, s.x, s.y, s.z, stiffness});
-        }
-      }
-      pairs.end_vertex(j);
-    }
-  }
+  walk.for_vertices([&](int j, int type) SPHCLOTH_LAMBDA {
+    walk.for_fluid_beside(j, type, [&](int i, const PairTerms &t) SPHCLOTH_LAMBDA {
+      if (!(strength[i] > 0.0)) return;
+      const Press s = press(p, i, j, t);
+      const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
+      if (stiffness > 0.0) pairs.add({i, s.x, s.y, s.z, stiffness});
+    });
+    pairs.end_vertex(j);
+  });
 }
 
 }    // namespace sphcloth

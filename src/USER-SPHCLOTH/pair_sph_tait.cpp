@@ -64,7 +64,7 @@ void PairSPHTait::settings(int narg, char **arg)
 {
   fluid.forget();
   fluid.read_options(narg, arg);
-  fluid.lattices.set_masses();
+  if (allocated) fluid.lattices.set_masses();
 }
 
 void PairSPHTait::coeff(int narg, char **arg)

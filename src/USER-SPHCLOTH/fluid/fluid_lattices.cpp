@@ -95,6 +95,13 @@ void FluidLattices::calibrate()
   }
 }
 
+double FluidLattices::slope_at_rest() const
+{
+  for (int type = 1; type <= atom->ntypes; type++)
+    if (materials.is_fluid(type)) return slope(type, materials.equation_of_state(type).rho0);
+  return 1.0;
+}
+
 std::vector<WallProfile> FluidLattices::wall_profiles(const WallTable &table,
                                                       double reflection) const
 {

@@ -33,6 +33,7 @@ class FluidLattices : protected Pointers {
   // over its density
   double density(int type, double summed) const { return calibrations[type].density(summed); }
   double slope(int type, double rho) const { return calibrations[type].slope(rho); }
+  double slope_at_rest() const;    // of the first fluid
   double sum(int type) const { return calibrations[type].sum; }
   // what a wall adds to the density of each type, with `reflection` times its pressure
   std::vector<sphcloth::WallProfile> wall_profiles(const sphcloth::WallTable &,

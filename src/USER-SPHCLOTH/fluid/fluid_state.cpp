@@ -128,8 +128,11 @@ bool FluidState::evaluated() const
 
 double FluidState::pressure_of(int i) const
 {
-  double p = p_over_rho2[i] * atom->rho[i] * atom->rho[i];
-  if (is_fluid(atom->type[i]))
+  const int type = atom->type[i];
+  const double rho = atom->rho[i];
+  double p = p_over_rho2[i] * rho * rho;
+  if (calibrates()) p /= is_fluid(type) ? lattices.slope(type, rho) : lattices.slope_at_rest();
+  if (is_fluid(type))
     for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
   return p;
 }

@@ -4,12 +4,14 @@
 // together, and so their pressure doubles at the wall.  This function has, at each layer of a
 // lattice that begins half a spacing away, what the layer lacks of its density, and twice what it
 // lacks of its gradient: the lattice is in equilibrium with one density and pressure.  Between the
-// layers it is the cubic Hermite interpolation of log f over log lambda; nearer than all it is
-// linear in lambda, since a steeper one would be stiffer than fluid, and farther a power of it.
+// layers it is the cubic Hermite interpolation of log f over log lambda, outside a power of lambda.
+// Nearer than NEAR_LAYER times the lambda of the first layer it is linear: a power would be stiffer
+// than fluid where a particle hits the wall, and shorten the step.
 
 #ifndef SPHCLOTH_CORE_SPH_WALL_PROFILE_H
 #define SPHCLOTH_CORE_SPH_WALL_PROFILE_H
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -34,6 +36,7 @@ class WallProfile {
     double at, value, slope;
   };
   std::vector<Knot> knots;
+  static constexpr double NEAR_LAYER = 1.1;
 };
 
 inline WallProfile::WallProfile(const WallTable &table, const LatticeSums &lattice,
@@ -56,8 +59,12 @@ inline WallTable::Value WallProfile::operator()(const WallTable::Value &of) cons
   const double at = std::log(of.lambda);
   const Knot &nearest = knots.front(), &farthest = knots.back();
   if (at >= nearest.at) {
-    const double f = std::exp(nearest.value), rise = f * nearest.slope / std::exp(nearest.at);
-    return {f * (1.0 - nearest.slope) + rise * of.lambda, rise * of.slope, rise * of.curvature};
+    const double first = std::exp(nearest.at), m = nearest.slope;
+    const double power_to = std::min(of.lambda, NEAR_LAYER * first), beyond = of.lambda - power_to;
+    const double f = std::exp(nearest.value) * std::pow(power_to / first, m);
+    const double slope = m * f / power_to, bend = beyond > 0.0 ? 0.0 : (m - 1.0) * slope / power_to;
+    return {f + slope * beyond, slope * of.slope,
+            slope * of.curvature + bend * of.slope * of.slope};
   }
   double value = farthest.value + farthest.slope * (at - farthest.at), slope = farthest.slope,
          curvature = 0.0;

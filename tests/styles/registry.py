@@ -211,6 +211,12 @@ BALLOONS = Scene(
     exact_on=0,  # LAMMPS turns positions into shares of a tilted box and back
 )
 
+# with a calibrated density: walls, boundary particles beside contact, a mesh, unequal steps
+CALIBRATED = ("sph/tait 0.1[m]", "sph/tait 0.1[m] density calibrated")
+CALIBRATED_TANK = replace(TANK, forces=TANK.forces.replace(*CALIBRATED))
+CALIBRATED_BLOCK = replace(BLOCK, forces=BLOCK.forces.replace(*CALIBRATED))
+CALIBRATED_MESH = replace(SHEET_AS_WALL, forces=SHEET_AS_WALL.forces.replace(*CALIBRATED), steps=35)
+
 SCENES = {
     "drop": DROP,
     "rain": RAIN,
@@ -224,6 +230,9 @@ SCENES = {
     "lifted drop": LIFT,
     "gauze": GAUZE,
     "balloons": BALLOONS,
+    "calibrated tank": CALIBRATED_TANK,
+    "calibrated block steps": CALIBRATED_BLOCK,
+    "calibrated sheet as wall": CALIBRATED_MESH,
 }
 
 # ---------------------------------------------------------------------- styles
@@ -277,6 +286,14 @@ ENTRIES = (
         ),
     ),
     Entry("pair", "sph/tait", "flow", output={"evdwl": "J"}),
+    Entry("pair", "sph/tait", "calibrated block steps", output={"evdwl": "J"}),
+    Entry("pair", "sph/tait", "calibrated sheet as wall", output={"evdwl": "J"}),
+    Entry(
+        "fix",
+        "wall/sph",
+        "calibrated tank",
+        output={f"f_wall[{k}]": "N" for k in range(1, 19)},
+    ),
     Entry("bond", "pbd", "drop", output={"f_sheet[4]": ""}, commands=("bond_coeff 1 1.0",)),
     Entry(
         "bond",

@@ -211,11 +211,13 @@ BALLOONS = Scene(
     exact_on=0,  # LAMMPS turns positions into shares of a tilted box and back
 )
 
-# with a calibrated density: walls, boundary particles beside contact, a mesh, unequal steps
-CALIBRATED = ("sph/tait 0.1[m]", "sph/tait 0.1[m] density calibrated")
-CALIBRATED_TANK = replace(TANK, forces=TANK.forces.replace(*CALIBRATED))
-CALIBRATED_BLOCK = replace(BLOCK, forces=BLOCK.forces.replace(*CALIBRATED))
-CALIBRATED_MESH = replace(SHEET_AS_WALL, forces=SHEET_AS_WALL.forces.replace(*CALIBRATED), steps=35)
+
+# walls, boundary particles beside contact and a mesh beside water of a calibrated density
+def calibrated(scene: Scene, steps: int) -> Scene:
+    """Return the scene with such water."""
+    forces = scene.forces.replace("sph/tait 0.1[m]", "sph/tait 0.1[m] density calibrated")
+    return replace(scene, forces=forces, steps=steps)
+
 
 SCENES = {
     "drop": DROP,
@@ -230,9 +232,9 @@ SCENES = {
     "lifted drop": LIFT,
     "gauze": GAUZE,
     "balloons": BALLOONS,
-    "calibrated tank": CALIBRATED_TANK,
-    "calibrated block steps": CALIBRATED_BLOCK,
-    "calibrated sheet as wall": CALIBRATED_MESH,
+    "calibrated tank": calibrated(TANK, 50),
+    "calibrated block steps": calibrated(BLOCK, 20),
+    "calibrated sheet as wall": calibrated(SHEET_AS_WALL, 35),
 }
 
 # ---------------------------------------------------------------------- styles
@@ -271,6 +273,7 @@ class Entry:
 
 SHEET = {"f_sheet[1]": "N", "f_sheet[2]": "N", "f_sheet[3]": "N", "f_sheet[4]": ""}
 AIR = {"f_air[1]": "N", "f_air[3]": "N", "f_air[4]": "J/s", "f_air[5]": "J", "f_air[6]": "m^2"}
+WALL = {f"f_wall[{k}]": "N" for k in range(1, 19)}
 CLOTH = "fix s cloth pbd/cloth\n"
 
 ENTRIES = (
@@ -288,12 +291,7 @@ ENTRIES = (
     Entry("pair", "sph/tait", "flow", output={"evdwl": "J"}),
     Entry("pair", "sph/tait", "calibrated block steps", output={"evdwl": "J"}),
     Entry("pair", "sph/tait", "calibrated sheet as wall", output={"evdwl": "J"}),
-    Entry(
-        "fix",
-        "wall/sph",
-        "calibrated tank",
-        output={f"f_wall[{k}]": "N" for k in range(1, 19)},
-    ),
+    Entry("fix", "wall/sph", "calibrated tank", output=WALL),
     Entry("bond", "pbd", "drop", output={"f_sheet[4]": ""}, commands=("bond_coeff 1 1.0",)),
     Entry(
         "bond",
@@ -411,7 +409,7 @@ ENTRIES = (
         "fix",
         "wall/sph",
         "tank",
-        output={f"f_wall[{k}]": "N" for k in range(1, 19)},
+        output=WALL,
         commands=("fix x all wall/sph xlo -1",),
         flags="[xyz](lo|hi)",
     ),

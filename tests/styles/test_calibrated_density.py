@@ -207,7 +207,7 @@ def test_a_wall_of_boundary_particles_completes_a_lattice():
     inside = (kind == 1) & (x[:, 2] < 0.3)
     # volumes at the open side of the wall are larger
     np.testing.assert_allclose(rho[inside & (x[:, 2] > DX)], RHO0, rtol=1e-6)
-    np.testing.assert_allclose(rho[inside], RHO0, rtol=0.02)
+    np.testing.assert_allclose(rho[inside], RHO0, rtol=0.014)
 
 
 def test_energy_of_water_that_falls_into_a_corner():

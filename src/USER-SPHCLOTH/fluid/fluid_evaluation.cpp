@@ -83,8 +83,6 @@ void FluidEvaluation::set_pair(int i, int j, double listed)
   PairTerms t = mix(i, j);
   const double scale = model.pressure_scale[i] * model.pressure_scale[j];
   t.stiffness /= is_fluid(i) && is_fluid(j) ? std::sqrt(scale) : scale;
-  // as much as fluid in the place of a wall
-  if (is_measured(i) || is_measured(j)) t.rho0 *= lattices.sum(is_fluid(i) ? i : j);
   // density diffuses within a fluid, not across the step between two
   if (i == j && integrates_density())
     t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);

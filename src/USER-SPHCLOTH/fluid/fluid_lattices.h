@@ -29,12 +29,10 @@ class FluidLattices : protected Pointers {
 
   // of all types, from their spacings or masses
   void calibrate();
-  // from the density sum to the density, the derivative of that, and the sum of a lattice at rest
-  // over its density
+  // from the density sum to the density, and the derivative of that
   double density(int type, double summed) const { return calibrations[type].density(summed); }
   double slope(int type, double rho) const { return calibrations[type].slope(rho); }
   double slope_at_rest() const;    // of the first fluid
-  double sum(int type) const { return calibrations[type].sum; }
   // what a wall adds to the density of each type, with `reflection` times its pressure
   std::vector<sphcloth::WallProfile> wall_profiles(const sphcloth::WallTable &,
                                                    double reflection) const;

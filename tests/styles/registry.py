@@ -212,9 +212,8 @@ BALLOONS = Scene(
 )
 
 
-# walls, boundary particles beside contact and a mesh beside water of a calibrated density
 def calibrated(scene: Scene, steps: int) -> Scene:
-    """Return the scene with such water."""
+    """Return the scene with water of a calibrated density."""
     forces = scene.forces.replace("sph/tait 0.1[m]", "sph/tait 0.1[m] density calibrated")
     return replace(scene, forces=forces, steps=steps)
 

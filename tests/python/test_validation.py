@@ -342,6 +342,7 @@ def test_calibrated_density_is_right_at_two_spacings(tmp_path: Path, sound: str)
         wall="own",
         density="calibrated",
         sound=sound,
+        alpha="0.1",
         time="0.5",
     ).metrics
     assert abs(metrics["base_force"].value) < 0.01

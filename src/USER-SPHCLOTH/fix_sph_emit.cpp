@@ -270,10 +270,11 @@ struct FixSPHEmit::Record {
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(
-      fp,
-      Record{
-          emitted, layers, start, {momentum[0], momentum[1], momentum[2]}, physical_time(update)});
+  write_record(fp, Record{emitted,
+                          layers,
+                          start,
+                          {momentum[0], momentum[1], momentum[2]},
+                          physical_time(update)});
 }
 
 void FixSPHEmit::restart(char *buf)

@@ -14,7 +14,6 @@
 #ifndef SPHCLOTH_CORE_SPH_CALIBRATION_H
 #define SPHCLOTH_CORE_SPH_CALIBRATION_H
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -60,7 +59,6 @@ template <class Kernel> LatticeSums lattice_sums(double support_over_spacing, in
 struct Calibration {
   double rho0 = 0.0, sum = 1.0, exponent = 1.0;
 
-  bool changes() const { return sum != 1.0 || exponent != 1.0; }
   double density(double summed) const
   {
     return rho0 * std::pow(summed / (sum * rho0), 1.0 / exponent);

@@ -35,6 +35,21 @@ inline constexpr double NEAREST_FRICTION = 0.125;
 // times H: what comes slower than sound is sent back before that depth.
 inline constexpr double STOPPING_DEPTH = 0.5;
 
+// A cubic Hermite piece that rises from `start`, with slopes a and b at its ends, and its
+// derivatives with respect to 0 <= t <= 1
+
+struct HermitePiece {
+  double value, slope, curvature;
+};
+
+inline HermitePiece hermite(double start, double rise, double a, double b, double t)
+{
+  const double u = 1.0 - t;
+  return {start + rise * t * t * (3.0 - 2.0 * t) + t * u * (a * u - b * t),
+          6.0 * rise * t * u + a * u * (1.0 - 3.0 * t) + b * t * (1.0 - 3.0 * u),
+          6.0 * rise * (u - t) + a * (6.0 * t - 4.0) + b * (6.0 * t - 2.0)};
+}
+
 // lambda and its derivatives with respect to delta, by cubic Hermite interpolation of exact values
 // and slopes.  The slope is that of the interpolation, so that a force made from it is the gradient
 // of an energy.
@@ -54,14 +69,11 @@ class WallTable {
     }
     const double table_index = delta * PIECES;
     const int k = static_cast<int>(table_index);
-    const double t = table_index - k, u = 1.0 - t;
     const Node &a = nodes[k], &b = nodes[k + 1];
-    const double sa = a.slope / PIECES, sb = b.slope / PIECES;
-    const double rise = b.lambda - a.lambda;
-    return {a.lambda + rise * t * t * (3.0 - 2.0 * t) + t * u * (sa * u - sb * t),
-            PIECES * (6.0 * rise * t * u + sa * u * (1.0 - 3.0 * t) + sb * t * (1.0 - 3.0 * u)),
-            static_cast<double>(PIECES) * PIECES *
-                (6.0 * rise * (u - t) + sa * (6.0 * t - 4.0) + sb * (6.0 * t - 2.0))};
+    const HermitePiece piece =
+        hermite(a.lambda, b.lambda - a.lambda, a.slope / PIECES, b.slope / PIECES, table_index - k);
+    return {piece.value, PIECES * piece.slope,
+            static_cast<double>(PIECES) * PIECES * piece.curvature};
   }
 
  private:

@@ -72,12 +72,12 @@ inline WallTable::Value WallProfile::operator()(const WallTable::Value &of) cons
     std::size_t k = 1;
     while (at < knots[k].at) k++;
     const Knot &a = knots[k - 1], &b = knots[k];
-    const double length = a.at - b.at, t = (at - b.at) / length, u = 1.0 - t;
-    const double rise = a.value - b.value, sa = a.slope * length, sb = b.slope * length;
-    value = b.value + rise * t * t * (3.0 - 2.0 * t) + t * u * (sb * u - sa * t);
-    slope = (6.0 * rise * t * u + sb * u * (1.0 - 3.0 * t) + sa * t * (1.0 - 3.0 * u)) / length;
-    curvature =
-        (6.0 * rise * (u - t) + sb * (6.0 * t - 4.0) + sa * (6.0 * t - 2.0)) / (length * length);
+    const double length = a.at - b.at;
+    const HermitePiece piece = hermite(b.value, a.value - b.value, b.slope * length,
+                                       a.slope * length, (at - b.at) / length);
+    value = piece.value;
+    slope = piece.slope / length;
+    curvature = piece.curvature / (length * length);
   }
   const double f = std::exp(value), fall = of.slope / of.lambda;
   return {

@@ -125,6 +125,39 @@ BOOST_AUTO_TEST_CASE(a_load_that_no_hardening_bears_is_not_taken_for_held)
   }
 }
 
+// A load that comes at once stretches edges farther than the springs that it needs would be.
+// Springs that are as hard as it needs would give back more at this strain than it has put in.
+
+BOOST_AUTO_TEST_CASE(an_impact_raises_the_allowed_strain_to_what_the_substeps_have_borne)
+{
+  SubstepLength length;
+  const auto step = [&](double dt, double hardest) {
+    length.substeps(dt, 10);
+    length.found(hardest, 1.0);
+  };
+  step(DT, 1.0);
+  step(DT, 0.3);
+  BOOST_TEST(!length.was_too_soft());
+  step(DT, 0.01);
+  BOOST_TEST(length.was_too_soft());
+  length.stretched(5.0);
+  // springs at that strain are as hard as the substeps were
+  BOOST_TEST(hardness(5.0 / length.yield()) == length.state.hardness,
+             boost::test_tools::tolerance(1e-12));
+  const double raised = length.yield();
+  // what has not been stretched changes nothing
+  length.stretched(0.1);
+  BOOST_TEST(length.yield() == raised);
+  // it returns in time, not in steps
+  step(DT, 0.01);
+  const double after_one = length.yield();
+  for (int n = 0; n < 10; n++) step(0.1 * DT, 0.01);
+  BOOST_TEST(raised / after_one == 1.03, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(after_one / length.yield() == 1.03, boost::test_tools::tolerance(1e-12));
+  for (int n = 0; n < 200; n++) step(DT, 1.0);
+  BOOST_TEST(length.yield() == 1.0);
+}
+
 BOOST_AUTO_TEST_CASE(given_substeps_are_followed_down_slowly_and_up_at_once)
 {
   SubstepLength length;

@@ -80,9 +80,9 @@ double Substepping::part_with_forces() const { return 1.0 - (1.0 - first_kick())
 
 // of all ranks
 
-double Substepping::strain_at_start() const
+double Substepping::largest_strain(const Vertices &at, double softness) const
 {
-  const double mine = largest_error(constraints.distance, vertices.start.data());
+  const double mine = largest_error(constraints.distance, at.data(), softness);
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
@@ -98,8 +98,14 @@ void Substepping::end_step()
   const double mine[2] = {-std::min(edges.hardest, hinges.hardest), edges.largest};
   double all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  length.found(-all[0], all[1] / allowed_strain());
+  const double allowed_then = allowed_strain();
+  length.found(-all[0], all[1] / allowed_then);
+  if (length.was_too_soft())
+    length.stretched(largest_strain(vertices.p, softest(max_edge_share()) * longest_sq()) /
+                     allowed_then);
 }
+
+double Substepping::longest_sq() const { return std::pow(length.longest(), 2) * force->ftm2v; }
 
 // of this rank's constraints, from the multipliers of the last sweep
 
@@ -107,9 +113,7 @@ template <std::size_t N>
 SolverError Substepping::error_of(const Constraints<N> &c, double allowed, double share,
                                   int substeps) const
 {
-  const double longest_sq = std::pow(length.longest(), 2) * force->ftm2v;
-  return solver_error(
-      c, {inv_dt_sq(substeps), longest_sq, allowed, 1.0 / share - SINGLE_SWEEP_SOFTNESS});
+  return solver_error(c, {inv_dt_sq(substeps), longest_sq(), allowed, softest(share)});
 }
 
 // Couplings of all cloths that have as many behind them are called together: what couples cloths is
@@ -153,7 +157,8 @@ void Substepping::substep(int n, const std::vector<Substepping *> &cloths)
 void Substepping::begin_substep(int n)
 {
   const double dt = substep_dt();
-  if (follows_load() && !started && n == 0) length.begin(strain_at_start() / options.strain);
+  if (follows_load() && !started && n == 0)
+    length.begin(largest_strain(vertices.start, 0.0) / options.strain);
   // before the forces: weight is not damped
   if (const int together = damping_groups.done_in(n); options.damping > 0.0 && together)
     damp(together);

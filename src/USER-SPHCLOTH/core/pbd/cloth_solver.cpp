@@ -451,12 +451,13 @@ double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
   return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
 }
 
-double largest_error(const Constraints<2> &c, const Vertex *p)
+double largest_error(const Constraints<2> &c, const Vertex *p, double softness)
 {
   double largest = 0.0;
   for (int m = 0; m < c.size(); m++) {
-    if (!c.hard[m] || c.compliance[m] > 0.0 || c.weight[m] == 0.0) continue;
-    const double error = error_of(c, p, m);
+    if (!c.hard[m] || c.weight[m] == 0.0) continue;
+    const double rigid = softness * c.weight[m], all = rigid + c.compliance[m];
+    const double error = error_of(c, p, m) * (c.compliance[m] > 0.0 ? rigid / all : 1.0);
     if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
     largest = std::max(largest, std::fabs(error) * c.per_size[m]);
   }

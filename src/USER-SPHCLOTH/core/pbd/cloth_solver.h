@@ -176,8 +176,9 @@ using OnHeld = std::function<void(int, const Vec3 &)>;
 void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 
-// of hard constraints that can move, |C| over the size; of those that only pull, where they do
-double largest_error(const Constraints<2> &, const Vertex *p);
+// Of hard constraints that can move, |C| over the size; of those that only pull, where they do.  Of
+// one with a compliance the share that a rigid one would take, as soft as `softness` times W.
+double largest_error(const Constraints<2> &, const Vertex *p, double softness);
 
 // C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
 double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);

@@ -19,6 +19,7 @@ class SubstepLength {
   {
     constexpr double SPARED = 0.1;    // of a substep, which a little load would need
     state.longest = std::max(state.longest, dt / usual);
+    of_longest_step = dt / (usual * state.longest);
     state.hardness = expected();
     return std::ceil(dt / (state.longest * std::sqrt(state.hardness)) - SPARED);
   }
@@ -38,6 +39,20 @@ class SubstepLength {
     state.hardest_before = state.hardest;
     state.hardest = hardest;
     watch(strain);
+  }
+
+  // Were substeps much too long for the load?  Then edges have given way farther than springs would
+  // that are as hard as the load needs.
+  bool was_too_soft() const { return state.hardest < TOO_SOFT * state.hardness; }
+
+  // How far they have, over the strain that was allowed then.  The strain that is allowed is raised
+  // so that springs at this strain are as hard as the substeps have made them: harder ones would
+  // give back more than they took.
+  void stretched(double strain)
+  {
+    const double root = 1.0 / std::sqrt(state.hardness);
+    const double y = std::pow((root - 1.0) / HARDENING, 0.25);
+    state.yield *= std::max(1.0, strain / std::clamp(y, SOFT, MAX_OF_ALLOWED));
   }
 
   // A softness that is not bounded by a strain: it follows substeps that are given, if they become
@@ -70,6 +85,9 @@ class SubstepLength {
  private:
   static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0, STRAINED = 4.0;
   static constexpr double SOFT = 1.0 / 3.0;    // of the allowed strain: an edge is hardly harder
+  static constexpr double TOO_SOFT = 0.25;    // a load grows faster than twofold in a step
+  static constexpr double CHANGE = 1.03;    // of the yield, in a step
+  double of_longest_step = 1.0;    // the length of the step over that of the longest
 
   // A load that grows hardens in the coming step as it did in the last one.  In a step the hardness
   // doubles at the utmost, since what is stretched already would pull as much harder, and substeps
@@ -81,6 +99,12 @@ class SubstepLength {
     return std::clamp(state.hardest * grows, state.hardness * FASTEST, state.hardness * RELAXES);
   }
 
+  // By time: what is allowed less pulls at what is stretched.
+  void shrink_yield()
+  {
+    state.yield = std::max(1.0, state.yield / std::pow(CHANGE, of_longest_step));
+  }
+
   // Edges that are strained at the start are as soft as if they were allowed to be, until they
   // shrink.  Where edges harden no further for many steps, more is allowed from step to step,
   // until the constraints are soft again.  A load stretches them by as much more, then that was of
@@ -88,7 +112,7 @@ class SubstepLength {
 
   void watch(double strain)
   {
-    constexpr double STEPS_ABOVE = 30.0, CHANGE = 1.03, GROWS = 1.25, AT_REST = 300.0;
+    constexpr double STEPS_ABOVE = 30.0, GROWS = 1.25, AT_REST = 300.0;
     State &s = state;
     if (s.phase == YIELDS) {
       s.yield *= CHANGE;
@@ -98,7 +122,7 @@ class SubstepLength {
     }
     const bool yields_still = s.phase == HELD || s.phase == STRAINED;
     s.steps = strain > MAX_OF_ALLOWED || s.phase == STRAINED ? s.steps + 1.0 : 0.0;
-    if (!yields_still || strain < SOFT * SOFT) s.yield = std::max(1.0, s.yield / CHANGE);
+    if (!yields_still || strain < SOFT * SOFT) shrink_yield();
     if (s.phase == STRAINED) {
       if (s.steps > AT_REST) s.phase = HELD;
       if (strain * s.yield < 1.0) s.phase = BORNE;

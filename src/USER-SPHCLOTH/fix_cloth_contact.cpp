@@ -93,9 +93,10 @@ void FixClothContact::init()
   if (walls) {
     walls->init(fluid);
     for (std::size_t k = 0; k < surfaces.size(); k++)
-      walls->add(cloths[k], &surfaces[k]->triangles);
+      walls->add(cloths[k], &surfaces[k]->triangles, MeshBoundary::Mesh::CLOTH);
     for (std::size_t k = 0; k < obstacle_surfaces.size(); k++)
-      walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles);
+      walls->add(obstacles[k].get(), &obstacle_surfaces[k]->triangles,
+                 MeshBoundary::Mesh::OBSTACLE);
   }
   pore_distance = 0.0;
   require_ghosts();

@@ -69,14 +69,44 @@ def soaked(areal, step, fluid=f"c0 {SOUND}"):
     return lmp
 
 
-def stir(lmp):
+def wall_sheet(areal, step):
+    """Water at rest in a periodic box, and between two of its layers a mesh of loose vertices.
+
+    It is periodic, too, and a wall to the water.
+    """
+    n, half = 8, 4 * SPACING
+    vertex = np.arange(n * n).reshape(n, n) + 1
+    right, up = np.roll(vertex, -1, axis=1), np.roll(vertex, -1, axis=0)
+    across = np.roll(right, -1, axis=0)
+    border = [(j, i) for j in range(n) for i in range(n) if n - 1 in (j, i)]
+    triangles = [(vertex[c], right[c], across[c]) for c in border]
+    triangles += [(vertex[c], across[c], up[c]) for c in border]
+    return (
+        header("p p p")
+        + cloth_box(f"-{half} {half} -{half} {half} -{half} {half}")
+        + sheet(2, areal, f"{(n - 1) * SPACING} {(n - 1) * SPACING}", SPACING)
+        + f"lattice sc {SPACING} origin 0.5 0.5 0.5\ncreate_atoms 1 box\ngroup fluid type 1\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 {SOUND} spacing {SPACING}",
+            "2 2 none",
+            options="tension yes density calibrated",
+        )
+        + cloth_styles("0", "0")
+        + neighbor(0.03)
+        + "".join("create_bonds single/angle 1 {} {} {}\n".format(*t) for t in triangles)
+        + f"timestep 1e-3\nfix step fluid sph/integrate {step}\n"
+        + "fix sheet cloth pbd/cloth\nfix contact fluid cloth/contact 0.005 wall yes\n"
+    )
+
+
+def stir(lmp, speed=1e-2):
     """Give all small velocities."""
-    lmp.numpy.extract_atom("v")[:512] = 1e-2 * np.random.default_rng(3).uniform(-1, 1, (512, 3))
+    lmp.numpy.extract_atom("v")[:512] = speed * np.random.default_rng(3).uniform(-1, 1, (512, 3))
 
 
-def growth_in(lmp, run):
+def growth_in(lmp, run, speed=1e-2):
     """By how much the energy of small velocities grows."""
-    stir(lmp)
+    stir(lmp, speed)
     mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
     before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
     lmp.commands_string(run)

@@ -22,6 +22,7 @@ from step_scenes import (
     soaked,
     soaked_sheet,
     stir,
+    wall_sheet,
 )
 from test_stepping import ACOUSTIC
 
@@ -49,8 +50,34 @@ def growth(areal, step, n, scaled):
         return growth_in(lmp, f"timestep {step}\nrun {n} post no")
 
 
-def test_momentum_is_exact():
-    with soaked(0.5, f"global {ALONE}") as lmp:
+def at_wall(areal, step):
+    lmp = instance()
+    lmp.commands_string(wall_sheet(areal, step) + "run 0 post no")
+    return lmp
+
+
+def growth_at_wall(areal, step, n, scaled="yes"):
+    with at_wall(areal, f"constant mass_scaling {scaled}") as lmp:
+        return growth_in(lmp, f"timestep {step}\nrun {n} post no", speed=1e-5)
+
+
+def test_the_step_is_that_of_water_beside_a_mesh_that_is_a_wall():
+    """A fifth above the limit explodes, whatever the mass."""
+    steps = []
+    for areal in (200.0, 4.0, 0.1, 0.002):
+        with at_wall(areal, f"global {ALONE}") as lmp:
+            step, by = dt_and_limit(lmp)
+        assert by == ACOUSTIC
+        assert growth_at_wall(areal, step, 200) < 3
+        assert growth_at_wall(areal, 1.2 * step, 30) > 30
+        steps.append(step)
+    assert growth_at_wall(4.0, step, 3, "no") > 30
+    assert np.ptp(steps) < 1e-9 * step
+
+
+@pytest.mark.parametrize("scene", [soaked, at_wall])
+def test_momentum_is_exact(scene):
+    with scene(0.5, f"global {ALONE}") as lmp:
         stir(lmp)
         start, scale = momentum_with_sheet(lmp)
         lmp.command("run 40 post no")
@@ -110,17 +137,18 @@ def test_slow_motions_do_not_change():
     assert 3.3 < change[1] / change[2] < 4.8
 
 
-def test_ranks_and_restart(tmp_path):
+@pytest.mark.parametrize(("scene", "by"), [(soaked_sheet, 4e-3), (wall_sheet, 2e-4)])
+def test_ranks_and_restart(scene, by, tmp_path):
     """Water and vertices are on other ranks, and images of each other."""
     with instance() as lmp:
-        lmp.commands_string(soaked_sheet(0.5, f"global {ALONE}"))
-        lmp.command("displace_atoms all random 0.004 0.004 0.004 7 units box")
+        lmp.commands_string(scene(0.5, f"global {ALONE}"))
+        lmp.command(f"displace_atoms all random {by} {by} {by} 7 units box")
         lmp.commands_string(f"run 20\nwrite_restart {tmp_path}/half\nrun 20")
         whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
     for ranks in (1, 2, 4):
         folder = tmp_path / str(ranks)
         folder.mkdir()
-        run(write(folder, AGAIN), ranks=ranks)
+        run(write(folder, AGAIN + (CONTACT if scene is wall_sheet else "") + GO_ON), ranks=ranks)
         apart = last_frame(folder / "end.txt")[:, 1:] - whole
         apart[:, :3] -= BOX * np.round(apart[:, :3] / BOX)
         assert np.abs(apart).max() < 1e-11
@@ -129,6 +157,9 @@ def test_ranks_and_restart(tmp_path):
 AGAIN = f"""read_restart ../half
 fix step fluid sph/integrate global {ALONE}
 fix sheet cloth pbd/cloth
+"""
+CONTACT = "fix contact fluid cloth/contact 0.005 wall yes\n"
+GO_ON = """
 dump end all custom 40 end.txt id x y z vx vy vz
 dump_modify end sort id format float %.17g
 run 20

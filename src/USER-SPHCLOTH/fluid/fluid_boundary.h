@@ -16,6 +16,7 @@
 namespace LAMMPS_NS {
 
 class FluidStability;
+class MeshScaling;
 class Modify;
 
 // Of an owned vertex or boundary particle that fluid touched in the last evaluation: the mass of
@@ -74,6 +75,13 @@ class FluidBoundary {
   virtual void add_stiffness(int i, sphcloth::Stiffness &) = 0;
   virtual void find_vertex_stiffness(const FluidStability &) {}
   virtual void add_row(int, sphcloth::VertexRow &) {}
+
+  // For mass scaling: has it vertices that fluid can move?  The same on all ranks.
+  virtual bool has_vertices() const { return false; }
+  // gradients of the density of an owned fluid particle over them, added to those over particles
+  virtual void add_gradients(int, sphcloth::DirectionSums &) {}
+  // their springs with fluid of these strengths
+  virtual void add_springs(MeshScaling &, const std::vector<double> &) {}
 
  protected:
   ~FluidBoundary() noexcept(false) = default;

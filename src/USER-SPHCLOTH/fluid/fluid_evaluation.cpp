@@ -175,7 +175,7 @@ void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 
 void FluidEvaluation::end()
 {
-  if (scaled.wanted()) scaled.find(*core, particles(), stability);
+  if (scaled.wanted()) scaled.find(*core, particles(), stability, boundaries);
   if (stability.wanted()) find_frequencies();
   if (hooks) hooks->apply_impulses();
   for (FluidBoundary *boundary : boundaries) boundary->end();

@@ -109,7 +109,7 @@ void FluidStability::find_rows(Fluid &core, const Particles &p,
   core.for_active_fluid([&](int i, int) {
     VertexRow row = has_vertices ? rows[i] : VertexRow();
     for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
-    found[i].vertices_sq = sounds[i] * row.sum;
+    found[i].vertices_sq = scaled ? 0.0 : sounds[i] * row.sum;
     found[i].friction += row.friction;
   });
 }

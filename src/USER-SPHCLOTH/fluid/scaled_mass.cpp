@@ -15,32 +15,56 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability)
+void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability,
+                      const std::vector<FluidBoundary *> &boundaries)
 {
   kicks_known = false;
   const std::vector<int> &is_vertex = stability.vertex_types();
-  any_vertices = stability.any_vertices();
+  any_pairs = stability.any_vertices();
+  any_vertices = any_pairs ||
+      std::any_of(boundaries.begin(), boundaries.end(),
+                  [](const FluidBoundary *boundary) { return boundary->has_vertices(); });
   if (!any_vertices) return;
   gradients.resize(atom->nmax);
   strength.assign(atom->nmax, 0.0);
-  core.vertex_gradients(p, is_vertex.data(), gradients.data());
+  if (any_pairs) core.vertex_gradients(p, is_vertex.data(), gradients.data());
   core.for_active_fluid([&](int i, int) {
+    if (!any_pairs) gradients[i] = DirectionSums();
+    for (FluidBoundary *boundary : boundaries) boundary->add_gradients(i, gradients[i]);
     const double sum = gradients[i].trace();
     if (sum == 0.0 || !(atom->mask[i] & groupbit)) return;
     const double sound = stability.find_sound(i);
     strength[i] = sound * sound * sum;
   });
-  ghosts.send_to_ghosts(GhostData::STRENGTH);
+  if (any_pairs) ghosts.send_to_ghosts(GhostData::STRENGTH);
   beside.clear();
   for (int i = 0; i < p.n_all; i++)
     if (strength[i] > 0.0) beside.push_back(i);
-  core.vertex_pairs(p, is_vertex.data(), strength.data(), vertex_pairs);
+  vertex_pairs.clear();
+  if (any_pairs) core.vertex_pairs(p, is_vertex.data(), strength.data(), vertex_pairs);
   stiffnesses.clear();
   rows.assign(atom->nlocal, -1);
   for (int n = 0; n < vertex_pairs.size(); n++) {
     stiffnesses.push_back(stiffness_of(vertex_pairs, n));
     rows[vertex_pairs.vertices[n]] = n;
   }
+  meshes.begin();
+  for (FluidBoundary *boundary : boundaries) boundary->add_springs(meshes, strength);
+  meshes.sum_stiffness(
+      [this](int i, const Eigen::Matrix3d &stiffness) { stiffnesses[row_of(i)] += stiffness; });
+  changes.resize(stiffnesses.size());
+  is_changed.assign(stiffnesses.size(), 0);
+}
+
+// those that meshes alone press on have rows behind those with pairs
+
+int ScaledMass::row_of(int vertex)
+{
+  if (rows[vertex] < 0) {
+    rows[vertex] = static_cast<int>(stiffnesses.size());
+    stiffnesses.push_back(Eigen::Matrix3d::Zero());
+  }
+  return rows[vertex];
 }
 
 double ScaledMass::frequency_sq(int i, double alone_sq) const
@@ -59,14 +83,44 @@ void ScaledMass::find_kicks(double dt)
     const double by = dt * force->ftm2v / atom_mass(atom, i);
     for (int d = 0; d < 3; d++) kicks[3 * static_cast<std::size_t>(i) + d] = by * atom->f[i][d];
   }
-  ghosts.send_to_ghosts(GhostData::KICK);
+  if (any_pairs) ghosts.send_to_ghosts(GhostData::KICK);
+  carried_by_meshes.assign(stiffnesses.size(), Vec3::Zero());
+  meshes.carry(
+      dt, [this](int fluid) { return kick(fluid); },
+      [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] = carried; });
 }
 
-// It has drifted already.
-
-void ScaledMass::move_fluid(double dt)
+ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const
 {
-  ghosts.add_from_ghosts(GhostData::IMPULSE);
+  const auto of = [this](int fluid) { return kick(fluid); };
+  Vec3 sum = carried_by_meshes[n];
+  if (n < vertex_pairs.size()) sum += carried_by_fluid(vertex_pairs, n, dt, of);
+  return sum;
+}
+
+void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
+{
+  changes[n] = change;
+  is_changed[n] = 1;
+  if (n >= vertex_pairs.size()) return;
+  give_to_fluid(
+      vertex_pairs, n, dt, change, [&](int fluid) -> Vec3 { return part_of_step * kick(fluid); },
+      [this](int fluid, const Vec3 &impulse) { give(fluid, impulse); });
+}
+
+// The fluid has drifted already.
+
+void ScaledMass::move_fluid(double dt, double part_of_step)
+{
+  meshes.give(
+      dt, [&](int fluid) -> Vec3 { return part_of_step * kick(fluid); },
+      [this](int vertex) -> const Vec3 * {
+        const int n = rows[vertex];
+        return n >= 0 && is_changed[n] ? &changes[n] : nullptr;
+      },
+      [this](int fluid, const Vec3 &impulse) { give(fluid, impulse); });
+  std::fill(is_changed.begin(), is_changed.end(), 0);    // each cloth of a step for itself
+  if (any_pairs) ghosts.add_from_ghosts(GhostData::IMPULSE);
   for (const int i : beside) {
     double *impulse = &impulses[3 * static_cast<std::size_t>(i)];
     if (i < atom->nlocal)
@@ -107,6 +161,7 @@ void ScaledMass::add(int i, const double *buf)
 
 double ScaledMass::bytes() const
 {
-  return vertex_pairs.bytes() +
-      bytes_of(gradients, strength, beside, rows, stiffnesses, kicks, impulses);
+  return vertex_pairs.bytes() + meshes.bytes() +
+      bytes_of(gradients, strength, beside, rows, stiffnesses, carried_by_meshes, changes,
+               is_changed, kicks, impulses);
 }

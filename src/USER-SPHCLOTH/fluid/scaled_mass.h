@@ -8,7 +8,9 @@
 #include "pointers.h"
 
 #include "core/sph/fluid.h"
+#include "fluid/fluid_boundary.h"
 #include "fluid/ghost_exchange.h"
+#include "fluid/mesh_scaling.h"
 
 #include <Eigen/Core>
 
@@ -31,24 +33,24 @@ class ScaledMass : protected Pointers {
   bool on() const { return groupbit != 0 && any_vertices; }
 
   // in an evaluation, collective
-  void find(sphcloth::Fluid &, const sphcloth::Particles &, FluidStability &);
+  void find(sphcloth::Fluid &, const sphcloth::Particles &, FluidStability &,
+            const std::vector<FluidBoundary *> &);
   // square of the frequency that bounds the step of a fluid particle beside vertices
   double frequency_sq(int i, double alone_sq) const;
   bool is_beside_vertices(int i) const { return strength[i] > 0.0; }
 
-  const sphcloth::VertexPairs &pairs() const { return vertex_pairs; }
   const Eigen::Matrix3d &stiffness(int n) const { return stiffnesses[n]; }
   // of an owned atom; -1: it is no vertex beside fluid
   int row(int i) const { return rows[i]; }
   // changes of velocity by the forces of a step, of fluid of all ranks; collective once in a step
   void find_kicks(double dt);
-  Vec3 kick(int fluid) const { return Vec3::Map(&kicks[3 * static_cast<std::size_t>(fluid)]); }
-  void give(int fluid, const Vec3 &impulse)
-  {
-    Vec3::Map(&impulses[3 * static_cast<std::size_t>(fluid)]) += impulse;
-  }
+  // what the fluid beside a vertex gives to it then
+  Vec3 carried(int n, double dt) const;
+  // The vertex of a row changes its velocity by this, where the forces of the fluid act for a part
+  // of the step: the fluid gets the rest.
+  void give(int n, const Vec3 &change, double dt, double part_of_step);
   // moves the fluid by what it was given; collective
-  void move_fluid(double dt);
+  void move_fluid(double dt, double part_of_step);
 
   int pack(GhostData, int i, double *buf) const;
   int unpack(GhostData, int i, const double *buf);
@@ -58,15 +60,26 @@ class ScaledMass : protected Pointers {
  private:
   GhostExchange &ghosts;
   int groupbit = 0;
-  bool any_vertices = false, kicks_known = false;
+  bool any_vertices = false, any_pairs = false, kicks_known = false;
   std::vector<sphcloth::DirectionSums> gradients;    // over vertices, of owned fluid
   // s_i^2 times their trace, of all atoms; 0 of what has no vertex near
   std::vector<double> strength;
   std::vector<int> beside;    // all atoms of a strength above 0
   sphcloth::VertexPairs vertex_pairs;
   std::vector<int> rows;    // of owned atoms
-  std::vector<Eigen::Matrix3d> stiffnesses;    // of its vertices
+  std::vector<Eigen::Matrix3d> stiffnesses;    // of rows
+  MeshScaling meshes;
+  std::vector<Vec3> carried_by_meshes;    // of rows, in this step
+  std::vector<Vec3> changes;    // of rows, until the fluid is moved
+  std::vector<char> is_changed;
   std::vector<double> kicks, impulses;    // [n][3], of all atoms
+
+  Vec3 kick(int fluid) const { return Vec3::Map(&kicks[3 * static_cast<std::size_t>(fluid)]); }
+  void give(int fluid, const Vec3 &impulse)
+  {
+    Vec3::Map(&impulses[3 * static_cast<std::size_t>(fluid)]) += impulse;
+  }
+  int row_of(int vertex);
 };
 
 }    // namespace LAMMPS_NS

@@ -24,10 +24,8 @@ void ScaledVertices::scale_forces(double dt, double part_of_step)
   step_dt = dt;
   forces_act = part_of_step;
   scaled->find_kicks(dt);
-  const VertexPairs &pairs = scaled->pairs();
   rows.clear();
   row_of_slot.assign(vertices.halo.n_owned(), -1);
-  const auto kick = [this](int fluid) { return scaled->kick(fluid); };
   for (int s = 0; s < vertices.halo.n_owned(); s++) {
     const int i = vertices.halo.atom_of(s), n = scaled->row(i);
     const double w = vertices.inverse_mass[s];
@@ -36,7 +34,7 @@ void ScaledVertices::scale_forces(double dt, double part_of_step)
     const MassScaling mass(scaled->stiffness(n), w, dt);
     const double by = dt * force->ftm2v * w;
     auto f = Vec3::Map(atom->f[i]);
-    const Vec3 change = mass.scaled(by * f, carried_by_fluid(pairs, n, dt, kick));
+    const Vec3 change = mass.scaled(by * f, scaled->carried(n, dt));
     f = change / by;
     rows.push_back({s, n, mass, part_of_step * change, Vec3::Zero(), Vec3::Zero()});
   }
@@ -65,11 +63,8 @@ void ScaledVertices::project(Vertex *displacement)
 
 void ScaledVertices::move_fluid()
 {
-  const auto kick = [this](int fluid) -> Vec3 { return forces_act * scaled->kick(fluid); };
-  const auto give = [this](int fluid, const Vec3 &impulse) { scaled->give(fluid, impulse); };
-  for (const Row &row : rows)
-    give_to_fluid(scaled->pairs(), row.pairs, step_dt, row.change, kick, give);
-  scaled->move_fluid(step_dt);
+  for (const Row &row : rows) scaled->give(row.number, row.change, step_dt, forces_act);
+  scaled->move_fluid(step_dt, forces_act);
 }
 
 double ScaledVertices::bytes() const { return bytes_of(row_of_slot, rows); }

@@ -54,7 +54,7 @@ class ScaledVertices : public SolverCoupling, protected Pointers {
 
  private:
   struct Row {
-    int slot, pairs;    // pairs of the fluid with the vertex
+    int slot, number;    // of the row of ScaledMass
     sphcloth::MassScaling mass;
     Vec3 change;    // of the velocity in this step
     Vec3 expected;    // displacement of the substep as far as it is scaled

@@ -6,7 +6,7 @@
 
 #include "contact/moving_triangles.h"
 #include "core/pores/pore_law.h"
-#include "fluid/mesh_boundary.h"
+#include "fluid/boundary_mesh.h"
 #include "pointers.h"
 #include "pores/pore_fluid.h"
 

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Finds the points of a mesh nearest to particles among the triangles that were near at the last
+// list build.
+
+#include "fluid/boundary_mesh.h"
+
+#include "atom.h"
+#include "core/contact/point_triangle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+using namespace LAMMPS_NS;
+using namespace sphcloth;
+
+// Triangles that are equally near, at an edge or a vertex, but for rounding.
+static constexpr double TIE = 1e-9;
+
+static Eigen::Vector3d position_of(const double *x) { return {x[0], x[1], x[2]}; }
+
+// from the nearest point of the line from a to b to p
+
+static Eigen::Vector3d gap_to_line(const Eigen::Vector3d &p, const Eigen::Vector3d &a,
+                                   const Eigen::Vector3d &b)
+{
+  const Eigen::Vector3d displacement = b - a, gap = p - a;
+  const double length_sq = displacement.squaredNorm();
+  const double at = length_sq > 0.0 ? std::clamp(displacement.dot(gap) / length_sq, 0.0, 1.0) : 0.0;
+  return gap - at * displacement;
+}
+
+Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
+{
+  const std::array<int, 3> &s = set->triangles[t];
+  return distance_vector(p, positions[s[0]], positions[s[1]], positions[s[2]], weight);
+}
+
+void BoundaryMesh::find_positions()
+{
+  for (std::size_t s = 0; s < positions.size(); s++)
+    positions[s] = set->position(static_cast<int>(s));
+}
+
+// Until the next build particle and triangle come nearer by the skin at most, or go away by it.
+// A particle beyond the border has fluid on both sides until then, and nothing is filled.
+
+void BoundaryMesh::update_candidates(double list_skin, const std::function<double(int)> &reach)
+{
+  skin = list_skin;
+  forces.assign(set->halo.n_slots(), Vec3::Zero());
+  wetting = stiffness = forces;
+  positions.resize(forces.size());
+  find_positions();
+  list_positions = positions;
+  candidates.clear();
+  borders.clear();
+  seekers.clear();
+  double farthest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) farthest = std::max(farthest, reach(i));
+  if (farthest == 0.0 || set->triangles.empty()) return;
+
+  std::vector<Box> boxes(set->triangles.size()), wide = boxes, border_boxes;
+  std::vector<std::array<int, 2>> edges;    // of the border
+  const auto box_of = [&](const auto &slots) {
+    Box box;
+    for (int s : slots) box.extend(positions[s]);
+    return box;
+  };
+  const auto widened = [&](Box box) {
+    box.min().array() -= farthest + skin;
+    box.max().array() += farthest + skin;
+    return box;
+  };
+  for (std::size_t t = 0; t < boxes.size(); t++) {
+    const std::array<int, 3> &s = set->triangles[t];
+    boxes[t] = box_of(s);
+    wide[t] = widened(boxes[t]);
+    for (int q = 0; q < 3; q++) {
+      if (!set->is_border(set->element[t], q)) continue;
+      edges.push_back({s[(q + 1) % 3], s[(q + 2) % 3]});
+      border_boxes.push_back(widened(box_of(edges.back())));
+    }
+  }
+  BoxGrid grid, border_grid;
+  grid.build(wide);
+  border_grid.build(border_boxes);
+  std::vector<Candidate> near;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double support = reach(i);
+    if (support == 0.0) continue;
+    const Vec3 p = position_of(atom->x[i]);
+    near.clear();
+    grid.query(Box(p), [&](int t) {
+      if (part == Part::WATERTIGHT && set->is_porous(t)) return;
+      if (const double bound = boxes[t].exteriorDistance(p); bound <= support + skin)
+        near.push_back({t, bound});
+    });
+    keep_nearest(p, support + skin, near);
+    if (near.empty() || (part == Part::WATERTIGHT && is_beyond(p, near))) continue;
+    Seeker seeker{i, support, p, candidates.size(), 0, borders.size(), 0};
+    candidates.insert(candidates.end(), near.begin(), near.end());
+    border_grid.query(Box(p), [&](int b) {
+      if (gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]).norm() <= support + skin)
+        borders.push_back(edges[b]);
+    });
+    seeker.last = candidates.size();
+    seeker.last_border = borders.size();
+    seekers.push_back(seeker);
+  }
+}
+
+// Of triangles with the distance of their boxes those that are within reach and may become the
+// nearest, sorted by their own distance.  The one with the nearest box tells most about the others.
+
+void BoundaryMesh::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
+{
+  if (near.empty()) return;
+  const auto nearer = [](const Candidate &a, const Candidate &b) {
+    return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+  };
+  Vec3 weight;
+  const int likely = std::min_element(near.begin(), near.end(), nearer)->triangle;
+  double nearest = gap_to(p, likely, weight).norm();
+  for (Candidate &c : near) {
+    if (c.distance > nearest + 2.0 * skin) continue;
+    c.distance = gap_to(p, c.triangle, weight).norm();
+    nearest = std::min(nearest, c.distance);
+  }
+  const double cutoff = nearest > within ? -1.0 : nearest + 2.0 * skin;
+  near.erase(std::remove_if(near.begin(), near.end(),
+                            [&](const Candidate &c) { return c.distance > cutoff; }),
+             near.end());
+  std::sort(near.begin(), near.end(), nearer);
+}
+
+bool BoundaryMesh::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
+{
+  for (const Candidate &c : nearest_first) {
+    if (c.distance > nearest_first[0].distance * (1.0 + TIE)) break;
+    Vec3 weight;
+    gap_to(p, c.triangle, weight);
+    if (set->is_on_border(c.triangle, weight)) return true;
+  }
+  return false;
+}
+
+void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points)
+{
+  if (seekers.empty()) return;
+  find_positions();
+  double moved_sq = 0.0;
+  for (std::size_t s = 0; s < positions.size(); s++)
+    moved_sq = std::max(moved_sq, (positions[s] - list_positions[s]).squaredNorm());
+  const double moved = std::sqrt(moved_sq);
+  for (const Seeker &seeker : seekers) {
+    const Vec3 p = position_of(atom->x[seeker.particle]);
+    const double nearer = moved + (p - seeker.at).norm();    // at most, than at the list build
+    ClosestPoint closest;
+    closest.distance = seeker.reach;
+    Vec3 nearest = Vec3::Zero();
+    int triangle = -1;
+    for (std::size_t k = seeker.first; k < seeker.last; k++) {
+      if (candidates[k].distance - nearer > closest.distance) break;
+      Vec3 weight;
+      const Vec3 gap = gap_to(p, candidates[k].triangle, weight);
+      const double distance_sq = gap.squaredNorm();
+      if (distance_sq >= closest.distance * closest.distance) continue;
+      closest.distance = std::sqrt(distance_sq);
+      closest.weight = weight;
+      nearest = gap;
+      triangle = candidates[k].triangle;
+    }
+    if (triangle < 0 || closest.distance == 0.0) continue;
+    closest.particle = seeker.particle;
+    closest.sheet = sheet;
+    closest.triangle = triangle;
+    closest.vertices = set->triangles[triangle];
+    closest.normal = nearest / closest.distance;
+    find_border(p - nearest, seeker, closest);
+    closest_points.push_back(closest);
+  }
+}
+
+// Of the space behind the plane only what the sheet hides is filled: what is beyond its border is
+// seen.
+
+void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoint &closest) const
+{
+  closest.border_distance = seeker.reach;
+  for (std::size_t b = seeker.first_border; b < seeker.last_border; b++) {
+    const Vec3 gap = gap_to_line(at, positions[borders[b][0]], positions[borders[b][1]]);
+    const double distance = gap.norm();
+    if (distance >= closest.border_distance) continue;
+    closest.border_distance = distance;
+    const Vec3 in_plane = gap - gap.dot(closest.normal) * closest.normal;
+    closest.from_border = distance > 0.0 ? Vec3(in_plane / distance) : Vec3::Zero();
+  }
+}
+
+Eigen::Vector3d BoundaryMesh::velocity_at(const ClosestPoint &closest) const
+{
+  Vec3 velocity = Vec3::Zero();
+  for (int q = 0; q < 3; q++)
+    velocity += closest.weight[q] * position_of(atom->v[set->halo.atom_of(closest.vertices[q])]);
+  return velocity;
+}
+
+void BoundaryMesh::spread(const ClosestPoint &closest, const Vec3 &quantity,
+                          std::vector<Vec3> &over)
+{
+  for (int q = 0; q < 3; q++) over[closest.vertices[q]] += closest.weight[q] * quantity;
+}
+
+void BoundaryMesh::sum_up(std::vector<Vec3> &quantities,
+                          const std::function<void(int, const Vec3 &)> &take)
+{
+  set->halo.reverse_add(0, quantities.data());
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    if (!quantities[s].isZero(0.0)) take(set->halo.atom_of(s), quantities[s]);
+  std::fill(quantities.begin(), quantities.end(), Vec3::Zero());
+}
+
+void BoundaryMesh::complete_stiffness()
+{
+  set->halo.reverse_add(0, stiffness.data());
+  for (int s = 0; s < set->halo.n_owned(); s++)
+    stiffness[s] *= set->mesh->inverse_mass(set->halo.atom_of(s));
+  set->halo.forward(0, stiffness.data());
+}
+
+Eigen::Vector3d BoundaryMesh::stiffness_at(const ClosestPoint &closest) const
+{
+  Vec3 found = Vec3::Zero();
+  for (int q = 0; q < 3; q++) {
+    const Vec3 &of = stiffness[closest.vertices[q]];
+    found[0] += closest.weight[q] * of[0];
+    found[1] = std::max(found[1], of[1]);
+  }
+  return found;
+}

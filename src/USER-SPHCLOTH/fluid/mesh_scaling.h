@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Mass scaling of the vertices of meshes that are walls to fluid (core/sph/mass_scaling.h).  A
+// particle presses on the nearest point of a mesh; the spring between them is divided among the
+// vertices of the triangle by the weights of the point, which is at least as stiff by Jensen's
+// inequality.  Momentum is kept; angular momentum as far as the vertices of a triangle move alike.
+
+#ifndef SPHCLOTH_FLUID_MESH_SCALING_H
+#define SPHCLOTH_FLUID_MESH_SCALING_H
+
+#include "fluid/boundary_mesh.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class MeshScaling {
+ public:
+  using Vec3 = Eigen::Vector3d;
+  using Mat3 = Eigen::Matrix3d;
+  using OfFluid = std::function<Vec3(int fluid)>;
+  using Take = std::function<void(int owned_atom, const Vec3 &)>;
+
+  // anew in each evaluation: meshes, the same on all ranks, each with its springs behind it
+  void begin();
+  void begin_mesh(BoundaryMesh &);
+  void add(const ClosestPoint &, double stiffness, const Vec3 &direction);
+
+  // take(owned vertex, D_j); collective
+  void sum_stiffness(const std::function<void(int owned_atom, const Mat3 &)> &take);
+  // take(owned vertex, sum of a dt^2 d_kj e e^T dv_k); kick(k) is dv_k; collective
+  void carry(double dt, const OfFluid &kick, const Take &take);
+  // give(k, impulse) to the fluid, where changed(owned vertex) is what changes its velocity, or
+  // null; collective
+  void give(double dt, const OfFluid &kick, const std::function<const Vec3 *(int)> &changed,
+            const std::function<void(int fluid, const Vec3 &impulse)> &give);
+
+  double bytes() const;
+
+ private:
+  struct Spring {
+    int fluid, mesh;
+    std::array<int, 3> vertices;    // slots
+    Vec3 weight, direction;
+    double stiffness;
+  };
+  struct Mesh {
+    BoundaryMesh *of = nullptr;
+    std::vector<Vec3> sums, mixed;    // by slot
+    std::vector<double> has_changed;
+  };
+  std::vector<Spring> springs;
+  std::vector<Mesh> meshes;    // buffers are kept from evaluation to evaluation
+  std::size_t n_meshes = 0;
+
+  void clear_sums();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -36,10 +36,36 @@ Eigen::Vector3d BoundaryMesh::gap_to(const Vec3 &p, int t, Vec3 &weight) const
   return distance_vector(p, positions[s[0]], positions[s[1]], positions[s[2]], weight);
 }
 
+// Fewer candidates have to be found anew more often.
+
+double BoundaryMesh::margin() const
+{
+  constexpr double OF_SKIN = 0.2;
+  return OF_SKIN * skin;
+}
+
 void BoundaryMesh::find_positions()
 {
-  for (std::size_t s = 0; s < positions.size(); s++)
-    positions[s] = set->position(static_cast<int>(s));
+  double step_sq = 0.0, since_sq = 0.0;
+  for (std::size_t s = 0; s < positions.size(); s++) {
+    const Vec3 now = set->position(static_cast<int>(s));
+    step_sq = std::max(step_sq, (now - positions[s]).squaredNorm());
+    since_sq = std::max(since_sq, (now - list_positions[s]).squaredNorm());
+    positions[s] = now;
+  }
+  path += std::sqrt(step_sq);
+  displacement = std::sqrt(since_sq);
+}
+
+void BoundaryMesh::sort_triangles(double farthest)
+{
+  discs.resize(set->triangles.size());
+  for (std::size_t t = 0; t < discs.size(); t++) {
+    const auto &[a, b, c] = set->triangles[t];
+    discs[t] = disc_around(positions[a], positions[b], positions[c]);
+    if (part == Part::WATERTIGHT && set->is_porous(static_cast<int>(t))) discs[t].radius = -1.0;
+  }
+  grid.build(discs, farthest);
 }
 
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.
@@ -48,10 +74,12 @@ void BoundaryMesh::find_positions()
 void BoundaryMesh::update_candidates(double list_skin, const std::function<double(int)> &reach)
 {
   skin = list_skin;
+  path = 0.0;
   forces.assign(set->halo.n_slots(), Vec3::Zero());
   wetting = stiffness = forces;
   positions.resize(forces.size());
-  find_positions();
+  for (std::size_t s = 0; s < positions.size(); s++)
+    positions[s] = set->position(static_cast<int>(s));
   list_positions = positions;
   candidates.clear();
   borders.clear();
@@ -60,84 +88,75 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
   for (int i = 0; i < atom->nlocal; i++) farthest = std::max(farthest, reach(i));
   if (farthest == 0.0 || set->triangles.empty()) return;
 
-  std::vector<Box> boxes(set->triangles.size()), wide = boxes, border_boxes;
+  sort_triangles(farthest);
+  std::vector<Box> border_boxes;
   std::vector<std::array<int, 2>> edges;    // of the border
-  const auto box_of = [&](const auto &slots) {
-    Box box;
-    for (int s : slots) box.extend(positions[s]);
-    return box;
-  };
-  const auto widened = [&](Box box) {
-    box.min().array() -= farthest + skin;
-    box.max().array() += farthest + skin;
-    return box;
-  };
-  for (std::size_t t = 0; t < boxes.size(); t++) {
-    const std::array<int, 3> &s = set->triangles[t];
-    boxes[t] = box_of(s);
-    wide[t] = widened(boxes[t]);
+  for (std::size_t t = 0; t < set->triangles.size(); t++)
     for (int q = 0; q < 3; q++) {
       if (!set->is_border(set->element[t], q)) continue;
+      const std::array<int, 3> &s = set->triangles[t];
       edges.push_back({s[(q + 1) % 3], s[(q + 2) % 3]});
-      border_boxes.push_back(widened(box_of(edges.back())));
+      Box box(positions[edges.back()[0]]);
+      box.extend(positions[edges.back()[1]]);
+      box.min().array() -= farthest + skin;
+      box.max().array() += farthest + skin;
+      border_boxes.push_back(box);
     }
-  }
-  BoxGrid grid, border_grid;
-  grid.build(wide);
+  BoxGrid border_grid;
   border_grid.build(border_boxes);
-  std::vector<Candidate> near;
   for (int i = 0; i < atom->nlocal; i++) {
     const double support = reach(i);
     if (support == 0.0) continue;
     const Vec3 p = position_of(atom->x[i]);
-    near.clear();
-    grid.query(Box(p), [&](int t) {
-      if (part == Part::WATERTIGHT && set->is_porous(t)) return;
-      if (const double bound = boxes[t].exteriorDistance(p); bound <= support + skin)
-        near.push_back({t, bound});
-    });
-    keep_nearest(p, support + skin, near);
-    if (near.empty() || (part == Part::WATERTIGHT && is_beyond(p, near))) continue;
-    Seeker seeker{i, support, p, candidates.size(), 0, borders.size(), 0};
-    candidates.insert(candidates.end(), near.begin(), near.end());
+    find_candidates(p, support + skin);
+    if (near.empty() || (part == Part::WATERTIGHT && is_beyond(p))) continue;
+    Seeker seeker{i, support, p, 0.0, 0, 0, borders.size(), 0};
+    store_candidates(seeker);
     border_grid.query(Box(p), [&](int b) {
       if (gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]).norm() <= support + skin)
         borders.push_back(edges[b]);
     });
-    seeker.last = candidates.size();
     seeker.last_border = borders.size();
     seekers.push_back(seeker);
   }
 }
 
-// Of triangles with the distance of their boxes those that are within reach and may become the
-// nearest, sorted by their own distance.  The one with the nearest box tells most about the others.
+// Of the triangles within a distance those that may become the nearest, sorted by their own
+// distance.  Each is near the disc that it had at the list build.
 
-void BoundaryMesh::keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const
+void BoundaryMesh::find_candidates(const Vec3 &p, double within)
 {
-  if (near.empty()) return;
-  const auto nearer = [](const Candidate &a, const Candidate &b) {
-    return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
-  };
-  Vec3 weight;
-  const int likely = std::min_element(near.begin(), near.end(), nearer)->triangle;
-  double nearest = gap_to(p, likely, weight).norm();
-  for (Candidate &c : near) {
-    if (c.distance > nearest + 2.0 * skin) continue;
-    c.distance = gap_to(p, c.triangle, weight).norm();
-    nearest = std::min(nearest, c.distance);
-  }
-  const double cutoff = nearest > within ? -1.0 : nearest + 2.0 * skin;
+  near.clear();
+  double nearest = within;
+  const double slack = 2.0 * (margin() + displacement);
+  grid.nearest(p, within + displacement, slack, [&](int t) {
+    Vec3 weight;
+    const double distance = gap_to(p, t, weight).norm();
+    nearest = std::min(nearest, distance);
+    near.push_back({t, distance});
+  });
+  const double cutoff = std::min(within, nearest + 2.0 * margin());
   near.erase(std::remove_if(near.begin(), near.end(),
                             [&](const Candidate &c) { return c.distance > cutoff; }),
              near.end());
-  std::sort(near.begin(), near.end(), nearer);
+  std::sort(near.begin(), near.end(), [](const Candidate &a, const Candidate &b) {
+    return std::tie(a.distance, a.triangle) < std::tie(b.distance, b.triangle);
+  });
 }
 
-bool BoundaryMesh::is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const
+void BoundaryMesh::store_candidates(Seeker &seeker)
 {
-  for (const Candidate &c : nearest_first) {
-    if (c.distance > nearest_first[0].distance * (1.0 + TIE)) break;
+  seeker.at = position_of(atom->x[seeker.particle]);
+  seeker.path = path;
+  seeker.first = candidates.size();
+  candidates.insert(candidates.end(), near.begin(), near.end());
+  seeker.last = candidates.size();
+}
+
+bool BoundaryMesh::is_beyond(const Vec3 &p) const
+{
+  for (const Candidate &c : near) {
+    if (c.distance > near[0].distance * (1.0 + TIE)) break;
     Vec3 weight;
     gap_to(p, c.triangle, weight);
     if (set->is_on_border(c.triangle, weight)) return true;
@@ -149,13 +168,14 @@ void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &clo
 {
   if (seekers.empty()) return;
   find_positions();
-  double moved_sq = 0.0;
-  for (std::size_t s = 0; s < positions.size(); s++)
-    moved_sq = std::max(moved_sq, (positions[s] - list_positions[s]).squaredNorm());
-  const double moved = std::sqrt(moved_sq);
-  for (const Seeker &seeker : seekers) {
+  for (Seeker &seeker : seekers) {
     const Vec3 p = position_of(atom->x[seeker.particle]);
-    const double nearer = moved + (p - seeker.at).norm();    // at most, than at the list build
+    double nearer = path - seeker.path + (p - seeker.at).norm();    // at most, than then
+    if (nearer > margin()) {
+      find_candidates(p, seeker.reach + skin);
+      store_candidates(seeker);
+      nearer = 0.0;
+    }
     ClosestPoint closest;
     closest.distance = seeker.reach;
     Vec3 nearest = Vec3::Zero();

@@ -6,6 +6,7 @@
 #define SPHCLOTH_FLUID_BOUNDARY_MESH_H
 
 #include "contact/triangle_set.h"
+#include "core/geometry/disc_grid.h"
 #include "core/sph/plane_wall.h"
 
 #include <array>
@@ -39,7 +40,7 @@ class BoundaryMesh : protected Pointers {
   {
   }
 
-  // After each list build: triangles that may be nearest to a particle until the next one.
+  // After each list build: which particles may come near a triangle until the next one.
   // reach(i): of the kernel of an owned particle, 0 for one that does not feel this wall.
   void update_candidates(double skin, const std::function<double(int)> &reach);
 
@@ -76,12 +77,15 @@ class BoundaryMesh : protected Pointers {
  private:
   struct Candidate {
     int triangle;
-    double distance;    // at the list build
+    double distance;    // when they were found
   };
+  // A particle, and the triangles that may be the nearest while it and the mesh move by no more
+  // than margin() together
   struct Seeker {
     int particle;
     double reach;
-    Vec3 at;    // at the list build
+    Vec3 at;    // when they were found
+    double path;    // of the mesh then
     std::size_t first, last;    // candidates, nearest first
     std::size_t first_border, last_border;
   };
@@ -92,13 +96,22 @@ class BoundaryMesh : protected Pointers {
   std::vector<std::array<int, 2>> borders;    // slots of the ends
   std::vector<Seeker> seekers;
   std::vector<Vec3> positions, list_positions;    // by slot, now and at the list build
+  // how far a vertex may have moved since the list build, by its largest step each time, and how
+  // far one is from where it was
+  double path = 0.0, displacement = 0.0;
+  std::vector<sphcloth::Disc> discs;
+  sphcloth::DiscGrid grid;    // at the list build
+  std::vector<Candidate> near;    // of one particle
   std::vector<Vec3> forces, wetting;    // by slot
   std::vector<Vec3> stiffness;    // by slot: the sum over fluid, the rate of friction
 
+  double margin() const;
   void find_positions();
-  void keep_nearest(const Vec3 &p, double within, std::vector<Candidate> &near) const;
+  void sort_triangles(double farthest);
+  void find_candidates(const Vec3 &p, double within);
+  void store_candidates(Seeker &);
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
-  bool is_beyond(const Vec3 &p, const std::vector<Candidate> &nearest_first) const;
+  bool is_beyond(const Vec3 &p) const;
   void find_border(const Vec3 &at, const Seeker &, ClosestPoint &) const;
   static void spread(const ClosestPoint &, const Vec3 &, std::vector<Vec3> &);
   void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);

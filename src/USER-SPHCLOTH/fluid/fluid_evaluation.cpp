@@ -149,7 +149,8 @@ void FluidEvaluation::find_forces()
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
   if (!calibrates()) return;    // else, so far, the rates of the sums
-  for_each_fluid([this](int i, int t) { atom->drho[i] *= lattices.slope(t, atom->rho[i]); });
+  core->for_active_fluid(
+      [this](int i, int t) { atom->drho[i] *= lattices.slope(t, atom->rho[i]); });
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
@@ -157,7 +158,7 @@ void FluidEvaluation::find_forces()
 void FluidEvaluation::push(FluidBoundary &boundary)
 {
   const auto push_one = [&](int i, int) { boundary.push(i, p_over_rho2[i]); };
-  if (!pressures_follow) return for_each_fluid(push_one);
+  if (!pressures_follow) return core->for_active_fluid(push_one);
   for (int i = 0; i < atom->nlocal; i++)
     if (const int t = atom->type[i]; is_fluid(t)) push_one(i, t);
 }
@@ -231,7 +232,7 @@ void FluidEvaluation::select(const Particles &p)
   if (!core->select(p)) return;
   if (!hooks) return;
   active_fluid.clear();
-  for_each_fluid([this](int i, int) { active_fluid.push_back(i); });
+  core->for_active_fluid([this](int i, int) { active_fluid.push_back(i); });
 }
 
 Fluid::Box FluidEvaluation::box() const
@@ -327,9 +328,9 @@ void FluidEvaluation::find_densities(const Particles &p)
   if (!integrates_density()) {
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
-      for_each_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
+      core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
     if (!calibrates()) return;
-    return for_each_fluid([&](int i, int t) { p.rho[i] = lattices.density(t, p.rho[i]); });
+    return core->for_active_fluid([&](int i, int t) { p.rho[i] = lattices.density(t, p.rho[i]); });
   }
   check_densities();
   core->record(p);
@@ -348,13 +349,13 @@ void FluidEvaluation::integrate_density(const Particles &p)
   if (!(dt > 0.0)) return;
   find_density_rates(p, back);
   for (FluidBoundary *boundary : boundaries)
-    for_each_fluid([&](int i, int) { rate[i] = boundary->density_rate(i, rate[i], back); });
-  for_each_fluid([&](int i, int) { p.rho[i] += dt * rate[i]; });
+    core->for_active_fluid([&](int i, int) { rate[i] = boundary->density_rate(i, rate[i], back); });
+  core->for_active_fluid([&](int i, int) { p.rho[i] += dt * rate[i]; });
   elapsed = 0.0;
   if (const int every = options.reinit; every && update->ntimestep % every == 0) {
     ghosts.send_to_ghosts(GhostData::DENSITY);
     core->smooth_densities(p, rate.data());
-    for_each_fluid([&](int i, int) { p.rho[i] = rate[i]; });
+    core->for_active_fluid([&](int i, int) { p.rho[i] = rate[i]; });
   }
 }
 
@@ -394,7 +395,7 @@ void FluidEvaluation::find_frequencies()
   if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
   stability.find_rows(*core, p, boundaries, scaled.on());
   if (!scaled.on()) return;
-  for_each_fluid([this](int i, int) {
+  core->for_active_fluid([this](int i, int) {
     if (scaled.is_beside_vertices(i))
       stability.set_fluid_sq(i, scaled.frequency_sq(i, stability[i].fluid_sq));
   });
@@ -418,7 +419,7 @@ void FluidEvaluation::find_pressures(const Particles &p)
                  "{}: particle {} has density {}: particles overlap or the time step is too large",
                  STYLE, atom->tag[i], rho);
   };
-  if (!active || !(pressures_follow || new_lists)) return for_each_fluid(find);
+  if (!active || !(pressures_follow || new_lists)) return core->for_active_fluid(find);
   for (int i = 0; i < p.n_owned; i++)
     if (is_fluid(p.type[i])) find(i, p.type[i]);
 }

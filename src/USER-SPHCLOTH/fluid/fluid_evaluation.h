@@ -67,9 +67,6 @@ class FluidEvaluation : public FluidState {
   void push(FluidBoundary &);
   void find_boundary_pressures(const sphcloth::Particles &);
   void find_frequencies();
-
-  // act(i, type) for active fluid particles
-  template <class Act> void for_each_fluid(Act act) const { core->for_active_fluid(act); }
 };
 
 }    // namespace LAMMPS_NS

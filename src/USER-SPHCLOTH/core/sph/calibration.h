@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/sph/kernel.h"
+#include "core/sph/lattice_sites.h"
 
 namespace sphcloth {
 
@@ -34,24 +35,19 @@ template <class Kernel> LatticeSums lattice_sums(double support_over_spacing, in
 {
   const double support = support_over_spacing;
   const KernelScale scale = kernel_scale<Kernel>(support, dim);
-  const int reach = static_cast<int>(support), reach_z = dim == 3 ? reach : 0;
   LatticeSums of;
   of.sum = 0.0;
-  of.layers.resize(reach);
+  of.layers.resize(static_cast<std::size_t>(support));
   double moment = 0.0;    // sum of r dW/dr
-  for (int i = -reach; i <= reach; i++)
-    for (int j = -reach; j <= reach; j++)
-      for (int k = -reach_z; k <= reach_z; k++) {
-        const double r_sq = i * i + j * j + k * k, q = std::sqrt(r_sq) / support;
-        if (q >= 1.0) continue;
-        const double w = scale.w * Kernel::shape(q), slope = scale.f * Kernel::slope_over_q(q);
-        of.sum += w;
-        moment += slope * r_sq;
-        for (int layer = 0; layer < -i; layer++) {
-          of.layers[layer].sum += w;
-          of.layers[layer].gradient += slope * i;
-        }
-      }
+  for_lattice_sites(support, dim, [&](int i, int, int, double r_sq, double q) {
+    const double w = scale.w * Kernel::shape(q), slope = scale.f * Kernel::slope_over_q(q);
+    of.sum += w;
+    moment += slope * r_sq;
+    for (int layer = 0; layer < -i; layer++) {
+      of.layers[layer].sum += w;
+      of.layers[layer].gradient += slope * i;
+    }
+  });
   of.exponent = -moment / (dim * of.sum);
   return of;
 }

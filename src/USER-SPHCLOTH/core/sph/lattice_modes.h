@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/sph/kernel.h"
+#include "core/sph/lattice_sites.h"
 
 namespace sphcloth {
 
@@ -36,17 +37,13 @@ template <class Kernel> LatticeModes lattice_modes(double support_over_spacing, 
   };
   std::vector<Neighbor> half;    // one of each pair r, -r
   double alone = 0.0, weights = 0.0;
-  const int reach = static_cast<int>(support), reach_z = dim == 3 ? reach : 0;
-  for (int i = -reach; i <= reach; i++)
-    for (int j = -reach; j <= reach; j++)
-      for (int k = -reach_z; k <= reach_z; k++) {
-        const double r_sq = i * i + j * j + k * k, q = std::sqrt(r_sq) / support;
-        if (!(std::array{i, j, k} > std::array{0, 0, 0}) || q >= 1.0) continue;
-        const double slope = Kernel::slope_over_q(q);
-        half.push_back({{i, j, k}, slope});
-        alone += 2.0 * slope * slope * r_sq;
-        weights -= 2.0 * slope;
-      }
+  for_lattice_sites(support, dim, [&](int i, int j, int k, double r_sq, double q) {
+    if (!(std::array{i, j, k} > std::array{0, 0, 0})) return;
+    const double slope = Kernel::slope_over_q(q);
+    half.push_back({{i, j, k}, slope});
+    alone += 2.0 * slope * slope * r_sq;
+    weights -= 2.0 * slope;
+  });
   LatticeModes largest;
   if (half.empty()) return largest;
   // by symmetry one of the 8 or 48 equal parts of all waves

@@ -85,6 +85,27 @@ def test_momentum_is_exact(scene):
     assert np.abs(end - start).max() < 1e-13 * scale
 
 
+HALVES = """region right block 0 INF INF INF INF INF
+group half region right
+group right intersect half fluid
+group left subtract fluid right
+fix contact right cloth/contact 0.005 wall yes sides no
+fix other left cloth/contact 0.005 wall yes sides no
+"""
+
+
+def test_a_sheet_may_be_the_wall_of_two_contacts():
+    """Each vertex gets what the springs of both carry."""
+    with instance() as lmp:
+        lmp.commands_string(wall_sheet(0.5, f"global {ALONE}").replace(CONTACT, HALVES))
+        lmp.command("run 0 post no")
+        stir(lmp, 1e-5)
+        start, scale = momentum_with_sheet(lmp)
+        lmp.command("run 5 post no")
+        end, _ = momentum_with_sheet(lmp)
+    assert np.abs(end - start).max() < 1e-9 * scale
+
+
 def hanging(step):
     """Four layers of water on a light sheet that is held along its rim, at rest after a while."""
     lmp = instance()

@@ -87,7 +87,7 @@ void ScaledMass::find_kicks(double dt)
   carried_by_meshes.assign(stiffnesses.size(), Vec3::Zero());
   meshes.carry(
       dt, [this](int fluid) { return kick(fluid); },
-      [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] = carried; });
+      [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] += carried; });
 }
 
 ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const

@@ -44,10 +44,10 @@ def test_the_step_is_that_of_water_whatever_the_mass():
     assert np.ptp(steps) < 1e-9 * step
 
 
-def growth(areal, step, n, scaled):
+def growth(areal, step, n, scaled, *, scene=soaked, speed=1e-2):
     """By how much the energy of small velocities grows in constant steps."""
-    with soaked(areal, f"constant mass_scaling {scaled}") as lmp:
-        return growth_in(lmp, f"timestep {step}\nrun {n} post no")
+    with scene(areal, f"constant mass_scaling {scaled}") as lmp:
+        return growth_in(lmp, f"timestep {step}\nrun {n} post no", speed)
 
 
 def at_wall(areal, step):
@@ -57,8 +57,7 @@ def at_wall(areal, step):
 
 
 def growth_at_wall(areal, step, n, scaled="yes"):
-    with at_wall(areal, f"constant mass_scaling {scaled}") as lmp:
-        return growth_in(lmp, f"timestep {step}\nrun {n} post no", speed=1e-5)
+    return growth(areal, step, n, scaled, scene=at_wall, speed=1e-5)
 
 
 def test_the_step_is_that_of_water_beside_a_mesh_that_is_a_wall():

@@ -49,6 +49,9 @@ class BoundaryMesh : protected Pointers {
 
   Vec3 velocity_at(const ClosestPoint &) const;
   VertexHalo &halo() { return set->halo; }
+  // Sums by slot, of all ranks, to owned vertices: take(atom, sum) where it is not 0.  They are 0
+  // then.  Collective.
+  void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
 
   // force on the mesh at a foot; handed over to owned vertices, take(atom, force)
   void give(const ClosestPoint &closest, const Vec3 &push) { spread(closest, push, forces); }
@@ -114,7 +117,6 @@ class BoundaryMesh : protected Pointers {
   bool is_beyond(const Vec3 &p) const;
   void find_border(const Vec3 &at, const Seeker &, ClosestPoint &) const;
   static void spread(const ClosestPoint &, const Vec3 &, std::vector<Vec3> &);
-  void sum_up(std::vector<Vec3> &, const std::function<void(int, const Vec3 &)> &take);
 };
 
 }    // namespace LAMMPS_NS

@@ -29,16 +29,14 @@ void MeshScaling::add(const ClosestPoint &at, double stiffness, const Vec3 &dire
 
 void MeshScaling::clear_sums()
 {
-  for (std::size_t m = 0; m < n_meshes; m++) {
-    Mesh &mesh = meshes[m];
-    mesh.sums.assign(mesh.of->halo().n_slots(), Vec3::Zero());
-    mesh.mixed = mesh.sums;
-  }
+  for (std::size_t m = 0; m < n_meshes; m++)
+    meshes[m].sums.assign(meshes[m].of->halo().n_slots(), Vec3::Zero());
 }
 
 void MeshScaling::sum_stiffness(const std::function<void(int, const Mat3 &)> &take)
 {
   clear_sums();
+  for (std::size_t m = 0; m < n_meshes; m++) meshes[m].mixed = meshes[m].sums;
   for (const Spring &s : springs) {
     const Vec3 &e = s.direction, squares = s.stiffness * e.cwiseProduct(e),
                mixed = s.stiffness * Vec3(e[0] * e[1], e[0] * e[2], e[1] * e[2]);
@@ -70,12 +68,7 @@ void MeshScaling::carry(double dt, const OfFluid &kick, const Take &take)
         MassScaling::SHARE * dt * dt * s.stiffness * s.direction.dot(kick(s.fluid)) * s.direction;
     for (int q = 0; q < 3; q++) meshes[s.mesh].sums[s.vertices[q]] += s.weight[q] * carried;
   }
-  for (std::size_t m = 0; m < n_meshes; m++) {
-    VertexHalo &halo = meshes[m].of->halo();
-    halo.reverse_add(0, meshes[m].sums.data());
-    for (int s = 0; s < halo.n_owned(); s++)
-      if (!meshes[m].sums[s].isZero(0.0)) take(halo.atom_of(s), meshes[m].sums[s]);
-  }
+  for (std::size_t m = 0; m < n_meshes; m++) meshes[m].of->sum_up(meshes[m].sums, take);
 }
 
 void MeshScaling::give(double dt, const OfFluid &kick,

@@ -147,9 +147,6 @@ PoreMesh::Vec3 PoreMesh::slow_down(double &lost)
     lost += impulse.dot(u - 0.5 * change);
     for (int q = 0; q < 3; q++) pushed[pair.vertices[q]] += pair.weight[q] * impulse;
   }
-  set->halo.reverse_add(0, pushed.data());
-  for (int s = 0; s < set->halo.n_owned(); s++)
-    if (!pushed[s].isZero(0.0)) set->mesh->push_held(set->halo.atom_of(s), pushed[s]);
-  std::fill(pushed.begin(), pushed.end(), Vec3::Zero());
+  mesh.sum_up(pushed, [this](int i, const Vec3 &push) { set->mesh->push_held(i, push); });
   return sum;
 }

@@ -33,6 +33,7 @@ RHO0, GRAVITY, SUPPORT, KERNEL = 1000.0, 9.81, 2.0, "wendland/c2"
 LATE = 0.2
 FRAMES = 50
 COUPLINGS = ("pressure", "contact", "wall")
+DENSITIES = ("summation", "calibrated")
 
 PARAMETERS = (
     Parameter("size", 1.4, "m", "side of the sheet without load", 0.1, 10.0),
@@ -43,6 +44,7 @@ PARAMETERS = (
     Parameter("across", 28, "1", "edges and particles over the side", 14, 200, quick=20),
     Parameter("speed", 3.0, "m/s", "reference speed of a fluctuation of 1 %", 1.0, 100.0),
     Parameter("alpha", 0.1, "1", "artificial viscosity", 0.0, 2.0),
+    Parameter("density", "summation", "1", "of the water", choices=DENSITIES),
     Parameter("strain", 0.01, "1", "largest strain that the solver adds", 1e-4, 0.5),
     Parameter("coupling", "pressure", "1", "of water and sheet", choices=COUPLINGS),
     Parameter("thick", 0.0, "1", "volume of a vertex over spacing^3, 0 for auto", 0.0, 3.0),
@@ -109,7 +111,7 @@ class Pool:
     @cached_property
     def sheet(self) -> FilledSheet:
         """The sheet of springs with the water of the run."""
-        volume = self.remaining * particle_mass(self.spacing) / RHO0
+        volume = self.remaining * particle_mass(self.values, self.spacing) / RHO0
         return springs(self.run, self.mesh, self.values, volume)
 
     @cached_property
@@ -142,7 +144,7 @@ class Pool:
         water = np.concatenate([frame.select(1).positions for frame in self.frames])
         half = np.max(np.abs(water[:, :2])) / 3
         near = np.all(np.abs(water[:, :2]) < half, axis=1)
-        particle = particle_mass(self.spacing) / RHO0
+        particle = particle_mass(self.values, self.spacing) / RHO0
         layer = len(self.frames) * (2 * half) ** 2 * self.spacing / particle
         return surface_level(water[near, 2], layer, self.spacing)
 
@@ -203,14 +205,16 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
     }
 
 
-def particle_mass(spacing: float) -> float:
+def particle_mass(values: Mapping[str, Value], spacing: float) -> float:
     """Return the mass that ``pair_coeff ... spacing`` gives a particle, kg."""
+    if values["density"] == "calibrated":
+        return RHO0 * spacing**3
     return RHO0 * spacing**3 / cubic_density_sum(KERNEL, SUPPORT)
 
 
 def particles(values: Mapping[str, Value], spacing: float) -> int:
     """Return the number of particles poured."""
-    return round(RHO0 * values["water"] * values["size"] ** 3 / particle_mass(spacing))
+    return round(RHO0 * values["water"] * values["size"] ** 3 / particle_mass(values, spacing))
 
 
 def springs(run: Run, mesh: ClothMesh, values: Mapping[str, Value], volume: float) -> FilledSheet:
@@ -230,7 +234,7 @@ def springs(run: Run, mesh: ClothMesh, values: Mapping[str, Value], volume: floa
 def _run(values: Mapping[str, Value], runner: Runner, label: str, across: int) -> Run:
     """Run the example with so many edges over the side."""
     spacing = values["size"] / across
-    names = ("size", "slack", "areal", "speed", "alpha", "coupling", "scheme")
+    names = ("size", "slack", "areal", "speed", "alpha", "density", "coupling", "scheme")
     shared = {name: values[name] for name in names}
     changed = {
         "spacing": spacing,

@@ -7,6 +7,8 @@ import pytest
 from harness import by_id, instance
 from reference_sph import C0, KERNELS, RHO0, H
 
+from sphcloth.validation.cases import pour
+
 
 def with_spacing(coeff="spacing 0.05", *, dimension=3, before="", kernel="wendland/c2"):
     """A lattice of spacing 0.05, its mass by the pair style."""
@@ -61,6 +63,16 @@ def test_mass_of_a_lattice_follows_kernel_support_and_spacing():
     np.testing.assert_allclose(by_id(lmp, "rho"), RHO0, rtol=1e-12)
     lmp.command(f"pair_coeff 1 1 fluid {RHO0} c0 {C0} spacing 0.04")
     np.testing.assert_allclose(mass[1], mass_of_lattice("cubic", spacing=0.04), rtol=1e-12)
+
+
+@pytest.mark.parametrize("density", pour.DENSITIES)
+def test_the_case_pour_knows_the_mass_of_its_particles(density):
+    lmp = with_spacing(
+        f"spacing 0.05 support {0.05 * pour.SUPPORT}", kernel=f"{pour.KERNEL} density {density}"
+    )
+    lmp.command("run 0")
+    mass = pour.particle_mass({"density": density}, 0.05) * RHO0 / pour.RHO0
+    np.testing.assert_allclose(lmp.extract_atom("mass")[1], mass, rtol=1e-12)
 
 
 def test_mass_of_a_lattice_in_restart_and_data_files(tmp_path):

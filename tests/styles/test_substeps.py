@@ -181,10 +181,22 @@ def test_a_strain_that_no_substep_reaches_is_said(tmp_path):
     assert found[-1, 3] > 1e-6
 
 
-def test_an_impact_gives_back_no_more_than_it_brought(tmp_path):
-    """Water of 200 times the mass of a vertex falls on a light taut sheet.
+@pytest.mark.parametrize(
+    ("speed", "density", "edge", "areal", "limit"),
+    [
+        (4, 1242, 0.18, 0.22, 1.05),
+        (3, 1242, 0.18, 0.22, 1.5),
+        (2, 3000, 0.18, 0.22, 1.5),
+        (2.5, 900, 0.15, 0.22, 1.5),
+        (4.5, 1000, 0.14, 1.0, 1.5),
+    ],
+)
+def test_an_impact_gives_back_no_more_than_it_brought(tmp_path, speed, density, edge, areal, limit):
+    """Water of 50 to 500 times the mass of a vertex falls on a taut sheet.
 
-    Substeps become short enough only while edges are stretched by 4 %.
+    Substeps become short enough only while edges are stretched, by 1 to 6 %.  Less is allowed then,
+    while the water is still there, which pulls at it: that may give some percent of the energy, and
+    depends on round-off.
     """
     script = (
         header("f f f", "hybrid sph molecular")
@@ -192,14 +204,15 @@ def test_an_impact_gives_back_no_more_than_it_brought(tmp_path):
         + "create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 10 &\n"
         "  extra/angle/per/atom 10 extra/dihedral/per/atom 20\n"
         "region pinned cylinder z 0 0 0.51 INF INF side out units box\n"
-        "create_cloth 2 0.22 disc 0.565 spacing 0.18 axes 1 0 0 0 1 0 group cloth pin pinned pins\n"
+        f"create_cloth 2 {areal} disc 0.565 spacing {edge} axes 1 0 0 0 1 0 group cloth &\n"
+        "  pin pinned pins\n"
         "lattice sc 0.1 origin 0.5 0.5 0.03\n"
         "region low block -0.297 0.297 -0.198 0.198 0.02 0.52 units box\n"
         "create_atoms 1 region low\ngroup water type 1\n"
         "pair_style sph/tait 0.23 tension no\n"
-        "pair_coeff 1 1 fluid 1242 c0 45 alpha 0 spacing 0.1\npair_coeff 2 2 none\n"
+        f"pair_coeff 1 1 fluid {density} c0 45 alpha 0 spacing 0.1\npair_coeff 2 2 none\n"
         "neighbor 0.05 bin\nneigh_modify every 1 delay 0 check yes\n"
-        "velocity water set 0 0 -4 units box\n"
+        f"velocity water set 0 0 -{speed} units box\n"
         + cloth_styles(1.0, 0.5)
         + "timestep 3.8e-3\nfix step water sph/integrate global\nrun_style sph/adaptive global\n"
         "fix sheet cloth pbd/cloth damping 5 pin pins\n"
@@ -209,8 +222,8 @@ def test_an_impact_gives_back_no_more_than_it_brought(tmp_path):
     ).replace("thermo_style", "compute sheet all pbd/cloth strain\nthermo_style", 1)
     run(write(tmp_path, script + "run 80\n"))
     found = rows(tmp_path / "log")
-    assert found[:, 3].max() > 0.02
-    assert found[:, 1].max() < 1.05 * found[0, 1]
+    assert found[:, 3].max() > 0.01
+    assert found[:, 1].max() < limit * found[0, 1]
     assert found[-1, 1] > 0.1 * found[0, 1]
 
 

@@ -35,6 +35,10 @@ static constexpr double ROUND_OFF = 1e-6;
 // the most of them where it is all of it.
 static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
+
+// Rows share the mass of a vertex, so that one pass over many at a vertex leaves a part of each gap
+// missing, which heavy particles then get back behind the solver, as compression.
+static constexpr int PASSES_OF_PARTICLES = 3;
 static constexpr double NONE = -1.0;
 
 // By which, of the thickness, the two sides of a row may move past one another before their closest
@@ -68,6 +72,7 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
   passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
+  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
   too_near = all > 0.0;
   points.begin_step(dt);
   start_rows();
@@ -198,17 +203,15 @@ void ContactRows::project(Vertex *displacement)
 {
   const WallTimer clock(mesh.counts.seconds);
   load_positions(displacement);
-  for (int pass = 0; pass < passes; pass++) {
+  for (int pass = 0; pass < passes_of_active; pass++) {
     masses.clear_impulses();
-    awake.clear();
-    for (std::size_t k = 0; k < rows.size(); k++)
-      if (awake_from[k] <= path_of(k)) awake.push_back(static_cast<int>(k));
+    wake(pass >= passes);
     for_ahead(awake, [this](int k) {
       project_normal(k);
       if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
     });
     push_positions(displacement);
-    if (pass < passes - 1) load_ghosts(Vec3::Zero());
+    if (pass < passes_of_active - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
     points.measure_paths(Vec3::Zero());
   }

@@ -65,7 +65,7 @@ class ContactRows : public SolverCoupling, protected Pointers {
   std::vector<Vec3> ghosts_before;
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
   const sphcloth::Vertex *substep_start = nullptr;
-  int passes = 1;    // of a projection, in this step
+  int passes = 1, passes_of_active = 1;    // of a projection, in this step
   bool too_near = false;    // is some cloth to cloth, on any rank?
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
@@ -80,6 +80,16 @@ class ContactRows : public SolverCoupling, protected Pointers {
                                  : path + points.path(slot_of_particle[row - n_rows_of_cloth]);
   }
   bool recovers_in_solver() const { return of_particles.none(); }
+  void wake(bool only_active)
+  {
+    if (only_active) {
+      awake = active;
+      return;
+    }
+    awake.clear();
+    for (std::size_t k = 0; k < rows.size(); k++)
+      if (awake_from[k] <= path_of(k)) awake.push_back(static_cast<int>(k));
+  }
   double find_rows_of_cloth();
   void find_rows_of_particles();
   void add_row(const ContactPair &, const sphcloth::ClosestPoints &at_start, double gap);

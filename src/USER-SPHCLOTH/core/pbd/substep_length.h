@@ -43,8 +43,8 @@ class SubstepLength {
 
   // How far edges are stretched, and what their load strains them by, both over the strain that was
   // allowed then.  Where substeps were too long for the load they have given way farther than
-  // springs would.  Then more is allowed, so that springs at this strain are as hard as the substeps
-  // have made them: harder ones would give back more than they took.
+  // springs would.  Then more is allowed, so that springs at this strain are as hard as the
+  // substeps have made them: harder ones would give back more than they took.
   void stretched(double strain, double by_load)
   {
     constexpr double TOO_FAR = 1.5;    // over the strain by the load

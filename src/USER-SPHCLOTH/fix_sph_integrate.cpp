@@ -27,7 +27,7 @@ using namespace FixConst;
 using namespace sphcloth;
 
 /* ----------------------------------------------------------------------
-   fix ID group sph/integrate constant|global keyword value ...
+   fix ID group sph/integrate [constant|global keyword value ...]
 ------------------------------------------------------------------------- */
 
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
@@ -52,8 +52,9 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
   dynamic_group_allow = 1;
 
   ArgReader args(lmp, label, narg, arg, 3);
-  options.scheme = args.choice("scheme", {"constant", "global"}) ? SteppingScheme::GLOBAL
-                                                                 : SteppingScheme::CONSTANT;
+  options.scheme = args.more() && !args.choice("scheme", {"constant", "global"})
+      ? SteppingScheme::CONSTANT
+      : SteppingScheme::GLOBAL;
   options.ceiling = update->dt;
   options.read(args, control.times);
   if (options.min > options.ceiling)

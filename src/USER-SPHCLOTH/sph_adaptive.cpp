@@ -28,13 +28,14 @@ using namespace LAMMPS_NS;
 
 static const std::string STYLE = "run_style sph/adaptive";
 
-// run_style sph/adaptive constant|global|individual|block
+// run_style sph/adaptive [constant|global|individual|block]
 
 SPHAdaptive::SPHAdaptive(LAMMPS *lmp_, int narg, char **arg) :
     Verlet(lmp_, narg, arg), stepping(SteppingScheme::GLOBAL), particles(nullptr),
     fluid_alone(false)
 {
   ArgReader args(lmp, STYLE, narg, arg);
+  if (!args.more()) return;
   stepping = static_cast<SteppingScheme>(
       args.choice("scheme", {"constant", "global", "individual", "block"}));
   if (args.more()) args.unknown(args.peek(), "no keyword after the scheme");

@@ -285,7 +285,6 @@ CASES = [
         r"fix shift sph/shift: pair_style zero.*use 'pair_style sph/tait'",
     ),
     # fix sph/integrate and run_style
-    case("step: no scheme", STEP, r"fix step sph/integrate: scheme is missing"),
     case("step: scheme", STEP + "local", r"scheme is 'local'.*constant or global"),
     case("step: keyword", STEP + "global speed 1", r"unknown keyword 'speed'"),
     case("step: growth", STEP + "global growth 3", r"growth is '3.*at most 2"),
@@ -321,7 +320,6 @@ CASES = [
         STEP + "global\nfix again water sph/integrate global\nrun 0",
         r"another fix sph/integrate",
     ),
-    case("run style: scheme", STEP + "global\nrun_style sph/adaptive", r"scheme is missing"),
     case("run style: value", STEP + "global\nrun_style sph/adaptive all", r"scheme is 'all'"),
     case(
         "run style: no fix",

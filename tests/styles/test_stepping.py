@@ -249,6 +249,19 @@ def test_run_style_and_fix_alone_agree_to_the_last_bit(scheme):
     assert np.abs(results[0][1]).max() > 0.1
 
 
+def test_the_scheme_is_global_if_nothing_says_another():
+    results, scene = [], DAM.replace("timestep 0.002", "timestep 0.02")
+    for scheme, style in (
+        ("global", "run_style sph/adaptive global"),
+        ("", "run_style sph/adaptive"),
+    ):
+        lmp = instance()
+        lmp.commands_string(scene.format(scheme=scheme, style=style))
+        results.append((lmp.extract_global("dt"), by_id(lmp, "x")))
+    assert results[0][0] == results[1][0] < 0.01
+    np.testing.assert_array_equal(results[0][1], results[1][1])
+
+
 def test_the_run_style_says_the_scheme():
     lmp = instance()
     lmp.commands_string(

@@ -68,12 +68,14 @@ def compare_schemes(
 ) -> Comparison:
     """Run a case by every scheme, each in a folder of its own, and write ``schemes.json``.
 
-    Individual and block steps need densities by summation, so all schemes take them here.
+    Individual and block steps need densities by summation: all schemes take them here where the case
+    takes continuity.
 
     Raises:
         UserError: a setting that is not allowed.
     """
-    densities = {"density": "summation"} if case.knows("density") else {}
+    by_rates = case.knows("density") and case.values({}, quick)["density"] == "continuity"
+    densities = {"density": "summation"} if by_rates else {}
     same = densities | dict(settings)
     case.values(same, quick)
     out.mkdir(parents=True, exist_ok=True)

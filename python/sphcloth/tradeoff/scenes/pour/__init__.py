@@ -21,8 +21,11 @@ def clock(values: Mapping[str, float]) -> Clock:
 
 POUR = find_example("pour")
 # A stiffness k depends on the step by its nature, a compliance does not.  A slack sheet takes
-# another fold with every other step, so this one is as large as its frame.
+# another fold with every other step, so this one is as large as its frame.  Vertices that press
+# are what the limit `wetted` is about.
 SHARED = {
+    "density": "summation",
+    "coupling": "pressure",
     "stretch": "compliance 5e-5",
     "bend": "0.0",
     "slack": "0.0",

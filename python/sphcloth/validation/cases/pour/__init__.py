@@ -31,7 +31,7 @@ from sphcloth.validation.runner import Run, Runner
 RHO0, GRAVITY, SUPPORT, KERNEL = 1000.0, 9.81, 2.0, "wendland/c2"
 # last share of the time over which is averaged
 LATE = 0.2
-FRAMES = 50
+FRAMES = 200
 COUPLINGS = ("pressure", "contact", "wall")
 DENSITIES = ("summation", "calibrated")
 
@@ -44,9 +44,9 @@ PARAMETERS = (
     Parameter("across", 28, "1", "edges and particles over the side", 14, 200, quick=20),
     Parameter("speed", 3.0, "m/s", "reference speed of a fluctuation of 1 %", 1.0, 100.0),
     Parameter("alpha", 0.1, "1", "artificial viscosity", 0.0, 2.0),
-    Parameter("density", "summation", "1", "of the water", choices=DENSITIES),
+    Parameter("density", "calibrated", "1", "of the water", choices=DENSITIES),
     Parameter("strain", 0.01, "1", "largest strain that the solver adds", 1e-4, 0.5),
-    Parameter("coupling", "pressure", "1", "of water and sheet", choices=COUPLINGS),
+    Parameter("coupling", "wall", "1", "of water and sheet", choices=COUPLINGS),
     Parameter("thick", 0.0, "1", "volume of a vertex over spacing^3, 0 for auto", 0.0, 3.0),
     Parameter("dt", 2e-3, "s", "largest step", 1e-6, 0.1),
     Parameter("constant", 5e-4, "s", "step of the scheme constant", 1e-6, 0.1),

@@ -137,7 +137,7 @@ def test_a_jet_on_a_sheet_that_is_a_wall_pulls_at_the_pins(tmp_path: Path) -> No
 
 @pytest.mark.usefixtures("finest_only")
 def test_a_weight_on_a_sheet_that_is_a_wall_hangs_at_the_pins(tmp_path: Path) -> None:
-    settings = {"mode": "wall", "across": "12", "time": "4"}
+    settings = {"mode": "wall", "across": "12", "time": "8"}
     result = run_case("pinned-weight", tmp_path, **settings)
     for name in ("pins", "pins_by_atom", "crossed"):
         assert result.metrics[name].passed, (name, result.metrics[name].value)

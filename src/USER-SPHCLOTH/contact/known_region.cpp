@@ -83,6 +83,10 @@ void KnownRegion::check(double vertex_displacement) const
 {
   if (!bounded) return;
   const double near = mesh.rules.thickness + vertex_displacement, margin = near + longest_edge;
+  const std::array<Interval, 3> all = around_sweeps();
+  if (missing({all[0].low, all[1].low, all[2].low}, {all[0].high, all[1].high, all[2].high},
+              margin) == 0.0)
+    return;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & mesh.groupbits)) continue;
     const Sweep sweep = mesh.sweep_of(i);
@@ -97,6 +101,35 @@ void KnownRegion::check(double vertex_displacement) const
                mesh.label, atom->tag[i], (sweep.end - sweep.start).norm(), update->ntimestep,
                vertex_displacement, reach, reach + unknown);
   }
+}
+
+// Of all of them, which mostly stay where triangles are known: loops without branches.
+
+std::array<KnownRegion::Interval, 3> KnownRegion::around_sweeps() const
+{
+  constexpr double INFINITE = std::numeric_limits<double>::infinity();
+  const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
+  const double *const x = n > 0 ? atom->x[0] : nullptr;
+  const ParticleColumns &last = mesh.last_positions;
+  const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
+  std::array<Interval, 3> around;
+  for (int d = 0; d < 3; d++) {
+    const Vec3 origin = in_box(Vec3::Zero()),
+               along[3] = {in_box(Vec3::UnitX()) - origin, in_box(Vec3::UnitY()) - origin,
+                           in_box(Vec3::UnitZ()) - origin};
+    const double ax = along[0][d], ay = along[1][d], az = along[2][d];
+    double low = INFINITE, high = -INFINITE;
+#pragma omp simd reduction(min : low) reduction(max : high)
+    for (int i = 0; i < n; i++) {
+      const bool collides = (mask[i] & groupbits) != 0;
+      const double from = ax * x0[i] + ay * y0[i] + az * z0[i],
+                   to = ax * x[3 * i] + ay * x[3 * i + 1] + az * x[3 * i + 2];
+      low = std::min(low, collides ? std::min(from, to) : INFINITE);
+      high = std::max(high, collides ? std::max(from, to) : -INFINITE);
+    }
+    around[d] = {origin[d] + low, origin[d] + high};
+  }
+  return around;
 }
 
 // how much farther ghosts would have to reach

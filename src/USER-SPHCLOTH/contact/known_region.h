@@ -48,6 +48,7 @@ class KnownRegion : protected Pointers {
   std::array<double, 3> period, unit;
 
   Vec3 in_box(const Vec3 &) const;
+  std::array<Interval, 3> around_sweeps() const;
   double missing(const Vec3 &low, const Vec3 &high, double margin) const;
   bool may_meet_mesh(const Vec3 &low, const Vec3 &high, double margin) const;
 };

@@ -136,13 +136,18 @@ BOOST_AUTO_TEST_CASE(an_impact_raises_the_allowed_strain_to_what_the_substeps_ha
     length.found(hardest, 1.0);
   };
   step(DT, 1.0);
-  step(DT, 0.3);
-  step(DT, 0.01);
-  BOOST_TEST(length.state.hardness == 0.5);
+  step(DT, 0.5);
+  BOOST_TEST(length.state.hardness == 1.0);
   // as far as springs are under their load, or hardly hard
-  length.stretched(1.4, 1.0);
-  length.stretched(0.49, 0.1);
+  length.stretched(1.9, 1.0);
+  length.stretched(0.66, 0.1);
   BOOST_TEST(length.yield() == 1.0);
+  // a load that came at once, or a stretch that it does not explain
+  SubstepLength other = length;
+  other.found(0.2, 1.0);
+  other.stretched(1.9, 1.0);
+  BOOST_TEST(other.yield() > 3.0);
+  step(DT, 0.3);
   length.stretched(5.0, 1.0);
   // springs at that strain are as hard as the substeps were
   BOOST_TEST(hardness(5.0 / length.yield()) == length.state.hardness,

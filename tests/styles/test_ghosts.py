@@ -161,13 +161,18 @@ def test_a_step_longer_than_the_kernel_meets_the_image_of_a_sheet():
     assert lmp.extract_fix("contact", 0, 1, 0) + lmp.extract_fix("contact", 0, 1, 1) > 0
 
 
-def test_a_step_longer_than_ghosts_can_reach_is_named():
+@pytest.mark.parametrize("tilt", ["", "0 -0.02 0"])
+def test_a_step_longer_than_ghosts_can_reach_is_named(tilt):
     message = (
         r"fix contact cloth/contact: particle 1 moves by 1.98\d* in step 1.*lower the time step, "
         r"or raise the ghost cutoff .* to .* with 'comm_modify cutoff'"
     )
+    script = towards_images("590 0 1900", "-0.59 0.02 0.5")
+    if tilt:
+        script = re.sub("block (-0.6 0.6 -0.6 0.6 0 1.0)", rf"prism \1 {tilt}", script, count=1)
+        assert "prism" in script
     with pytest.raises(Exception, match=message):
-        instance().commands_string(towards_images("590 0 1900", "-0.59 0.02 0.5"))
+        instance().commands_string(script)
 
 
 def test_a_step_that_passes_the_other_rank_is_named(tmp_path):

@@ -95,8 +95,8 @@ void Substepping::end_step()
   const SolverError edges = error_of(constraints.distance, allowed_strain(), max_edge_share(), 1);
   const SolverError hinges = error_of(constraints.bending, ANGLE_OVER_STRAIN * allowed_strain(),
                                       max_hinge_share(), hinge_groups.last_size());
-  const double present = largest_error(constraints.distance, vertices.p.data(),
-                                       softest(max_edge_share()) * longest_sq());
+  const double present =
+      largest_error(constraints.distance, vertices.p.data(), SubstepLength::TOO_FAR * inv_dt_sq());
   const double mine[3] = {-std::min(edges.hardest, hinges.hardest), edges.largest, present};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);

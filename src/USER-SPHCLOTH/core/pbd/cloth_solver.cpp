@@ -451,15 +451,16 @@ double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
   return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
 }
 
-double largest_error(const Constraints<2> &c, const Vertex *p, double softness)
+double largest_error(const Constraints<2> &c, const Vertex *p, double inv_dt_sq)
 {
   double largest = 0.0;
   for (int m = 0; m < c.size(); m++) {
     if (!c.hard[m] || c.weight[m] == 0.0) continue;
-    const double rigid = softness * c.weight[m], all = rigid + c.compliance[m];
-    const double error = error_of(c, p, m) * (c.compliance[m] > 0.0 ? rigid / all : 1.0);
+    if (inv_dt_sq == 0.0 && c.compliance[m] > 0.0) continue;
+    const double error = error_of(c, p, m);
     if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
-    largest = std::max(largest, std::fabs(error) * c.per_size[m]);
+    const double by_material = c.compliance[m] * inv_dt_sq * std::fabs(c.lambda[m]);
+    largest = std::max(largest, (std::fabs(error) - by_material) * c.per_size[m]);
   }
   return largest;
 }

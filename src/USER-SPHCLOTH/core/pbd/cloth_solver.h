@@ -176,9 +176,10 @@ using OnHeld = std::function<void(int, const Vec3 &)>;
 void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);
 
-// Of hard constraints that can move, |C| over the size; of those that only pull, where they do.  Of
-// one with a compliance the share that a rigid one would take, as soft as `softness` times W.
-double largest_error(const Constraints<2> &, const Vertex *p, double softness);
+// Of hard constraints that can move, |C| over the size, of those that only pull, where they do,
+// without what the compliance makes of the multiplier.  inv_dt_sq: 1/h^2 of the substep that found
+// it, 0: of rigid ones, before any.
+double largest_error(const Constraints<2> &, const Vertex *p, double inv_dt_sq);
 
 // C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
 double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);

@@ -42,13 +42,14 @@ class SubstepLength {
   }
 
   // How far edges are stretched, and what their load strains them by, both over the strain that was
-  // allowed then.  Where substeps were too long for the load they have given way farther than
+  // allowed then.  Where substeps were much too long for the load they have given way farther than
   // springs would.  Then more is allowed, so that springs at this strain are as hard as the
   // substeps have made them: harder ones would give back more than they took.
+  static constexpr double TOO_FAR = 2.0;    // over the strain by the load
   void stretched(double strain, double by_load)
   {
-    constexpr double TOO_FAR = 1.5;    // over the strain by the load
-    if (strain < TOO_FAR * std::max(SOFT, by_load)) return;
+    const bool was_too_soft = state.hardest < TOO_SOFT * state.hardness;
+    if (!was_too_soft && strain < TOO_FAR * std::max(SOFT, by_load)) return;
     const double root = 1.0 / std::sqrt(state.hardness);
     const double y = std::pow((root - 1.0) / HARDENING, 0.25);
     state.yield *= std::max(1.0, strain / std::clamp(y, SOFT, MAX_OF_ALLOWED));
@@ -84,6 +85,7 @@ class SubstepLength {
  private:
   static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0, STRAINED = 4.0;
   static constexpr double SOFT = 1.0 / 3.0;    // of the allowed strain: an edge is hardly harder
+  static constexpr double TOO_SOFT = 0.45;    // substeps follow a load that doubles in a step
   static constexpr double CHANGE = 1.03;    // of the yield, in a step
   double of_longest_step = 1.0;    // the length of the step over that of the longest
 

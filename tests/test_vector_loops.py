@@ -34,6 +34,7 @@ UNITS = {
     "core/neighbor/dual_lists.h": (KERNEL,),
     "core/neighbor/cell_lists.h": (SOURCE / "core/sph/fluid.cpp",),
     "contact/candidate_pairs.cpp": (SOURCE / "contact/candidate_pairs.cpp",),
+    "contact/known_region.cpp": (SOURCE / "contact/known_region.cpp",),
     "core/timestep/step_limits.h": (CORE_TESTS / "test_step_limits.cpp",),
     "core/geometry/disc_grid.h": (
         CORE_TESTS / "test_disc_grid.cpp",

@@ -153,6 +153,9 @@ BOOST_AUTO_TEST_CASE(an_impact_raises_the_allowed_strain_to_what_the_substeps_ha
   BOOST_TEST(hardness(5.0 / length.yield()) == length.state.hardness,
              boost::test_tools::tolerance(1e-12));
   const double raised = length.yield();
+  // what has not been stretched changes nothing
+  length.stretched(0.1, 1.0);
+  BOOST_TEST(length.yield() == raised);
   // it returns in time, not in steps
   step(DT, 0.01);
   const double after_one = length.yield();

@@ -182,15 +182,17 @@ def test_a_strain_that_no_substep_reaches_is_said(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("speed", "density", "edge", "areal"),
+    ("speed", "density", "edge", "areal", "strain", "limit"),
     [
-        (4, 1242, 0.18, 0.22),
-        (3, 1242, 0.18, 0.22),
-        (2.5, 900, 0.15, 0.22),
-        (4.5, 1000, 0.14, 1.0),
+        (4, 1242, 0.18, 0.22, 0.02, 1.1),
+        (3, 1242, 0.18, 0.22, 0.01, 1.5),
+        (2.5, 900, 0.15, 0.22, 0.01, 1.5),
+        (4.5, 1000, 0.14, 1.0, 0.01, 1.5),
     ],
 )
-def test_an_impact_gives_back_no_more_than_it_brought(tmp_path, speed, density, edge, areal):
+def test_an_impact_gives_back_no_more_than_it_brought(
+    tmp_path, speed, density, edge, areal, strain, limit
+):
     """Water of 50 to 200 times the mass of a vertex falls on a taut sheet.
 
     Substeps become short enough only while edges are stretched, by 1 to 6 %.  Less is allowed then,
@@ -221,8 +223,8 @@ def test_an_impact_gives_back_no_more_than_it_brought(tmp_path, speed, density, 
     ).replace("thermo_style", "compute sheet all pbd/cloth strain\nthermo_style", 1)
     run(write(tmp_path, script + "run 80\n"))
     found = rows(tmp_path / "log")
-    assert found[:, 3].max() > 0.01
-    assert found[:, 1].max() < 1.5 * found[0, 1]
+    assert found[:, 3].max() > strain
+    assert found[:, 1].max() < limit * found[0, 1]
     assert found[-1, 1] > 0.1 * found[0, 1]
 
 

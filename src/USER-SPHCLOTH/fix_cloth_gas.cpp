@@ -101,15 +101,15 @@ void FixClothGas::read(ArgReader &args)
 
 void FixClothGas::check(ArgReader &args)
 {
-  const auto refuse = [&](const std::string &keyword, double value) {
-    args.fail(keyword, fmt::format("{:g}", value),
+  const auto refuse = [&](const std::string &keyword, const std::string &value) {
+    args.fail(keyword, value,
               "gas at a constant pressure does not follow its volume: leave it away, or use "
               "'polytropic'");
   };
   if (!has_law) {
-    if (has_inflow) refuse("inflow", inflow.value());
-    if (law.limit < NEVER) refuse("valve", law.limit);
-    if (burst < NEVER) refuse("burst", burst);
+    if (has_inflow) refuse("inflow", inflow.as_given());
+    if (law.limit < NEVER) refuse("valve", fmt::format("{:g}", law.limit));
+    if (burst < NEVER) refuse("burst", fmt::format("{:g}", burst));
     if (options.closes_holes)
       args.fail("close", "yes",
                 "holes of a mesh at a constant pressure "

@@ -31,6 +31,11 @@ void NumberOrVariable::read(ArgReader &args, const std::string &what_, double lo
     number = std::isfinite(low) ? args.at_least(what, low) : args.number(what);
 }
 
+std::string NumberOrVariable::as_given() const
+{
+  return is_variable() ? "v_" + name : fmt::format("{:g}", number);
+}
+
 void NumberOrVariable::check(LAMMPS *lmp, const std::string &owner)
 {
   if (!is_variable()) return;

@@ -42,6 +42,7 @@ class NumberOrVariable {
     evaluate(lmp, owner, igroup, {of.begin(), of.size()});
   }
 
+  std::string as_given() const;    // for errors: the number, or v_ and the name
   double value() const { return number; }    // 0 if atoms have values of their own
   double of(int atom_index) const { return per_atom ? by_atom[atom_index] : number; }
 

@@ -145,11 +145,11 @@ def test_a_weight_on_a_sheet_that_is_a_wall_hangs_at_the_pins(tmp_path: Path) ->
 
 @pytest.mark.usefixtures("finest_only")
 def test_the_example_pour_hangs_on_its_pins(tmp_path: Path) -> None:
-    result = run_case("pour", tmp_path, across="14", time="2", water="0.02")
+    result = run_case("pour", tmp_path, across="14", time="3", water="0.02")
     for name in ("momentum", "crossed"):
         assert result.metrics[name].passed, (name, result.metrics[name].value)
-    assert abs(result.metrics["pins"].value) < 0.05
-    assert abs(result.metrics["sag"].value) < 0.05
+    assert abs(result.metrics["pins"].value) < 0.03
+    assert abs(result.metrics["sag"].value) < 0.01
     assert (tmp_path / "pour.png").stat().st_size > 10_000
 
 

@@ -16,7 +16,7 @@ from sphcloth.stress.random_script import script_of
 from sphcloth.stress.runner import run_script
 from sphcloth.stress.unit_systems import UNITS
 
-SEEDS = (*range(1, 21), 320, 349)  # the last two: by contact alone, heavy water on light vertices
+SEEDS = (*range(1, 21), 349)  # 349: by contact alone, heavy water on light vertices
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -36,18 +36,20 @@ class SubstepLength {
   // the strain over the one that was allowed then.
   void found(double hardest, double strain)
   {
+    state.hardest_before = state.hardest;
     state.hardest = hardest;
     watch(strain);
   }
 
-  // In the last step, for the load
-  bool were_too_long() const { return state.hardest < TOO_LONG * state.hardness; }
-
-  // Then edges have given way farther than springs would, to this strain over the one that was
-  // allowed.  More is allowed, so that springs at this strain are as hard as the substeps have made
-  // them: harder ones would give back more than they took.
-  void allow(double strain)
+  // How far edges are stretched, and what their load strains them by, both over the strain that was
+  // allowed then.  Where substeps were much too long for the load they have given way farther than
+  // springs would.  Then more is allowed, so that springs at this strain are as hard as the
+  // substeps have made them: harder ones would give back more than they took.
+  static constexpr double TOO_FAR = 2.0;    // over the strain by the load
+  void stretched(double strain, double by_load)
   {
+    const bool was_too_soft = state.hardest < TOO_SOFT * state.hardness;
+    if (!was_too_soft && strain < TOO_FAR * std::max(SOFT, by_load)) return;
     const double root = 1.0 / std::sqrt(state.hardness);
     const double y = std::pow((root - 1.0) / HARDENING, 0.25);
     state.yield *= std::max(1.0, strain / std::clamp(y, SOFT, MAX_OF_ALLOWED));
@@ -73,7 +75,7 @@ class SubstepLength {
 
   struct State {    // plain and without gaps
     double longest = 0.0;
-    double hardest = 1.0;    // of the last step
+    double hardest = 1.0, hardest_before = 1.0;    // of the last two steps
     double hardness = 1.0;    // that the substeps of this step are made for
     double yield = 1.0;
     double phase = BORNE, steps = 0.0, strain_then = 0.0;
@@ -83,18 +85,18 @@ class SubstepLength {
  private:
   static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0, STRAINED = 4.0;
   static constexpr double SOFT = 1.0 / 3.0;    // of the allowed strain: an edge is hardly harder
-  static constexpr double TOO_LONG = 2.0 / 3.0;    // of the hardness that they are made for
+  static constexpr double TOO_SOFT = 0.45;    // substeps follow a load that doubles in a step
   static constexpr double CHANGE = 1.03;    // of the yield, in a step
   double of_longest_step = 1.0;    // the length of the step over that of the longest
 
-  // The load of the last step: one that is extrapolated rings, and asks for up to twice as many
-  // substeps.  In a step the hardness doubles at the utmost, since what is stretched already would
-  // pull as much harder, and substeps become longer slowly: the sheet is the calmer the less they
-  // vary.
+  // A load that grows hardens in the coming step as it did in the last one.  In a step the hardness
+  // doubles at the utmost, since what is stretched already would pull as much harder, and substeps
+  // become longer slowly: the sheet is the calmer the less they vary.
   double expected() const
   {
     constexpr double FASTEST = 0.5, RELAXES = 1.03;
-    return std::clamp(state.hardest, state.hardness * FASTEST, state.hardness * RELAXES);
+    const double grows = std::clamp(state.hardest / state.hardest_before, FASTEST, 1.0);
+    return std::clamp(state.hardest * grows, state.hardness * FASTEST, state.hardness * RELAXES);
   }
 
   // By time: what is allowed less pulls at what is stretched.

@@ -78,11 +78,11 @@ double Substepping::first_kick() const { return options.from_start && !started ?
 
 double Substepping::part_with_forces() const { return 1.0 - (1.0 - first_kick()) / n_substeps; }
 
-// of all ranks
+// of rigid edges, on all ranks
 
-double Substepping::largest_strain(const Vertices &at, double softness) const
+double Substepping::strain_at_start() const
 {
-  const double mine = largest_error(constraints.distance, at.data(), softness);
+  const double mine = largest_error(constraints.distance, vertices.start.data(), 0.0);
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
@@ -157,8 +157,7 @@ void Substepping::substep(int n, const std::vector<Substepping *> &cloths)
 void Substepping::begin_substep(int n)
 {
   const double dt = substep_dt();
-  if (follows_load() && !started && n == 0)
-    length.begin(largest_strain(vertices.start, 0.0) / options.strain);
+  if (follows_load() && !started && n == 0) length.begin(strain_at_start() / options.strain);
   // before the forces: weight is not damped
   if (const int together = damping_groups.done_in(n); options.damping > 0.0 && together)
     damp(together);

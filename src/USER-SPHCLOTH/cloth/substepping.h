@@ -137,7 +137,7 @@ class Substepping : protected Pointers {
   double longest_sq() const;
   // of a rigid constraint over W L^2, where no load hardens it
   static double softest(double share) { return 1.0 / share - sphcloth::SINGLE_SWEEP_SOFTNESS; }
-  double largest_strain(const sphcloth::Vertices &, double softness) const;
+  double strain_at_start() const;
   double allowed_strain() const { return options.strain * length.yield(); }
 };
 

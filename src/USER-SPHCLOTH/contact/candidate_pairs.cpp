@@ -155,9 +155,9 @@ int CandidatePairs::count_beyond_room() const
   for (int i = 0; i < n; i++) {
     const double dx = x[3 * i] - x0[i], dy = x[3 * i + 1] - y0[i], dz = x[3 * i + 2] - z0[i];
     const double ex = x0[i] - x1[i], ey = y0[i] - y1[i], ez = z0[i] - z1[i];
-    const double path =
+    const double moved =
         std::sqrt(dx * dx + dy * dy + dz * dz) + std::sqrt(ex * ex + ey * ey + ez * ez);
-    beyond += ((mask[i] & groupbits) != 0) & !(path <= limit[i]);
+    beyond += ((mask[i] & groupbits) != 0) & !(moved <= limit[i]);
   }
   return beyond;
 }
@@ -166,9 +166,9 @@ bool CandidatePairs::is_beyond_room(int i) const
 {
   if (!mesh.collides(i)) return false;
   const Sweep particle = mesh.sweep_of(i);
-  const double path =
+  const double moved =
       (particle.end - particle.start).norm() + (particle.start - position_then(i)).norm();
-  return !(path <= room[i]);
+  return !(moved <= room[i]);
 }
 
 double CandidatePairs::memory_usage() const

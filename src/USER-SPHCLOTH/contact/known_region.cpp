@@ -112,11 +112,11 @@ std::array<KnownRegion::Interval, 3> KnownRegion::around_sweeps() const
   const double *const x = n > 0 ? atom->x[0] : nullptr;
   const ParticleColumns &last = mesh.last_positions;
   const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
+  const Vec3 origin = in_box(Vec3::Zero()),
+             along[3] = {in_box(Vec3::UnitX()) - origin, in_box(Vec3::UnitY()) - origin,
+                         in_box(Vec3::UnitZ()) - origin};
   std::array<Interval, 3> around;
   for (int d = 0; d < 3; d++) {
-    const Vec3 origin = in_box(Vec3::Zero()),
-               along[3] = {in_box(Vec3::UnitX()) - origin, in_box(Vec3::UnitY()) - origin,
-                           in_box(Vec3::UnitZ()) - origin};
     const double ax = along[0][d], ay = along[1][d], az = along[2][d];
     double low = INFINITE, high = -INFINITE;
 #pragma omp simd reduction(min : low) reduction(max : high)

@@ -59,8 +59,8 @@ class SubstepLength {
   // longer at once, else slowly.
   void follow(double substep)
   {
-    constexpr double CHANGE = 1.01;    // in a step: a period of an edge is some six substeps
-    state.longest = std::max(state.longest / CHANGE, substep);
+    constexpr double FALLS = 1.01;    // in a step: a period of an edge is some six substeps
+    state.longest = std::max(state.longest / FALLS, substep);
   }
 
   // which the solver of unloaded constraints is as soft as

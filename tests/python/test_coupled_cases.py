@@ -161,6 +161,13 @@ def test_a_pool_on_a_sheet_stays_above_it_and_is_drawn(tmp_path: Path) -> None:
     assert (tmp_path / "modes.png").stat().st_size > 10_000
 
 
+@pytest.mark.usefixtures("finest_only")
+def test_a_light_wet_sheet_comes_to_rest(tmp_path: Path) -> None:
+    """Edges that hardly stretch ring, and the water at 0.05 m/s, where substeps are too long."""
+    result = run_case("lintearia", tmp_path, D="0.9", A="0.03", strain="5e-4", settle="3")
+    assert result.metrics["speed"].value < 0.03
+
+
 def test_a_mesh_that_would_meet_its_own_image_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="mesh 4 with layers 4"):
         run_case("lintearia", tmp_path, mesh="4")

@@ -24,6 +24,8 @@ sphcloth tradeoff dam-break --quick
 sphcloth tradeoff two-resolutions --scheme constant,global --vary acoustic=0.5,1.0,1.5 --error 0.02
 
 sphcloth tradeoff my.in --vary dt=1e-3,5e-4 --reference dt=1e-5 --quantity KinEng
+
+sphcloth tradeoff hydrostatic --exact --quick --quantity pressure --vary wall=own,mirror
 """
 
 
@@ -83,6 +85,22 @@ class Settings:
             command.parse_variations(self.over or [], "--over"),
         )
 
+    def of_case(self, error: float, quick: bool) -> Plan:
+        """Return the plan of a study of a validation case."""
+        from sphcloth.examples import parse_settings
+        from sphcloth.tradeoff import command
+        from sphcloth.tradeoff.study import Plan
+
+        given = {"--scheme": self.scheme, "--over": self.over, "--reference": self.reference}
+        if found := [option for option, value in given.items() if value]:
+            raise UserError(
+                f"--exact: a case has an exact solution and no {found[0]}; its scheme is a "
+                "parameter: --set scheme=A or --vary scheme=A,B"
+            )
+        vary = command.parse_variations(self.vary or [])
+        settings = parse_settings(self.settings or [])
+        return Plan((), vary, settings, {}, error, quick)
+
 
 @dataclass(frozen=True)
 class Effort:
@@ -124,6 +142,14 @@ def tradeoff(
     ] = 0.01,
     quick: Annotated[bool, typer.Option("--quick", help="Run the smaller variant.")] = False,
     effort: Effort,
+    exact: Annotated[
+        bool,
+        typer.Option(
+            "--exact",
+            help="SCENE is a case of sphcloth validate: errors are what it measures, --quantity "
+            "and --vary take its names, and the first name that is varied groups the settings.",
+        ),
+    ] = False,
     last_run: Annotated[
         bool,
         typer.Option("--last-run", help="Of a script of your own, look at the last run alone."),
@@ -139,8 +165,10 @@ def tradeoff(
 ) -> None:
     """Run a scene with many settings: error against particle updates and wall time."""
     from sphcloth.tradeoff import command
+    from sphcloth.tradeoff.exact import scene_of, study_case
     from sphcloth.tradeoff.report import show, write_all
     from sphcloth.tradeoff.study import study
+    from sphcloth.validation.validate import find_case
 
     console = Console()
     if show_list:
@@ -148,19 +176,23 @@ def tradeoff(
         return
     if scene is None:
         raise UserError("which scene? sphcloth tradeoff --list shows them")
-    found = command.find_scene(scene, quantity or [], last_run)
-    plan = settings.plan(found, error, quick)
-    folder = out or Path(f"sphcloth-tradeoff-{found.name}")
-    result = study(
-        found,
-        plan,
-        folder,
-        console,
-        ranks=effort.ranks,
-        jobs=command.number_of_jobs(effort.jobs, effort.ranks),
-        repeat=effort.repeat,
-        fresh=fresh,
-    )
+    if exact and last_run:
+        raise UserError("--exact: a case has no use for --last-run")
+    how = {
+        "ranks": effort.ranks,
+        "jobs": command.number_of_jobs(effort.jobs, effort.ranks),
+        "repeat": effort.repeat,
+        "fresh": fresh,
+    }
+    if exact:
+        folder = out or Path(f"sphcloth-tradeoff-{scene}-exact")
+        case = find_case(scene)
+        found = scene_of(case, quantity or [])
+        result = study_case(case, found, settings.of_case(error, quick), folder, console, **how)
+    else:
+        found = command.find_scene(scene, quantity or [], last_run)
+        folder = out or Path(f"sphcloth-tradeoff-{found.name}")
+        result = study(found, settings.plan(found, error, quick), folder, console, **how)
     files = write_all(result, folder)
     if json_file is not None:
         result.write(json_file)

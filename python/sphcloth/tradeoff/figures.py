@@ -30,6 +30,8 @@ STYLES = {
     "block": ("#009E73", "D"),
     AS_WRITTEN: ("#0072B2", "o"),
 }
+# of groups that are no schemes, in their order
+OTHERS = (*list(STYLES.values())[:4], ("#D55E00", "v"), ("#56B4E9", "P"), ("#000000", "X"))
 # text in an SVG stays text
 SETTINGS = {"svg.fonttype": "none", "font.size": 9, "legend.fontsize": 8}
 # errors above are off the scale: how wrong a run is that is all wrong does not matter
@@ -60,7 +62,8 @@ def _figure(study: Study, quantity: Quantity) -> Figure:
         axes.set_xlabel(label)
     if study.side_by_side:
         panels[1].set_xlabel(f"{COSTS['wall_s']}, measured side by side")
-    panels[0].set_ylabel(f"{quantity.description}: relative error ({quantity.norm})")
+    kind = f"relative error ({quantity.norm})" if study.reference else quantity.norm
+    panels[0].set_ylabel(f"{quantity.description}: {kind}")
     title = f"{study.scene.name}: {study.scene.summary}"
     above = {"loc": "outside upper center", "ncols": 3, "frameon": False, "title_fontsize": 10}
     figure.legend(handles=handles, title=title, **above)
@@ -86,7 +89,10 @@ def _draw_panel(axes: Axes, study: Study, quantity: str, cost: str) -> list[Arti
     axes.axhline(error, color="0.4", ls=":", lw=1, label=f"error {error:g}")
     explained, _ = axes.get_legend_handles_labels()
     found = choices(study.points, quantity, cost, error)
-    rings = [_ring(axes, choice.point, quantity, cost) for choice in found.values()]
+    rings = [
+        _ring(axes, choice.point, quantity, cost, _style(study, scheme)[0])
+        for scheme, choice in found.items()
+    ]
     _number_narrow_axes(axes)
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "frameon": False}
     axes.legend(handles=rings, title=f"cheapest within {error:g}" if rings else None, **below)
@@ -103,22 +109,29 @@ def _number_narrow_axes(axes: Axes) -> None:
         axis.set_minor_locator(NullLocator())
 
 
+def _style(study: Study, scheme: str) -> tuple[str, str]:
+    """Return color and mark of a scheme, or of another group of settings."""
+    groups = list(dict.fromkeys(point.scheme for point in study.points))
+    return STYLES.get(scheme, OTHERS[groups.index(scheme) % len(OTHERS)])
+
+
 def _draw_scheme(axes: Axes, study: Study, scheme: str, quantity: str, cost: str) -> None:
-    color, mark = STYLES[scheme]
+    color, mark = _style(study, scheme)
     mine = [point for point in study.points if point.scheme == scheme]
     finished = [point for point in mine if point.failure is None]
     well = _visible(finished, quantity)
     off = sum(point.errors[quantity] > WORST for point in finished)
-    notes = {"unstable": len(mine) - len(finished), "off the scale": off}
+    failed = "unstable" if study.reference else "failed"
+    notes = {failed: len(mine) - len(finished), "off the scale": off}
     failures = ", ".join(f"{count} {note}" for note, count in notes.items() if count)
     label = f"{scheme} ({failures})" if failures else scheme
     axes.plot(*_curve(well, quantity, cost), mark, color=color, ms=5, label=label)
     axes.plot(*_curve(pareto(well, quantity, cost), quantity, cost), "-", color=color, lw=1)
 
 
-def _ring(axes: Axes, point: Point, quantity: str, cost: str) -> Line2D:
+def _ring(axes: Axes, point: Point, quantity: str, cost: str, color: str) -> Line2D:
     """Put a ring around the cheapest point of a scheme within the error."""
-    ring = {"marker": "o", "ms": 11, "mfc": "none", "mec": STYLES[point.scheme][0], "ls": ""}
+    ring = {"marker": "o", "ms": 11, "mfc": "none", "mec": color, "ls": ""}
     label = f"{point.scheme}: {point.label}"
     return axes.plot(point.cost(cost), point.errors[quantity], **ring, label=label)[0]
 

@@ -38,7 +38,8 @@ def write_csv(study: Study, path: Path) -> None:
             heads += [f"worst_{name}" for name in quantities]
         heads += [f"front_{cost}" for cost in COSTS]
         rows.writerow(["role", "scheme", *names, "steps", *COSTS, *heads, "failure"])
-        for role, point in [("reference", study.reference), *(("", p) for p in study.points)]:
+        first = [("reference", study.reference)] if study.reference else []
+        for role, point in [*first, *(("", p) for p in study.points)]:
             rows.writerow(
                 [
                     role,
@@ -60,7 +61,7 @@ def show(study: Study, console: Console) -> None:
     for point in study.points:
         if point.failure is not None:
             console.print(
-                f"unstable: {point.scheme}, {point.label}: {point.failure}",
+                f"{_failed(study)}: {point.scheme}, {point.label}: {point.failure}",
                 markup=False,
                 highlight=False,
                 soft_wrap=True,
@@ -77,17 +78,18 @@ def show(study: Study, console: Console) -> None:
 def _settings_table(study: Study) -> Table:
     quantities = [quantity.name for quantity in study.scene.quantities]
     table = _table(
+        study,
         f"{study.scene.name}: {study.scene.summary}",
         ("updates", "wall s", *(f"error {name}" for name in quantities)),
     )
     table.add_column("", no_wrap=True)
     table.caption = "U, W: on the Pareto front by particle updates, by wall time"
     fronts = {cost: study.front(cost) for cost in COSTS}
-    exact = study.reference
-    table.add_row("reference", f"{exact.scheme}, {exact.label}", *_cost_cells(exact))
+    if (exact := study.reference) is not None:
+        table.add_row("reference", f"{exact.scheme}, {exact.label}", *_cost_cells(exact))
     for point in study.points:
         if point.failure is not None:
-            table.add_row(point.scheme, point.label, "", "", "[red]unstable[/]")
+            table.add_row(point.scheme, point.label, "", "", f"[red]{_failed(study)}[/]")
             continue
         errors = [f"{point.errors[name]:.1e}" for name in quantities]
         marks = [mark for cost, mark in MARKS.items() if point in fronts[cost]]
@@ -95,14 +97,18 @@ def _settings_table(study: Study) -> Table:
     return table
 
 
+def _failed(study: Study) -> str:
+    return "unstable" if study.reference else "failed"
+
+
 def _cost_cells(point: Point) -> tuple[str, str]:
     return f"{point.updates:.2e}", f"{point.wall_s:.3g}"
 
 
-def _table(title: str, numbers: Sequence[str]) -> Table:
+def _table(study: Study, title: str, numbers: Sequence[str]) -> Table:
     """Return a table of settings with these columns of numbers, whose heads are one word a line."""
     table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    table.add_column("scheme", no_wrap=True)
+    table.add_column("scheme" if study.reference else "group", no_wrap=True)
     table.add_column("setting", min_width=12)
     for head in numbers:
         table.add_column(head.replace(" ", "\n"), justify="right", no_wrap=True)
@@ -117,16 +123,18 @@ def _show_choices(study: Study, cost: str, console: Console) -> None:
         console.print(f"no setting has an error of {name} of at most {error:g}", highlight=False)
         return
     best = study.best(cost)
-    baselines = [f"best {scheme} over this" for scheme in BASELINES]
+    compared = BASELINES if study.reference else ()
+    baselines = [f"best {scheme} over this" for scheme in compared]
     title = f"cheapest by {COSTS[cost]}, error of {name} at most {error:g}"
-    table = _table(title, ("error", COSTS[cost], *baselines))
+    table = _table(study, title, ("error", COSTS[cost], *baselines))
     for scheme, choice in found.items():
         mark = " (best)" if scheme == best else ""
-        table.add_row(f"{scheme}{mark}", *_choice_cells(choice, name, cost))
+        table.add_row(f"{scheme}{mark}", *_choice_cells(choice, name, cost, compared))
     console.print(table)
 
 
-def _choice_cells(choice: Choice, quantity: str, cost: str) -> list[str]:
+def _choice_cells(choice: Choice, quantity: str, cost: str, compared: Sequence[str]) -> list[str]:
     point = choice.point
-    savings = ["n/a" if each is None else f"{each:.2f}" for each in choice.saving.values()]
+    saved = [choice.saving[scheme] for scheme in compared]
+    savings = ["n/a" if each is None else f"{each:.2f}" for each in saved]
     return [point.label, f"{point.errors[quantity]:.1e}", f"{point.cost(cost):.3g}", *savings]

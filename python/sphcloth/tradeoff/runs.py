@@ -10,10 +10,12 @@ import shutil
 import subprocess
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from rich.console import Console
@@ -119,6 +121,7 @@ class Workshop:
     ranks: int
     jobs: int
     console: Console
+    kept: ClassVar[str] = LOG  # what a run must have left beside its record
 
     def folder(self, setting: Setting) -> Path:
         """Return the folder of a run: its name says all that decides the result."""
@@ -129,13 +132,33 @@ class Workshop:
     def find(self, setting: Setting) -> Record | None:
         """Return what an earlier call has kept of a run; None if it is missing."""
         path = self.folder(setting) / RECORD
-        if not path.is_file() or not path.with_name(LOG).is_file():
+        if not path.is_file() or not path.with_name(self.kept).is_file():
             return None
         try:
             kept = json.loads(path.read_text(encoding="utf-8"))
             return Record(**kept | {"walls_s": tuple(kept["walls_s"])})
         except (ValueError, LookupError, TypeError) as error:
             raise UserError(f"{path}: not what a run keeps ({error}): remove its folder") from error
+
+    def crew(self, timeout: float) -> Crew:
+        """Return what runs the commands, each for so many seconds at most."""
+        return Crew(timeout)
+
+    def command(self, setting: Setting) -> list[str]:
+        """Return the command of a run, whose working directory is its folder."""
+        script = self.scene.script.resolve()
+        return lammps_command(script, self.ranks, setting.variables, self.jobs)
+
+    def record(self, setting: Setting, failure: str | None, elapsed: float) -> Record:
+        """Read what a run has cost; ``elapsed`` is the time that it took, s."""
+        what = setting.scheme, setting.values, setting.variables
+        measured = *what, failure, elapsed, self.jobs > 1
+        if failure is not None:
+            return Record(*measured)
+        table = self.thermo(setting)
+        steps = int(table["Step"][-1] - table["Step"][0])
+        updates = count_updates(table, self.scene.text, setting.scheme)
+        return Record(*measured, updates, steps, (table.loop_seconds,))
 
     def run(
         self, settings: list[Setting], repeat: int = 1, timeout: float = math.inf
@@ -167,12 +190,19 @@ class Workshop:
         record = self.find(setting)
         return record is not None and record.is_complete(times)
 
+    def fingerprint(self) -> str:
+        """Return a hash of the script, the files that it reads, and the code that runs it."""
+        digest = hashlib.sha256(code_version().encode())
+        for file in (self.scene.script, *companions(self.scene.script)):
+            digest.update(file.read_bytes())
+        return digest.hexdigest()
+
     @cached_property
     def _fingerprint(self) -> str:
-        return _fingerprint(self.scene.script)
+        return self.fingerprint()
 
     def _run_missing(self, missing: list[Setting], timeout: float) -> None:
-        crew = Crew(timeout)
+        crew = self.crew(timeout)
         bar = Progress(
             TextColumn("{task.description}"),
             BarColumn(bar_width=20),
@@ -200,35 +230,23 @@ class Workshop:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         copy_companions(self.scene.script, folder)
-        script = self.scene.script.resolve()
-        command = lammps_command(script, self.ranks, setting.variables, self.jobs)
         begin = time.monotonic()
-        failure = crew.run(command, folder)
+        failure = crew.run(self.command(setting), folder)
         if crew.stopped:
             return
-        record = self._record(setting, failure, time.monotonic() - begin)
+        record = self.record(setting, failure, time.monotonic() - begin)
         if before is not None and record.failure is None:
             walls, shared = before.walls_s + record.walls_s, before.side_by_side
             record = replace(record, walls_s=walls, side_by_side=shared or record.side_by_side)
         write_json(folder / RECORD, asdict(record))
 
-    def _record(self, setting: Setting, failure: str | None, elapsed: float) -> Record:
-        """Read from the log what a run has cost."""
-        what = setting.scheme, setting.values, setting.variables
-        measured = *what, failure, elapsed, self.jobs > 1
-        if failure is not None:
-            return Record(*measured)
-        table = self.thermo(setting)
-        steps = int(table["Step"][-1] - table["Step"][0])
-        updates = count_updates(table, self.scene.text, setting.scheme)
-        return Record(*measured, updates, steps, (table.loop_seconds,))
-
 
 class Crew:
     """The LAMMPS processes that run at the moment."""
 
-    def __init__(self, timeout: float) -> None:
+    def __init__(self, timeout: float, end: Callable[[subprocess.Popen[bytes]], None] = kill):
         self.timeout = timeout
+        self.end = end
         self.stopped = False
         self._running: set[subprocess.Popen[bytes]] = set()
         self._lock = threading.Lock()
@@ -244,7 +262,7 @@ class Crew:
         try:
             status = process.wait(None if math.isinf(self.timeout) else self.timeout)
         except subprocess.TimeoutExpired:
-            kill(process)
+            self.end(process)
             return f"not finished after {time.monotonic() - begin:.0f} s: given up"
         finally:
             with self._lock:
@@ -257,7 +275,7 @@ class Crew:
             self.stopped = True
             for process in self._running:
                 if process.poll() is None:
-                    kill(process)
+                    self.end(process)
 
 
 def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
@@ -282,16 +300,8 @@ def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
     return float(np.trapezoid(table["Atoms"], table["Step"]))
 
 
-def _fingerprint(script: Path) -> str:
-    """Return a hash of the script, the files that it reads, and the code that runs it."""
-    digest = hashlib.sha256(_code().encode())
-    for file in (script, *companions(script)):
-        digest.update(file.read_bytes())
-    return digest.hexdigest()
-
-
 @cache
-def _code() -> str:
+def code_version() -> str:
     """Return the versions and a hash of the plugin: another build is another result."""
     plugin = plugin_folder(lammps_release()) / PLUGIN
     versions = [installed_version(name) for name in ("lammps", "sphcloth")]

@@ -62,7 +62,7 @@ class Study:
         scene: what was run.
         plan: what was asked for.
         ranks: number of MPI ranks of each run.
-        reference: the reference run.
+        reference: the reference run; None where errors are those of an exact solution.
         points: all settings, in the order of the schemes.
         side_by_side: whether any wall time was measured beside other runs.
     """
@@ -70,7 +70,7 @@ class Study:
     scene: Scene
     plan: Plan
     ranks: int
-    reference: Point
+    reference: Point | None
     points: list[Point]
     side_by_side: bool
 
@@ -106,7 +106,7 @@ class Study:
                 for each in self.scene.quantities
             ],
             "error": self.plan.error,
-            "reference": asdict(self.reference),
+            "reference": asdict(self.reference) if self.reference else None,
             "points": [asdict(point) for point in self.points],
             "front": fronts,
             "best": {

@@ -30,8 +30,9 @@ MODES = ("wall", "both", "contact", "pressure")
 COARSE, COARSEST = 0.25, 20
 # rows of vertices along y: with fewer an edge would meet its own image
 LEAST_ROWS = 3
-# last share of the time over which is averaged
-LATE = 0.15
+# last share of the time over which is averaged, and for forces, which swing by a hundredth while
+# the pool comes to rest
+LATE, LATE_FORCES = 0.15, 0.4
 
 PARAMETERS = (
     Parameter("L", 1.0, "m", "length of the sheet", 1e-2, 100.0),
@@ -233,7 +234,7 @@ def pool_of(run: Run, values: Mapping[str, Value], across: int) -> Pool:
     frames = [run.trajectory[at] for at in np.flatnonzero(compare.late(run.trajectory.times, LATE))]
     arc, sheets = zip(*(_rows(frame) for frame in frames), strict=True)
     steps = np.linalg.norm(np.diff(sheets, axis=1), axis=2)
-    sheet, rows = np.mean(sheets, axis=0), compare.late(run.thermo["Time"], LATE)
+    sheet, rows = np.mean(sheets, axis=0), compare.late(run.thermo["Time"], LATE_FORCES)
     pins = float(np.mean(sheet[[0, -1], 1]))
     pull = (run.thermo[name][rows].mean() / width for name in ("v_pull_x", "v_pull_z"))
     waters = [frame.select(1).positions[:, [0, 2]] for frame in frames]

@@ -91,6 +91,14 @@ def check_sphcloth(words: list[str]) -> None:
         name = given["case"]
         for case in cases_with_schemes(name) if given["schemes"] else [find_case(name)]:
             case.values(settings, given["quick"])
+    elif verb == "tradeoff" and given["exact"]:
+        from sphcloth.tradeoff import command, exact
+        from sphcloth.tradeoff.study import Plan
+        from sphcloth.validation.validate import find_case
+
+        case, vary = find_case(given["scene"]), command.parse_variations(given["vary"] or [])
+        exact.scene_of(case, given["quantity"] or [])
+        exact.settings_of(case, Plan((), vary, settings, {}, given["error"], given["quick"]))
     elif verb == "tradeoff" and given["scene"] and not given["scene"].endswith(".in"):
         from sphcloth.tradeoff import command
 

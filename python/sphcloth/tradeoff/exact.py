@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -19,9 +17,9 @@ from rich.console import Console
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 from sphcloth.results import argument
-from sphcloth.run import LOG, SCREEN, check_no_link, kill
+from sphcloth.run import LOG, SCREEN, kill
 from sphcloth.tradeoff.front import Point
-from sphcloth.tradeoff.runs import Crew, Record, Setting, Workshop, code_version
+from sphcloth.tradeoff.runs import Crew, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import Quantity, Scene, column
 from sphcloth.tradeoff.study import RUNS, Plan, Study, combinations
 from sphcloth.validation import schemes
@@ -92,10 +90,8 @@ def study_case(
         UserError: nothing is varied, or a setting that the case does not allow.
     """
     settings = settings_of(case, plan)
-    check_no_link(out / RUNS)
-    if fresh:
-        shutil.rmtree(out / RUNS, ignore_errors=True)
-    workshop = CaseWorkshop(scene, (out / RUNS).resolve(), ranks, jobs, console, case)
+    workshop = CaseWorkshop(scene, out / RUNS, ranks, jobs, console, case)
+    workshop.open(fresh)
     records = workshop.run(settings, repeat)
     names = [each.name for each in scene.quantities]
     points = [
@@ -146,15 +142,13 @@ class CaseWorkshop(Workshop):
 
     def record(self, setting: Setting, failure: str | None, elapsed: float) -> Record:
         """Read what a run has cost; a case that misses its limits has measured all the same."""
-        folder = self.folder(setting)
-        measured = setting.scheme, setting.values, setting.variables
-        if not (folder / MEASURED).is_file():
-            return Record(*measured, failure or "no result", elapsed, self.jobs > 1)
-        tables = [ThermoTable.read(log) for log in (folder / OUTPUT).rglob(LOG)]
-        finest = max(tables, key=lambda table: table["v_updates"][-1])
-        updates, steps = float(finest["v_updates"][-1]), int(finest["Step"][-1])
-        walls = (finest.loop_seconds,)
-        return Record(*measured, None, elapsed, self.jobs > 1, updates, steps, walls)
+        measured = (self.folder(setting) / MEASURED).is_file()
+        return super().record(setting, None if measured else failure or "no result", elapsed)
+
+    def thermo(self, setting: Setting) -> ThermoTable:
+        """Return the thermo output of the run with the most updates, the finest one."""
+        logs = (self.folder(setting) / OUTPUT).rglob(LOG)
+        return max(map(ThermoTable.read, logs), key=lambda table: table["v_updates"][-1])
 
     def errors(self, setting: Setting, names: list[str]) -> dict[str, float | None]:
         """Return the absolute values of what a case has measured; nothing if it failed."""
@@ -165,13 +159,10 @@ class CaseWorkshop(Workshop):
         values = {name: metrics[name]["value"] for name in names}
         return {name: None if value is None else abs(value) for name, value in values.items()}
 
-    def fingerprint(self) -> str:
-        """Return a hash of the case and of the code that runs and measures it."""
-        digest = hashlib.sha256(code_version().encode())
-        for file in sorted(self.case.folder.rglob("*")):
-            if file.is_file() and file.suffix != ".pyc":
-                digest.update(file.read_bytes())
-        return digest.hexdigest()
+    def sources(self) -> Iterable[Path]:
+        """Return the files of the case."""
+        files = sorted(self.case.folder.rglob("*"))
+        return (file for file in files if file.is_file() and file.suffix != ".pyc")
 
 
 def _point(setting: Setting, record: Record, errors: Mapping[str, float | None]) -> Point:

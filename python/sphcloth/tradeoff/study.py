@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -13,7 +12,6 @@ from rich.console import Console
 
 from sphcloth.errors import UserError
 from sphcloth.results import versions, write_json
-from sphcloth.run import check_no_link
 from sphcloth.tradeoff.front import COSTS, Choice, Point, choices, mean, pareto
 from sphcloth.tradeoff.runs import GRACE_SECONDS, TIMEOUT_FACTOR, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import History, Quantity, Scene, Values
@@ -160,10 +158,8 @@ def study(
             the log does not have.
     """
     starts = [all_settings(scene, each) for each in plan.starts()]
-    check_no_link(out / RUNS)
-    if fresh:
-        shutil.rmtree(out / RUNS, ignore_errors=True)
     workshop = Workshop(scene, out / RUNS, ranks, jobs, console)
+    workshop.open(fresh)
     references = [reference for reference, _ in starts]
     firsts = workshop.run(references)
     # a column that is missing is missed here, before all the other runs

@@ -10,6 +10,8 @@
 #include <limits>
 #include <random>
 
+#include "core/pbd/constraint_errors.h"
+
 using namespace sphcloth;
 
 namespace {

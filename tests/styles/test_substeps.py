@@ -182,18 +182,19 @@ def test_a_strain_that_no_substep_reaches_is_said(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("speed", "density", "edge", "areal", "strain", "limit"),
+    ("speed", "density", "edge", "areal", "strain"),
     [
-        (4, 1242, 0.18, 0.22, 0.02, 1.1),
-        (3, 1242, 0.18, 0.22, 0.01, 1.5),
-        (2.5, 900, 0.15, 0.22, 0.01, 1.5),
-        (4.5, 1000, 0.14, 1.0, 0.01, 1.5),
+        (4, 1242, 0.18, 0.22, 0.02),
+        (3, 1242, 0.18, 0.22, 0.01),
+        (2.5, 900, 0.15, 0.22, 0.01),
+        (4.5, 1000, 0.14, 1.0, 0.01),
+        (2, 3000, 0.18, 0.22, 0.01),
     ],
 )
 def test_an_impact_gives_back_no_more_than_it_brought(
-    tmp_path, speed, density, edge, areal, strain, limit
+    tmp_path, speed, density, edge, areal, strain
 ):
-    """Water of 50 to 200 times the mass of a vertex falls on a taut sheet.
+    """Water of 50 to 500 times the mass of a vertex falls on a taut sheet.
 
     Substeps become short enough only while edges are stretched, by 1 to 6 %.  Less is allowed then,
     while the water is still there, which pulls at it: that may give some percent of the energy, and
@@ -224,7 +225,7 @@ def test_an_impact_gives_back_no_more_than_it_brought(
     run(write(tmp_path, script + "run 80\n"))
     found = rows(tmp_path / "log")
     assert found[:, 3].max() > strain
-    assert found[:, 1].max() < limit * found[0, 1]
+    assert found[:, 1].max() < 1.05 * found[0, 1]
     assert found[-1, 1] > 0.1 * found[0, 1]
 
 

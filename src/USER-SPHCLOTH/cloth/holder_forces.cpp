@@ -4,6 +4,7 @@
 #include "cloth/holder_forces.h"
 
 #include "atom.h"
+#include "core/pbd/constraint_errors.h"
 #include "force.h"
 #include "update.h"
 

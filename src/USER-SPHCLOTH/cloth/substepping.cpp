@@ -82,7 +82,7 @@ double Substepping::part_with_forces() const { return 1.0 - (1.0 - first_kick())
 
 double Substepping::strain_at_start() const
 {
-  const double mine = largest_error(constraints.distance, vertices.start.data(), 0.0);
+  const double mine = largest_strain(constraints.distance, vertices.start.data());
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
@@ -95,14 +95,10 @@ void Substepping::end_step()
   const SolverError edges = error_of(constraints.distance, allowed_strain(), max_edge_share(), 1);
   const SolverError hinges = error_of(constraints.bending, ANGLE_OVER_STRAIN * allowed_strain(),
                                       max_hinge_share(), hinge_groups.last_size());
-  const double present =
-      largest_error(constraints.distance, vertices.p.data(), SubstepLength::TOO_FAR * inv_dt_sq());
-  const double mine[3] = {-std::min(edges.hardest, hinges.hardest), edges.largest, present};
-  double all[3];
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);
-  const double allowed_then = allowed_strain(), by_load = all[1] / allowed_then;
-  length.found(-all[0], by_load);
-  length.stretched(all[2] / allowed_then, by_load);
+  const double mine[2] = {-std::min(edges.hardest, hinges.hardest), edges.largest};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  length.found(-all[0], all[1] / allowed_strain());
 }
 
 double Substepping::longest_sq() const { return std::pow(length.longest(), 2) * force->ftm2v; }

@@ -11,6 +11,7 @@
 #include "cloth/cloth_vertices.h"
 #include "cloth/holder_forces.h"
 #include "cloth/solver_coupling.h"
+#include "core/pbd/constraint_errors.h"
 #include "core/pbd/substep_groups.h"
 #include "core/pbd/substep_length.h"
 #include "pointers.h"

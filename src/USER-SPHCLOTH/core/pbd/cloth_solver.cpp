@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/pbd/solver_softness.h"
+
 namespace sphcloth {
 
 namespace {
@@ -39,8 +41,8 @@ namespace {
   SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
   SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
 
-  // An edge in a sweep: its compliance, and the part of its error that it has at the start of the
-  // substep and is not pulled back for, since it pulls as the tangent of a spring that hardens.
+  // An edge in a sweep: its compliance, and the part of the error that it comes to
+  // and is not pulled back for, since it pulls as the tangent of a spring that hardens.
 
   struct EdgeSpring {
     double compliance, offset;
@@ -93,18 +95,55 @@ namespace {
       so_far.to(now);
     }
 
+    // The errors that the edges come to in this substep if they are alone.  Where the allowed
+    // strain is far none hardens, and there is no equation to solve.
+
+    template <bool START>
+    SPHCLOTH_INLINE void errors(const Constraints<2> &c, int m, const Sweep &s, double *error) const
+    {
+      constexpr double SOFT = 0.2, TINY = 1e-300;
+      const double *rest = &c.rest[m], *compliance = &c.compliance[m],
+                   *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
+      alignas(64) double unit[WIDE], kappa[WIDE], size[WIDE];
+      double largest = 0.0;
+#pragma omp simd reduction(max : largest)
+      for (int l = 0; l < WIDE; l++) {
+        const double x = START ? start.x[l] : now.x[l], y = START ? start.y[l] : now.y[l],
+                     z = START ? start.z[l] : now.z[l];
+        const double along = (now.x[l] * x + now.y[l] * y + now.z[l] * z) /
+            (std::sqrt(x * x + y * y + z * z) + TINY);
+        const double deviation = along - rest[l], w = now.w[l];
+        error[l] = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
+        const double rigid = s.softest * w * s.longest_sq;
+        const double inv = 1.0 / (rigid + compliance[l] * s.inv_dt_sq + TINY);
+        kappa[l] = w * inv;
+        unit[l] = per_size[l] * s.per_allowed * rigid * inv;
+        size[l] = std::fabs(error[l]) * unit[l];
+        largest = std::max(largest, size[l]);
+      }
+      if (largest <= SOFT) {
+#pragma omp simd
+        for (int l = 0; l < WIDE; l++) error[l] *= 1.0 / (1.0 + kappa[l]);
+        return;
+      }
+#pragma omp simd
+      for (int l = 0; l < WIDE; l++) {
+        const bool hardens = size[l] > SOFT;
+        const double strain = hardened_strain(hardens ? size[l] : 1.0, hardens ? kappa[l] : 1.0);
+        const double of_size = hardens ? strain / size[l] : 1.0 / (1.0 + kappa[l]);
+        error[l] *= of_size;
+      }
+    }
+
     template <bool START> SPHCLOTH_INLINE void project(Constraints<2> &c, int m, const Sweep &s)
     {
       const double *rest = &c.rest[m], *k = &c.k[m], *compliance = &c.compliance[m],
                    *max_lambda = &c.max_lambda[m], *per_size = &c.per_size[m];
       double *lambda = &c.lambda[m];
       alignas(64) double error[WIDE], softness[WIDE], steeper[WIDE], target[WIDE], spring[WIDE];
+      errors<START>(c, m, s, error);
 #pragma omp simd
       for (int l = 0; l < WIDE; l++) {
-        const double length =
-            std::sqrt(start.x[l] * start.x[l] + start.y[l] * start.y[l] + start.z[l] * start.z[l]);
-        const double deviation = length - rest[l];
-        error[l] = max_lambda[l] == 0.0 ? std::max(0.0, deviation) : deviation;
         const SolverSoftness of =
             solver_softness(error[l], now.w[l], compliance[l] * s.inv_dt_sq, per_size[l],
                             s.longest_sq, s.per_allowed, s.softest);
@@ -308,171 +347,6 @@ SPHCLOTH_MULTIVERSION void damp(const Constraints<2> &c, int color, const Vertex
       row(v[two[l]]) -= w2 * by.of[l];
     }
   }
-}
-
-/* ----------------------------------------------------------------------
-   what is asked for now and then
-------------------------------------------------------------------------- */
-
-namespace {
-
-  Vec3 position(const Vertex &v) { return {v.x, v.y, v.z}; }
-
-  double error_of(const Constraints<2> &c, const Vertex *p, int m)
-  {
-    return (position(p[c.slot[0][m]]) - position(p[c.slot[1][m]])).norm() - c.rest[m];
-  }
-
-  double error_of(const Constraints<4> &c, const Vertex *p, int m)
-  {
-    const double angle = hinge_angle(position(p[c.slot[0][m]]), position(p[c.slot[1][m]]),
-                                     position(p[c.slot[2][m]]), position(p[c.slot[3][m]]));
-    return std::isnan(angle) ? 0.0 : angle_difference(angle, c.rest[m]);
-  }
-
-  // unit: of a constraint's error
-
-  template <std::size_t N, class Unit>
-  double largest_residual(const Constraints<N> &c, const Vertex *p, double inv_dt_sq, Unit unit)
-  {
-    double largest = 0.0;
-    for (int m = 0; m < c.size(); m++) {
-      if (!c.hard[m]) continue;
-      bool any_moves = false;
-      for (std::size_t q = 0; q < N; q++) any_moves = any_moves || p[c.slot[q][m]].w > 0.0;
-      if (!any_moves) continue;
-      const double left = error_of(c, p, m) + c.compliance[m] * inv_dt_sq * c.lambda[m];
-      if (left < 0.0 && c.lambda[m] >= c.max_lambda[m]) continue;    // slack
-      largest = std::max(largest, std::fabs(left) / unit(c.rest[m]));
-    }
-    return largest;
-  }
-
-  // with what it says others hardly say anything new; -1: there is none
-
-  template <std::size_t N> int with_largest_load(const Constraints<N> &c)
-  {
-    int found = -1;
-    double largest = -1.0;
-    for (int m = 0; m < c.size(); m++) {
-      const double load = std::fabs(c.lambda[m]) * c.weight[m] * c.per_size[m];
-      if (c.hard[m] && c.weight[m] > 0.0 && load > largest) {
-        largest = load;
-        found = m;
-      }
-    }
-    return found;
-  }
-
-  template <std::size_t N>
-  SolverError error_under_load(const Constraints<N> &c, const LoadedSolver &s)
-  {
-    const int first = with_largest_load(c);
-    if (first < 0) return {};
-    const auto load = [&](int m) { return std::fabs(c.lambda[m]) * s.inv_dt_sq; };
-    const auto error = [&](int m) {
-      return s.of(load(m), c.weight[m], c.compliance[m], c.per_size[m]);
-    };
-    SolverError found = error(first);
-    double known = s.without_news(found);
-    for (int m = 0; m < c.size(); m++) {
-      if (!c.hard[m] || c.weight[m] == 0.0) continue;
-      if (c.per_size[m] > 0.0 && s.unloaded_error(load(m), c.weight[m], c.per_size[m]) <= known)
-        continue;
-      found.join(error(m));
-      known = s.without_news(found);
-    }
-    return found;
-  }
-
-  template <std::size_t N>
-  double sum_of_energies(const Constraints<N> &c, const Vertex *p, int n_owned)
-  {
-    double sum = 0.0;
-    for (int m = 0; m < c.size(); m++) {
-      if (c.compliance[m] == 0.0 || c.slot[0][m] >= n_owned) continue;
-      const double error = error_of(c, p, m);
-      if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
-      sum += 0.5 * error * error / c.compliance[m];
-    }
-    return sum;
-  }
-
-}    // namespace
-
-SolverError solver_error(const Constraints<2> &c, const LoadedSolver &s)
-{
-  return error_under_load(c, s);
-}
-
-SolverError solver_error(const Constraints<4> &c, const LoadedSolver &s)
-{
-  return error_under_load(c, s);
-}
-
-void for_each_held(const Constraints<2> &c, const Vertex *p, const Vertex *start, const OnHeld &on)
-{
-  for (int m = 0; m < c.size(); m++) {
-    const int one = c.slot[0][m], two = c.slot[1][m];
-    if (c.lambda[m] == 0.0 || (p[one].w > 0.0 && p[two].w > 0.0)) continue;
-    Vec3 edge = position(p[one]) - position(p[two]);
-    if (start) {
-      const Vec3 before = position(start[one]) - position(start[two]);
-      const double pull = std::fabs(c.lambda[m]) * (p[one].w + p[two].w) / edge.norm();
-      if (!start_is_void(edge.normalized().dot(before), before.norm(), pull)) edge = before;
-    }
-    const Vec3 pull = c.lambda[m] * edge.normalized();
-    if (p[one].w == 0.0) on(one, pull);
-    if (p[two].w == 0.0) on(two, -pull);
-  }
-}
-
-void for_each_held(const Constraints<4> &c, const Vertex *p, const Vertex *, const OnHeld &on)
-{
-  for (int m = 0; m < c.size(); m++) {
-    const std::array<int, 4> s{c.slot[0][m], c.slot[1][m], c.slot[2][m], c.slot[3][m]};
-    if (c.lambda[m] == 0.0 || std::all_of(s.begin(), s.end(), [&](int q) { return p[q].w > 0.0; }))
-      continue;
-    const Vec3 e1 = position(p[s[1]]);
-    const std::array<Vec3, 4> gradient =
-        hinge_gradients(position(p[s[0]]) - e1, position(p[s[2]]) - e1, position(p[s[3]]) - e1);
-    for (int q = 0; q < 4; q++)
-      if (p[s[q]].w == 0.0) on(s[q], c.lambda[m] * gradient[q]);
-  }
-}
-
-double residual(const Constraints<2> &c, const Vertex *p, double inv_dt_sq, double length)
-{
-  return largest_residual(c, p, inv_dt_sq, [&](double rest) { return rest > 0.0 ? rest : length; });
-}
-
-double residual(const Constraints<4> &c, const Vertex *p, double inv_dt_sq)
-{
-  return largest_residual(c, p, inv_dt_sq, [](double) { return 1.0; });
-}
-
-double largest_error(const Constraints<2> &c, const Vertex *p, double inv_dt_sq)
-{
-  double largest = 0.0;
-  for (int m = 0; m < c.size(); m++) {
-    if (!c.hard[m] || c.weight[m] == 0.0) continue;
-    if (inv_dt_sq == 0.0 && c.compliance[m] > 0.0) continue;
-    const double error = error_of(c, p, m);
-    if (error < 0.0 && c.max_lambda[m] == 0.0) continue;
-    const double by_material = c.compliance[m] * inv_dt_sq * std::fabs(c.lambda[m]);
-    largest = std::max(largest, (std::fabs(error) - by_material) * c.per_size[m]);
-  }
-  return largest;
-}
-
-double elastic_energy(const Constraints<2> &c, const Vertex *p, int n_owned)
-{
-  return sum_of_energies(c, p, n_owned);
-}
-
-double elastic_energy(const Constraints<4> &c, const Vertex *p, int n_owned)
-{
-  return sum_of_energies(c, p, n_owned);
 }
 
 }    // namespace sphcloth

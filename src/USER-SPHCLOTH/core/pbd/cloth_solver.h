@@ -10,12 +10,10 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
 #include <vector>
 
 #include "core/pbd/constraints.h"
-#include "core/pbd/solver_softness.h"
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
 
@@ -158,32 +156,8 @@ inline constexpr double STABLE_HINGE_SHARE = 0.25, STABLE_EDGE_SHARE = 0.8;
 void project(Constraints<2> &, int color, const ClothState &);
 void project(Constraints<4> &, int color, const ClothState &);
 
-// what the solver adds to the errors of hard constraints, under the multipliers of a substep
-SolverError solver_error(const Constraints<2> &, const LoadedSolver &);
-SolverError solver_error(const Constraints<4> &, const LoadedSolver &);
-
 // takes the share of the stretching motion out of the velocities v of one color
 void damp(const Constraints<2> &, int color, const Vertex *p, Vertex *v, double share);
-
-// Largest C + a lambda, which vanishes in a converged step, of the hard constraints that are not
-// slack.  Of lengths it is relative: to the rest length, or to `length` where that is 0.
-double residual(const Constraints<2> &, const Vertex *p, double inv_dt_sq, double length);
-double residual(const Constraints<4> &, const Vertex *p, double inv_dt_sq);
-
-// lambda grad C on every vertex with w = 0: on(slot, vector), once for each constraint that it is
-// in. With `start` edges have the directions that they had there.
-using OnHeld = std::function<void(int, const Vec3 &)>;
-void for_each_held(const Constraints<2> &, const Vertex *p, const Vertex *start, const OnHeld &on);
-void for_each_held(const Constraints<4> &, const Vertex *p, const Vertex *start, const OnHeld &on);
-
-// Of hard constraints that can move, |C| over the size, of those that only pull, where they do,
-// without what the compliance makes of the multiplier.  inv_dt_sq: 1/h^2 of the substep that found
-// it, 0: of rigid ones, before any.
-double largest_error(const Constraints<2> &, const Vertex *p, double inv_dt_sq);
-
-// C^2/(2 compliance), summed over the compliant constraints whose first vertex is below n_owned
-double elastic_energy(const Constraints<2> &, const Vertex *p, int n_owned);
-double elastic_energy(const Constraints<4> &, const Vertex *p, int n_owned);
 
 }    // namespace sphcloth
 

@@ -67,6 +67,25 @@ SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double materi
   return s;
 }
 
+// The strain y that a constraint comes to in a substep, which would bring it to `size` if nothing
+// pulled it back: y + kappa y (1 + 9 y^4)^2 = size, kappa = W over its unloaded softness.  A pull
+// by the strain at the start of the substep would be that of a soft constraint while a slack one
+// snaps taut, and of a hard one on the way back: energy from nothing, and a light sheet that never
+// comes to rest.  By Newton's method from above, to some percent: the projection is another step.
+
+SPHCLOTH_INLINE double hardened_strain(double size, double kappa)
+{
+  constexpr double PER_NINTH_POWER = 1.0 / (HARDENING * HARDENING);
+  // v^(1/9) from z = v^(1/8), or a little more
+  const double z = std::sqrt(std::sqrt(std::sqrt(PER_NINTH_POWER * size / kappa)));
+  double y = std::min(size / (1.0 + kappa), (8.0 * z + 1.0) / 9.0);
+  for (int n = 0; n < 2; n++) {
+    const double q = hardening(y), pull = kappa * (1.0 + q);
+    y -= (y + y * pull * (1.0 + q) - size) / (1.0 + pull * (1.0 + 9.0 * q));
+  }
+  return y;
+}
+
 // What the solver adds to the errors of constraints
 
 struct SolverError {

@@ -18,10 +18,11 @@ class SubstepLength {
   double substeps(double dt, int usual)
   {
     constexpr double SPARED = 0.1;    // of a substep, which a little load would need
+    constexpr double RELAXES = 1.03;    // in a step: a sheet is the calmer the less substeps vary
     state.longest = std::max(state.longest, dt / usual);
     of_longest_step = dt / (usual * state.longest);
-    state.hardness = expected();
-    return std::ceil(dt / (state.longest * std::sqrt(state.hardness)) - SPARED);
+    state.hardness = std::min(state.hardest, state.hardness * RELAXES);
+    return std::ceil(dt / (state.longest * std::sqrt(with_margin(state.hardness))) - SPARED);
   }
 
   // before the first step: the strain that edges have, over the one that is allowed
@@ -29,6 +30,7 @@ class SubstepLength {
   {
     if (strain <= 1.0) return;
     state.yield = strain / SOFT;
+    state.strain_then = strain;
     state.phase = STRAINED;
   }
 
@@ -36,23 +38,13 @@ class SubstepLength {
   // the strain over the one that was allowed then.
   void found(double hardest, double strain)
   {
-    state.hardest_before = state.hardest;
+    const double before = state.yield;
     state.hardest = hardest;
     watch(strain);
-  }
-
-  // How far edges are stretched, and what their load strains them by, both over the strain that was
-  // allowed then.  Where substeps were much too long for the load they have given way farther than
-  // springs would.  Then more is allowed, so that springs at this strain are as hard as the
-  // substeps have made them: harder ones would give back more than they took.
-  static constexpr double TOO_FAR = 2.0;    // over the strain by the load
-  void stretched(double strain, double by_load)
-  {
-    const bool was_too_soft = state.hardest < TOO_SOFT * state.hardness;
-    if (!was_too_soft && strain < TOO_FAR * std::max(SOFT, by_load)) return;
-    const double root = 1.0 / std::sqrt(state.hardness);
-    const double y = std::pow((root - 1.0) / HARDENING, 0.25);
-    state.yield *= std::max(1.0, strain / std::clamp(y, SOFT, MAX_OF_ALLOWED));
+    if (hardest < state.hardness) allow_what_was_borne();
+    // what is allowed less hardens an edge that stays as long
+    const double less = before / state.yield;
+    if (less > 1.0) state.hardest = hardness_of(less * strain_of(hardest));
   }
 
   // A softness that is not bounded by a strain: it follows substeps that are given, if they become
@@ -75,63 +67,89 @@ class SubstepLength {
 
   struct State {    // plain and without gaps
     double longest = 0.0;
-    double hardest = 1.0, hardest_before = 1.0;    // of the last two steps
+    double hardest = 1.0;    // of the last step
     double hardness = 1.0;    // that the substeps of this step are made for
-    double yield = 1.0;
+    double yield = 1.0, least_yield = 1.0;    // the second one where something holds them apart
     double phase = BORNE, steps = 0.0, strain_then = 0.0;
+    double since = 0.0;    // the yield was raised, in longest steps
   };
   State state;
 
  private:
   static constexpr double BORNE = 0.0, YIELDS = 1.0, HELD = 2.0, OVERLOADED = 3.0, STRAINED = 4.0;
   static constexpr double SOFT = 1.0 / 3.0;    // of the allowed strain: an edge is hardly harder
-  static constexpr double TOO_SOFT = 0.45;    // substeps follow a load that doubles in a step
   static constexpr double CHANGE = 1.03;    // of the yield, in a step
   double of_longest_step = 1.0;    // the length of the step over that of the longest
 
-  // A load that grows hardens in the coming step as it did in the last one.  In a step the hardness
-  // doubles at the utmost, since what is stretched already would pull as much harder, and substeps
-  // become longer slowly: the sheet is the calmer the less they vary.
-  double expected() const
+  // Substeps that are only just short enough let the hardest edges ring, and what comes later in a
+  // sweep stretches an edge by as much as its law does.
+  static double with_margin(double hardness) { return 0.5 * hardness * (1.0 + hardness); }
+
+  static double hardness_of(double strain)
   {
-    constexpr double FASTEST = 0.5, RELAXES = 1.03;
-    const double grows = std::clamp(state.hardest / state.hardest_before, FASTEST, 1.0);
-    return std::clamp(state.hardest * grows, state.hardness * FASTEST, state.hardness * RELAXES);
+    const double root = 1.0 / (1.0 + std::min(hardening(strain), MAX_HARDENING));
+    return root * root;
   }
 
-  // By time: what is allowed less pulls at what is stretched.
-  void shrink_yield()
+  // which is as hard
+  static double strain_of(double hardness)
   {
-    state.yield = std::max(1.0, state.yield / std::pow(CHANGE, of_longest_step));
+    return std::pow(std::max(0.0, 1.0 / std::sqrt(hardness) - 1.0) / HARDENING, 0.25);
   }
 
-  // Edges that are strained at the start are as soft as if they were allowed to be, until they
-  // shrink.  Where edges harden no further for many steps, more is allowed from step to step,
-  // until the constraints are soft again.  A load stretches them by as much more, then that was of
-  // no use.
+  // Where substeps were too long for the load, edges were only as hard as these and have given way
+  // farther than springs would.  More is allowed, so that springs at this strain are as hard as the
+  // substeps have made them: harder ones would give back more than they took.
+  void allow_what_was_borne()
+  {
+    constexpr double VARIES = 0.95;    // a load at rest
+    const double borne = VARIES * state.hardness;
+    const double strain = strain_of(state.hardest) * (borne / state.hardest);
+    const double more = strain / std::max(SOFT, strain_of(borne));
+    if (more <= 1.0) return;
+    state.yield *= more;
+    state.since = 0.0;
+  }
+
+  // What is allowed less lifts a load, and pulls at what has struck the sheet: slowly where edges
+  // are hard, until the load has lasted.  All by time, in units of the longest step.
+  void shrink_yield(double strain)
+  {
+    constexpr double LASTS = 100.0;
+    State &s = state;
+    s.since = std::min(s.since + of_longest_step, LASTS);
+    const double speed = strain < SOFT ? 1.0 : (1.0 + 2.0 * s.since / LASTS) / 3.0;
+    const double shrunk = s.yield / std::pow(CHANGE, speed * of_longest_step);
+    if (strain < SOFT * SOFT) s.least_yield = std::max(1.0, std::min(s.least_yield, shrunk));
+    s.yield = std::max(s.least_yield, shrunk);
+  }
+
+  // Edges that are strained at the start are as soft as if they were allowed to be, and harden
+  // slowly.  If that does not bring their strain down, or if edges harden no further for many
+  // steps, more is allowed from step to step until the constraints are soft again, and stays so.
+  // If a load stretches them by as much more that was of no use.
 
   void watch(double strain)
   {
-    constexpr double STEPS_ABOVE = 30.0, GROWS = 1.25, AT_REST = 300.0;
+    constexpr double STEPS_ABOVE = 30.0, GROWS = 1.25;
     State &s = state;
+    const double absolute = strain * s.yield;
     if (s.phase == YIELDS) {
       s.yield *= CHANGE;
-      if (strain * s.yield > GROWS * s.strain_then) s.phase = OVERLOADED;
+      if (absolute > GROWS * s.strain_then) s.phase = OVERLOADED;
       if (strain < SOFT) s.phase = HELD;
+      s.least_yield = s.phase == HELD ? s.yield : 1.0;
       return;
     }
-    const bool yields_still = s.phase == HELD || s.phase == STRAINED;
-    s.steps = strain > MAX_OF_ALLOWED || s.phase == STRAINED ? s.steps + 1.0 : 0.0;
-    if (!yields_still || strain < SOFT * SOFT) shrink_yield();
-    if (s.phase == STRAINED) {
-      if (s.steps > AT_REST) s.phase = HELD;
-      if (strain * s.yield < 1.0) s.phase = BORNE;
-      return;
-    }
-    if (s.steps == 0.0 && s.yield == 1.0) s.phase = BORNE;
-    if (s.steps < STEPS_ABOVE || s.phase == OVERLOADED) return;
+    s.steps = strain > MAX_OF_ALLOWED ? s.steps + 1.0 : 0.0;
+    shrink_yield(strain);
+    // from a third of what is allowed a load would come to half of it, for half the yield
+    const bool stays = s.phase == STRAINED && strain > 2.0 * SOFT && 2.0 * absolute > s.strain_then;
+    const bool is_allowed = s.steps == 0.0 && s.yield == 1.0;
+    if (is_allowed || (s.phase == STRAINED && absolute < 1.0)) s.phase = BORNE;
+    if (!stays && (s.steps < STEPS_ABOVE || s.phase == OVERLOADED)) return;
     s.phase = YIELDS;
-    s.strain_then = strain * s.yield;
+    s.strain_then = absolute;
   }
 };
 

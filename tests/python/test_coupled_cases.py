@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from sphcloth.errors import UserError
+from sphcloth.log import ThermoTable
 from sphcloth.references.added_mass_piston import Piston
 from sphcloth.references.blob_on_free_sheet import Collision
 from sphcloth.references.jet_on_sheet import TurnedJet
@@ -107,15 +108,20 @@ def test_a_drop_on_a_free_sheet_keeps_momentum(tmp_path: Path) -> None:
         assert result.metrics[name].passed, (name, result.metrics[name].value)
 
 
-@pytest.mark.parametrize(("coupling", "limit"), [("contact", 0.02), ("pressure", 0.01)])
-def test_rigid_edges_return_hardly_more_than_they_stored(
-    tmp_path: Path, coupling: str, limit: float
-) -> None:
-    """What they store is in no sum; as stiff as each step makes them they gained 11 and 3 %."""
+@pytest.mark.parametrize("coupling", ["contact", "pressure"])
+def test_rigid_edges_return_hardly_more_than_they_stored(tmp_path: Path, coupling: str) -> None:
+    """What they store is in no sum; as stiff as each step makes them they gained 11 and 3 %.
+
+    The springs of the solver hold up to 1.6 % of the energy of a drop, and give it back.
+    """
     settings = {"across": "3", "length": "8", "width": "6", "most_ranks": "1", "radius": "0.05"}
     settings |= {"compliance": "0", "coupling": coupling, "scheme": "global"}
     result = run_case("blob-on-free-sheet", tmp_path, **settings)
-    assert result.metrics["energy_rise"].value < limit
+    assert result.metrics["energy_rise"].value < 0.02
+    for log in tmp_path.glob("*/log.lammps"):
+        thermo = ThermoTable.read(log)
+        energy = thermo["v_kinetic"] + thermo["v_internal"]
+        assert energy.max() <= energy[0] * (1 + 1e-9), log
 
 
 @pytest.mark.usefixtures("finest_only")

@@ -41,14 +41,14 @@ namespace {
   SPHCLOTH_INLINE const Row &row(const Vertex &v) { return *reinterpret_cast<const Row *>(&v); }
   SPHCLOTH_INLINE Row &row(Vertex &v) { return *reinterpret_cast<Row *>(&v); }
 
-  // An edge in a sweep: its compliance, and the part of the error that it comes to
-  // and is not pulled back for, since it pulls as the tangent of a spring that hardens.
+  // An edge in a sweep: its compliance, and the part of the error that it comes to and is not
+  // pulled back for, since it pulls as the tangent of a spring that hardens.
 
   struct EdgeSpring {
     double compliance, offset;
   };
 
-  SPHCLOTH_INLINE EdgeSpring edge_spring(double before, double w, double material, double taken,
+  SPHCLOTH_INLINE EdgeSpring edge_spring(double error, double w, double material, double taken,
                                          const SolverSoftness &s)
   {
     const double by_share = taken * s.softness;
@@ -57,7 +57,7 @@ namespace {
         (by_share > material ? by_share : 0.0) + SINGLE_SWEEP_SOFTNESS * s.softness;
     const double steeper = a + s.steeper * std::min(a, hardens);
     const double tangent = steeper > 0.0 ? a / steeper : 1.0;
-    return {a * tangent, before * (1.0 - tangent)};
+    return {a * tangent, error * (1.0 - tangent)};
   }
 
   // What all constraints of a kind have in common in a sweep.  share: of its error that one takes;

@@ -42,6 +42,19 @@ struct SolverSoftness {
 
 SPHCLOTH_INLINE double hardening(double y) { return HARDENING * (y * y) * (y * y); }
 
+// g of a strain over the allowed one, and the strain with this g
+
+inline double hardness_of(double y)
+{
+  const double root = 1.0 / (1.0 + std::min(hardening(y), MAX_HARDENING));
+  return root * root;
+}
+
+inline double strain_with(double hardness)
+{
+  return std::pow(std::max(0.0, 1.0 / std::sqrt(hardness) - 1.0) / HARDENING, 0.25);
+}
+
 // x: error; w: W; material: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative
 // to the size, 0: no load hardens it; softest: of a rigid constraint over W L^2
 
@@ -113,8 +126,7 @@ struct LoadedSolver {
     const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
     const double floor = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
     const double y = has_size ? strain_of(unloaded_error(load, w, per_size) / allowed) : 0.0;
-    const double root = 1.0 / (1.0 + std::min(hardening(y), MAX_HARDENING));
-    return {std::min(1.0, std::max(has_size ? root * root : 0.0, floor)), y * allowed};
+    return {std::min(1.0, std::max(has_size ? hardness_of(y) : 0.0, floor)), y * allowed};
   }
 
   // the error that the unloaded softness would leave
@@ -128,8 +140,7 @@ struct LoadedSolver {
   {
     constexpr double ROOM = 0.99;    // strain_of() is not exact
     if (allowed == 0.0) return found.largest;
-    const double q = 1.0 / std::sqrt(found.hardest) - 1.0;
-    const double y = std::min(found.largest / allowed, std::pow(q / HARDENING, 0.25));
+    const double y = std::min(found.largest / allowed, strain_with(found.hardest));
     return ROOM * allowed * y * (1.0 + hardening(y)) * (1.0 + hardening(y));
   }
 

@@ -41,10 +41,10 @@ class SubstepLength {
     const double before = state.yield;
     state.hardest = hardest;
     watch(strain);
-    if (hardest < state.hardness) allow_what_was_borne();
+    allow_what_was_borne();
     // what is allowed less hardens an edge that stays as long
     const double less = before / state.yield;
-    if (less > 1.0) state.hardest = hardness_of(less * strain_of(hardest));
+    if (less > 1.0) state.hardest = hardness_of(less * strain_with(hardest));
   }
 
   // A softness that is not bounded by a strain: it follows substeps that are given, if they become
@@ -85,18 +85,6 @@ class SubstepLength {
   // sweep stretches an edge by as much as its law does.
   static double with_margin(double hardness) { return 0.5 * hardness * (1.0 + hardness); }
 
-  static double hardness_of(double strain)
-  {
-    const double root = 1.0 / (1.0 + std::min(hardening(strain), MAX_HARDENING));
-    return root * root;
-  }
-
-  // which is as hard
-  static double strain_of(double hardness)
-  {
-    return std::pow(std::max(0.0, 1.0 / std::sqrt(hardness) - 1.0) / HARDENING, 0.25);
-  }
-
   // Where substeps were too long for the load, edges were only as hard as these and have given way
   // farther than springs would.  More is allowed, so that springs at this strain are as hard as the
   // substeps have made them: harder ones would give back more than they took.
@@ -104,8 +92,8 @@ class SubstepLength {
   {
     constexpr double VARIES = 0.95;    // a load at rest
     const double borne = VARIES * state.hardness;
-    const double strain = strain_of(state.hardest) * (borne / state.hardest);
-    const double more = strain / std::max(SOFT, strain_of(borne));
+    const double strain = strain_with(state.hardest) * (borne / state.hardest);
+    const double more = strain / std::max(SOFT, strain_with(borne));
     if (more <= 1.0) return;
     state.yield *= more;
     state.since = 0.0;

@@ -96,7 +96,7 @@ def test_an_example_without_restart_says_so(tmp_path: Path) -> None:
 def test_pour_goes_on_as_if_it_had_never_stopped(tmp_path: Path) -> None:
     """To round-off: a run that begins takes up its forces in another order.
 
-    Until the water has met the sheet: from then on round-off grows by 1e9 in a twentieth of a second.
+    Until the water has met the sheet: from then on round-off grows by 1e9 in 50 ms.
     """
 
     def pour(folder: str, t_end: float, resume: bool = False) -> tuple[ThermoTable, Trajectory]:

@@ -125,6 +125,7 @@ void FixWallSPH::init()
   if (modify->get_fix_by_style("^wall/sph$").size() > 1)
     error->all(FLERR, "{}: there is another fix wall/sph: give all faces to one", label);
   table = fluid->wall_table();
+  impact = fluid->wall_impact();
   profiles = fluid->lattices.wall_profiles(table, reflection);
   found_at.clear();
   for (Wall &wall : walls) {
@@ -321,8 +322,11 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
         ? nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support)
         : 0.0;
 
-    const double pressure =
-        times * stop - reflection * p_over_rho2 * denser;    // per mass, away from the wall
+    // per mass, away from the wall
+    const double speed = departure(i, k);
+    const double slowing =
+        speed < 0.0 ? -speed * share * fluid->impact_rate(type, atom->rho[i], impact(delta)) : 0.0;
+    const double pressure = times * (stop + slowing) - reflection * p_over_rho2 * denser;
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
                                      : -times * friction * (v[d] - wall.velocity[d]);
@@ -330,7 +334,7 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
       mine[3 * k + d] -= to_force * accel;
     }
     if (!first) continue;
-    atom->drho[i] += denser * departure(i, k);
+    atom->drho[i] += denser * speed;
     if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
     mine.back() += 0.5 * mass * eos.k * strain * strain * force->mvv2e;
   }
@@ -380,7 +384,8 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
       const double of_spring = rho / (STOPPING_DEPTH * support);
       s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);
     }
-    s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support);
+    s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support) +
+        share * fluid->impact_rate(type, rho, impact(delta));
   }
 }
 

@@ -14,6 +14,7 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include "core/sph/plane_wall.h"
 #include "core/sph/shifting.h"
+#include "core/sph/wall_impact.h"
 #include "core/sph/wall_profile.h"
 #include "fluid/fluid_boundary.h"
 #include "lammps_util/number_or_variable.h"
@@ -86,6 +87,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   double reflection;    // 1, and the pressure behind the plane over the particle's own
   std::array<double, 3> open_low, open_high;    // out of reach of all walls
   sphcloth::WallTable table;
+  sphcloth::WallImpact impact;
   std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
 
   std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall: the half-space

@@ -229,3 +229,26 @@ def test_thousands_of_particles_have_the_step_of_the_force_on_each():
         assert len(limit) == 25**3
         own = own_steps(lmp)
         assert (own <= limit * (1 + 1e-3)).all() and (own > 0.49 * limit).all()
+
+
+@pytest.mark.parametrize("rho", [990.0, 900.0])
+def test_a_density_in_free_flight_may_pass_rest_by_what_others_may_change(rho):
+    """Not before, since nothing is pressed there; and none where the density falls."""
+    steps = []
+    for speed in (-3.0, 3.0):
+        with instance() as lmp:
+            lmp.commands_string(
+                header(atoms=FLUID)
+                + box("-1 1 -1 1 -1 1")
+                + "mass 1 0.125\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 0.06 0 0\n"
+                + f"set type 1 sph/rho {rho}\nset atom 2 vx {speed}\n"
+                + sph_tait("1 1 fluid 1000 c0 20", options="density continuity delta 0")
+                + neighbor(0.03)
+                + "timestep 1\nfix step all sph/integrate global velocity 0 force 0 stability 0 "
+                + "density 0.1\nrun 0"
+            )
+            steps.append((own_steps(lmp), by_id(lmp, "drho")))
+    (limited, rate), (free, _) = steps
+    assert np.all(rate > 0)
+    np.testing.assert_allclose(limited, (1000 - rho + 0.1 * rho) / rate, rtol=1e-9)
+    np.testing.assert_array_equal(free, 1.0)  # the ceiling

@@ -339,6 +339,19 @@ WallTable SPHMaterials::wall_table() const
   });
 }
 
+WallImpact SPHMaterials::wall_impact() const
+{
+  return with_kernel(options.kernel, [&](auto kernel) {
+    return sphcloth::wall_impact<decltype(kernel)>(domain->dimension);
+  });
+}
+
+double SPHMaterials::impact_rate(int i, double rho, double impact) const
+{
+  const Tait &eos = types[i].eos;
+  return alpha(i, i) * eos.sound_speed() * eos.rho0 / rho * impact / (2.0 * support(i));
+}
+
 /* ----------------------------------------------------------------------
    restart and data files
 ------------------------------------------------------------------------- */

@@ -9,6 +9,7 @@
 
 #include "core/sph/fluid.h"
 #include "core/sph/plane_wall.h"
+#include "core/sph/wall_impact.h"
 
 #include <string>
 #include <vector>
@@ -89,6 +90,10 @@ class SPHMaterials : protected Pointers {
   double stored_energy(const sphcloth::Tait &, double rho) const;
   // what a plane wall adds to the density
   sphcloth::WallTable wall_table() const;
+  // how its artificial viscosity slows a particle that approaches a plane; and the rate, where that
+  // table has the value `impact`
+  sphcloth::WallImpact wall_impact() const;
+  double impact_rate(int i, double rho, double impact) const;
   double nu(int i, int j) const;
   double alpha(int i, int j) const;
   // the terms of a pair of types, with the kernel's scale

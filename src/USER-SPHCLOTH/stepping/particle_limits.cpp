@@ -125,6 +125,14 @@ inline double ParticleLimits::set_motion(int i, const double *f, StepState &s) c
   return mass;
 }
 
+// The rate at which a density that changes without effect over `free` first, has the limit of one
+// that changes by `tolerated` beyond.
+
+static double beyond_rest(double rate, double free, double tolerated)
+{
+  return rate > 0.0 ? rate * tolerated / (tolerated + free) : 0.0;
+}
+
 inline StepState ParticleLimits::particle_state(int i, const double *f) const
 {
   StepState s{};
@@ -143,8 +151,10 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
   if (in_flight && by_sound > 0.0 && s.of_vertices_sq == 0.0)
     s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, by_sound);
-  // nothing is compressed in free flight, but individual steps interpolate the density
-  if (!in_flight || interpolates_density) s.drho = atom->drho[i];
+  s.drho = atom->drho[i];
+  // what is thinner than at rest may change until it is pressed, but individual steps interpolate
+  if (in_flight && !interpolates_density)
+    s.drho = beyond_rest(s.drho, type.eos.rho0 - s.rho, lambda.density * s.rho);
   return s;
 }
 

@@ -2,8 +2,9 @@
 
 ``python -m sphcloth.validation.water resolutions --out FOLDER`` lets coarse and fine water come to
 rest beside each other; ``... corner`` finds the density in a corner of plane walls, ``... bounce``
-how deep water gets behind one, and ``... drops`` the energy that colliding drops lose or gain with
-each scheme of the time step. Each prints a table.
+how deep water gets behind one, ``... impact`` the energy with which single particles leave it, and
+``... drops`` the energy that colliding drops lose or gain with each scheme of the time step. Each
+prints a table.
 """
 
 from __future__ import annotations
@@ -31,6 +32,13 @@ WALLS = (1, 2, 3)
 SPEEDS = (0.5, 0.95)
 BOUNCES = (("particle", "global"), ("particle", "constant"), ("drop", "global"))
 REACH, OF_SOUND = 0.1, 20.0
+
+# of in.bounce with the default limits and others: artificial viscosity, more limits, speeds over
+# that of sound, each times some factors: other steps meet the wall
+IMPACTS = ((0.1, ""), (0.05, ""), (0.0, ""), (0.0, "stability 0.5"))
+IMPACT_SPEEDS = (0.01, 0.05, 0.15, 0.4)
+FACTORS = (0.94, 0.97, 1.0, 1.03, 1.06)
+CEILING = 0.01  # s, longer than the limits
 
 # schemes of in.drops, and what each is given: a step in s, or limits
 DROPS: tuple[tuple[str, dict[str, Value]], ...] = (
@@ -102,6 +110,24 @@ def bounce(runner: Runner, what: str, scheme: str, support: int, speed: float) -
     }
 
 
+def impact(runner: Runner, density: str, alpha: float, limits: str) -> dict[str, Value]:
+    """Return the energy with which particles leave a wall over that with which they came."""
+    setting = f"{density}_{alpha}_{limits.replace(' ', '_')}"
+    row: dict[str, Value] = {"density": density, "alpha": alpha, "limits": limits or "default"}
+    for speed in IMPACT_SPEEDS:
+        left = []
+        for factor in FACTORS:
+            given = {"density": density, "alpha": alpha, "limits": limits, "ceiling": CEILING}
+            end = 5 * REACH / (speed * OF_SOUND)
+            given["speed"] = speed * factor
+            run = runner.run(f"{setting}_{speed}_{factor}", end, given)
+            left.append(run.thermo["c_motion"][-1] / run.thermo["c_motion"][0])
+        row[f"{speed} c0: mean"], row[f"{speed} c0: largest"] = map(
+            float, (np.mean(left), max(left))
+        )
+    return row
+
+
 def drops(runner: Runner, scheme: str, given: Mapping[str, Value]) -> dict[str, Value]:
     """Return the updates and the change of the total energy of two drops that collide."""
     setting = " ".join(map(str, given.values()))
@@ -125,13 +151,19 @@ STUDIES: Mapping[str, Callable[[Runner], Points]] = {
         for support in (2, 3)
         for speed in SPEEDS
     ],
+    "impact": lambda runner: [
+        impact(runner, density, *each)
+        for density in ("summation", "calibrated")
+        for each in IMPACTS
+    ],
     "drops": lambda runner: [drops(runner, scheme, given) for scheme, given in DROPS],
 }
 
 
 def study(name: str, out: Path, console: Console) -> Points:
     """Run one study and write its points to a folder."""
-    points = STUDIES[name](Runner(FOLDER / f"in.{name}", out / name, 1, console))
+    script = "bounce" if name == "impact" else name
+    points = STUDIES[name](Runner(FOLDER / f"in.{script}", out / name, 1, console))
     write_json(out / f"{name}.json", points)
     return points
 

@@ -110,15 +110,15 @@ def test_restart_and_split_runs_in_the_middle_of_a_hierarchy(folder):
     begin = fall("individual")
     write_all = END.replace("run ${steps}", "")
     run(
-        write(folder, begin + "run 75\nwrite_restart half.bin\nrun 75\n" + write_all, "in.split"),
+        write(folder, begin + "run 60\nwrite_restart half.bin\nrun 60\n" + write_all, "in.split"),
         dump="split.txt",
     )
-    run(write(folder, begin + END, "in.whole"), dump="whole.txt", steps=150)
+    run(write(folder, begin + END, "in.whole"), dump="whole.txt", steps=120)
     after = begin.replace("read_data fall.data", "read_restart half.bin")
     after = after.replace("pair_style sph/tait 0.1\n", "").replace(
         "pair_coeff 1 1 fluid 1000 c0 20 alpha 0.1\n", ""
     )
-    run(write(folder, after + END, "in.again"), dump="again.txt", steps=75)
+    run(write(folder, after + END, "in.again"), dump="again.txt", steps=60)
     whole, split, again = (result(folder, f"{n}.txt") for n in ("whole", "split", "again"))
     assert np.array_equal(split, again)
     assert np.abs(whole - split).max() < 1e-9

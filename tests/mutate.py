@@ -109,7 +109,7 @@ BUGS = [
     Bug("cloth: a hardened edge pulls back along its secant", "core/pbd/cloth_solver.cpp",
         "a + s.steeper * std::min(a, hardens)", "a", CORE),
     Bug("calibrated density: its slope is left out of the forces", "fluid/fluid_evaluation.cpp",
-        "if (calibrates()) term *= lattices.slope(t, rho);", "",
+        "if (adapts) term *= lattices.slope(i, t, rho);", "",
         f"{CALIBRATED}::test_forces_beside_walls_are_the_gradient_of_the_energy"),
     Bug("calibrated wall: half the gradient that a layer lacks", "core/sph/wall_profile.h",
         "2.0 * missing.gradient", "missing.gradient", CORE),

@@ -27,6 +27,8 @@ static std::vector<NamedValue> values_of_step()
       {"updates/ideal", TIMES + 4, EXTENSIVE},
       {"wait/max", TIMES + 5, INTENSIVE},
       {"wait/mean", TIMES + 6, INTENSIVE},
+      {"sound", TIMES + 7, INTENSIVE},
+      {"sound/work", TIMES + 8, EXTENSIVE},
   };
   for (int k = 1; k < N_LIMITS; k++)
     values.push_back({fmt::format("steps/{}", limit_name(Limit(k))), STEPS + k, INTENSIVE});

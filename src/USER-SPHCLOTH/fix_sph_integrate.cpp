@@ -33,7 +33,8 @@ using namespace sphcloth;
 FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/integrate", id)), fluid(nullptr),
     limits(lmp_, options), control(lmp_, options, label, groupbit), report(lmp_, options, groupbit),
-    scheme(SteppingScheme::CONSTANT), run_style_drives(false), has_moved(false), restored_step(0.0)
+    sound(lmp_), scheme(SteppingScheme::CONSTANT), run_style_drives(false), has_moved(false),
+    restored_step(0.0)
 {
   time_integrate = 1;
   nevery = 1;
@@ -90,7 +91,7 @@ void FixSPHIntegrate::init()
   const auto *run_style = dynamic_cast<HasSteppingScheme *>(update->integrate);
   run_style_drives = run_style != nullptr;
   const SteppingScheme wanted = run_style ? run_style->stepping_scheme() : options.scheme;
-  options.check(wanted, control.times, fluid->integrates_density(), label, error);
+  options.check(wanted, control.times, *fluid, label, error);
   use_scheme(wanted, BlockClock());
   take_up_restored_step();
   if (update->whichflag == 2 && updates_some())
@@ -98,6 +99,7 @@ void FixSPHIntegrate::init()
                "{}: with run_style sph/adaptive {} minimize would update the particles that are "
                "due alone: use 'run_style verlet' before",
                label, scheme_name(scheme));
+  sound.begin_run(fluid);
   limits.init(fluid, scheme);
   if (options.scales_mass(scheme)) fluid->scaled_mass().want(groupbit);
   control.init(fluid, limits.shortest_sound_time());
@@ -172,6 +174,12 @@ void FixSPHIntegrate::initial_integrate(int)
     error->all(FLERR, "{}: the time has been reset since the last step: leave 'pre no' out of run",
                label);
   has_moved = true;
+  sound.elapsed += update->dt;
+  if (stepper->updates_all_next() && sound.update()) {
+    limits.take_materials();
+    control.set_sound_time(limits.shortest_sound_time());
+    control.watch.demand();
+  }
   control.begin_step();
   fluid->advance(update->dt);
   stepper->move();
@@ -221,7 +229,10 @@ double FixSPHIntegrate::own_step(int i) const
 
 double FixSPHIntegrate::compute_scalar() { return update->dt; }
 
-double FixSPHIntegrate::compute_vector(int n) { return report.output(n, *stepper, control, rows); }
+double FixSPHIntegrate::compute_vector(int n)
+{
+  return report.output(n, *stepper, control, sound, rows);
+}
 
 /* ----------------------------------------------------------------------
    restart: the step before, the ceiling unless it is given anew, the counters
@@ -236,13 +247,15 @@ struct FixSPHIntegrate::Record {
   std::array<double, N_LIMITS> steps_by_limit;
   BlockClock clock;
   SteppingScheme scheme;
+  double sound_work, sound_elapsed;
+  int sound_columns;
 };
 
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
-  const double mine[3] = {report.updates, report.ideal_updates, report.waits};
-  double all[3] = {0.0, 0.0, 0.0}, longest_wait = 0.0;
-  MPI_Reduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, 0, world);
+  const double mine[4] = {report.updates, report.ideal_updates, report.waits, sound.work};
+  double all[4] = {0.0, 0.0, 0.0, 0.0}, longest_wait = 0.0;
+  MPI_Reduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, 0, world);
   MPI_Reduce(&report.longest_wait, &longest_wait, 1, MPI_DOUBLE, MPI_MAX, 0, world);
   if (comm->me) return;
   const StepControl::State state = control.state();
@@ -260,7 +273,10 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       state.watch,
                       report.steps_by_limit,
                       stepper->clock() ? *stepper->clock() : BlockClock(),
-                      scheme};
+                      scheme,
+                      all[3],
+                      sound.elapsed,
+                      sound.columns.count()};
   write_record(fp, record);
 }
 
@@ -278,6 +294,9 @@ void FixSPHIntegrate::restart(char *buf)
   report.waits = comm->me == 0 ? record.waits : 0.0;
   report.longest_wait = record.longest_wait;
   report.steps_by_limit = record.steps_by_limit;
+  sound.work = comm->me == 0 ? record.sound_work : 0.0;
+  sound.elapsed = record.sound_elapsed;
+  sound.columns.create(record.sound_columns, atom->nmax);
   // what each scheme keeps of the atoms follows, see unpack_restart(): a uniform step keeps nothing
   if (record.scheme == SteppingScheme::INDIVIDUAL || record.scheme == SteppingScheme::BLOCK)
     use_scheme(record.scheme, record.clock);
@@ -292,6 +311,7 @@ void FixSPHIntegrate::grow_arrays(int nmax)
   memory->grow(rows.row, nmax, UpdateRows::N_COLUMNS, "sph/integrate:rows");
   array_atom = rows.row;
   first_kick.columns.grow(nmax);
+  sound.columns.grow(nmax);
   stepper->grow(nmax);
 }
 
@@ -299,6 +319,7 @@ void FixSPHIntegrate::copy_arrays(int i, int j, int)
 {
   std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, rows[j]);
   first_kick.columns.copy(i, j);
+  sound.columns.copy(i, j);
   stepper->columns().copy(i, j);
 }
 
@@ -307,24 +328,37 @@ void FixSPHIntegrate::set_arrays(int i)
   std::fill_n(rows[i], UpdateRows::N_COLUMNS, 0.0);
   rows[i][UpdateRows::ACTIVE] = 1.0;
   first_kick.add_particle(i, update->whichflag != 0);
+  sound.columns.clear(i);
   stepper->columns().clear(i);
   stepper->add_particle(i);
 }
 
 int FixSPHIntegrate::pack_exchange(int i, double *buf)
 {
-  double *end =
-      std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, first_kick.columns.pack(i, buf));
+  double *end = std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, pack_always_kept(i, buf));
   return static_cast<int>(stepper->columns().pack(i, end) - buf);
 }
 
 int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 {
-  first_kick.columns.unpack(i, buf);
-  buf += first_kick.columns.count();
+  buf = unpack_always_kept(i, buf);
   std::copy(buf, buf + UpdateRows::N_COLUMNS, rows[i]);
   stepper->columns().unpack(i, buf + UpdateRows::N_COLUMNS);
   return n_exchanged();
+}
+
+// What every scheme keeps; both return where the rest begins.
+
+double *FixSPHIntegrate::pack_always_kept(int i, double *buf) const
+{
+  return sound.columns.pack(i, first_kick.columns.pack(i, buf));
+}
+
+double *FixSPHIntegrate::unpack_always_kept(int i, double *buf)
+{
+  first_kick.columns.unpack(i, buf);
+  sound.columns.unpack(i, buf + first_kick.columns.count());
+  return buf + n_always_kept();
 }
 
 // The first value of a record is its length.  A uniform step keeps no more than whether the
@@ -334,7 +368,7 @@ int FixSPHIntegrate::pack_restart(int i, double *buf)
 {
   buf[0] = maxsize_restart();
   if (stepper->columns().empty())
-    first_kick.columns.pack(i, buf + 1);
+    pack_always_kept(i, buf + 1);
   else
     pack_exchange(i, buf + 1);
   return static_cast<int>(buf[0]);
@@ -350,7 +384,7 @@ void FixSPHIntegrate::unpack_restart(int i, int nth)
                "damaged, or of another release of sphcloth: take another file",
                label, atom->tag[i], *record, maxsize_restart());
   if (stepper->columns().empty())
-    first_kick.columns.unpack(i, record + 1);
+    unpack_always_kept(i, record + 1);
   else
     unpack_exchange(i, record + 1);
 }
@@ -359,11 +393,11 @@ int FixSPHIntegrate::size_restart(int) { return maxsize_restart(); }
 
 int FixSPHIntegrate::maxsize_restart()
 {
-  return 1 + (stepper->columns().empty() ? first_kick.columns.count() : n_exchanged());
+  return 1 + (stepper->columns().empty() ? n_always_kept() : n_exchanged());
 }
 
 double FixSPHIntegrate::memory_usage()
 {
   return static_cast<double>(sizeof(double)) * UpdateRows::N_COLUMNS * atom->nmax +
-      first_kick.columns.bytes() + stepper->bytes();
+      first_kick.columns.bytes() + sound.columns.bytes() + stepper->bytes();
 }

@@ -14,6 +14,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 
 #include "fix.h"
 
+#include "fluid/adaptive_sound.h"
 #include "stepping/particle_limits.h"
 #include "stepping/step_control.h"
 #include "stepping/step_options.h"
@@ -90,6 +91,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   ParticleLimits limits;
   StepControl control;
   StepReport report;
+  AdaptiveSound sound;
   SteppingScheme scheme;    // in force, of this fix or of the run style
   std::unique_ptr<Stepper> stepper;
   bool run_style_drives;
@@ -101,11 +103,14 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   {
     return scheme == SteppingScheme::INDIVIDUAL || scheme == SteppingScheme::BLOCK;
   }
+  int n_always_kept() const { return first_kick.columns.count() + sound.columns.count(); }
   int n_exchanged() const
   {
-    return first_kick.columns.count() + UpdateRows::N_COLUMNS + stepper->columns().count();
+    return n_always_kept() + UpdateRows::N_COLUMNS + stepper->columns().count();
   }
   void check_group();
+  double *pack_always_kept(int i, double *) const;
+  double *unpack_always_kept(int i, double *);
   void take_up_restored_step();
   void use_scheme(SteppingScheme, const BlockClock &);
 };

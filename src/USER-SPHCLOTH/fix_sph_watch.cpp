@@ -10,6 +10,7 @@
 #include "fix_pbd_cloth.h"
 #include "fix_sph_drain.h"
 #include "fix_sph_emit.h"
+#include "fix_sph_integrate.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
@@ -130,11 +131,13 @@ void FixSPHWatch::find_partners()
   sources.clear();
   sinks.clear();
   cloths.clear();
+  integrators.clear();
   if (!balances()) return;
   for (Fix *fix : modify->get_fix_list()) {
     auto *source = dynamic_cast<FixSPHEmit *>(fix);
     auto *sink = dynamic_cast<FixSPHDrain *>(fix);
     auto *cloth = dynamic_cast<FixPBDCloth *>(fix);
+    auto *integrator = dynamic_cast<FixSPHIntegrate *>(fix);
     if ((source || sink) && !covers(fix))
       error->all(FLERR,
                  "{}: particles of fix {} come or go in group {}, their mass is balanced in group "
@@ -144,6 +147,7 @@ void FixSPHWatch::find_partners()
     if (source) sources.push_back(source);
     if (sink) sinks.push_back(sink);
     if (cloth && covers(cloth)) cloths.push_back(cloth);
+    if (integrator) integrators.push_back(integrator);
   }
 }
 
@@ -181,7 +185,7 @@ void FixSPHWatch::end_of_step()
 
 void FixSPHWatch::remember_file(bool one_of_two)
 {
-  std::string name = !one_of_two      ? output->restart1
+  std::string name = !one_of_two    ? output->restart1
       : output->restart_toggle == 0 ? output->restart2a
                                     : output->restart2b;
   if (const auto star = name.find('*'); star != std::string::npos)
@@ -280,8 +284,8 @@ FixSPHWatch::Balance FixSPHWatch::balance() const
   return b;
 }
 
-// What came in, what left, and what cloths have been given ahead of time.  What leaves takes energy
-// along, which is not counted: energy may fall.
+// What came in, what left, what another speed of sound has given, and what cloths have been given
+// ahead of time.  What leaves takes energy along, which is not counted: energy may fall.
 
 void FixSPHWatch::take_off_exchanged(Balance &b) const
 {
@@ -295,6 +299,8 @@ void FixSPHWatch::take_off_exchanged(Balance &b) const
     b.mass += sink->compute_vector(0);
     for (int d = 0; d < 3; d++) b.momentum[d] += sink->compute_vector(1 + d);
   }
+  for (FixSPHIntegrate *integrator : integrators)
+    if (is_on(ENERGY)) b.energy -= integrator->compute_vector(StepReport::SOUND_WORK);
   for (FixPBDCloth *cloth : cloths) {
     for (int d = 0; is_on(MOMENTUM) && d < 3; d++) b.momentum[d] -= cloth->compute_vector(7 + d);
     if (is_on(ENERGY)) b.energy += cloth->compute_vector(6);

@@ -24,6 +24,7 @@ class ArgReader;
 class FixPBDCloth;
 class FixSPHDrain;
 class FixSPHEmit;
+class FixSPHIntegrate;
 class FluidState;
 
 class FixSPHWatch : public Fix {
@@ -67,6 +68,7 @@ class FixSPHWatch : public Fix {
   std::vector<FixSPHEmit *> sources;
   std::vector<FixSPHDrain *> sinks;
   std::vector<FixPBDCloth *> cloths;
+  std::vector<FixSPHIntegrate *> integrators;
 
   bool begun;    // is the balance of the begin known?
   Balance begin;

@@ -285,6 +285,15 @@ double FixWallSPH::departure(int i, std::size_t k) const
   return walls[k].inwards() * (atom->v[i][axis] - walls[k].velocity[axis]);
 }
 
+// alpha c0 h_s rho0/rho D/H^2, D the value of the table
+
+static double impact_rate(const SPHMaterials &fluid, int type, double rho, double impact)
+{
+  const Tait &eos = fluid.equation_of_state(type);
+  return fluid.alpha(type, type) * eos.sound_speed() * eos.rho0 / rho * impact /
+      (2.0 * fluid.support(type));
+}
+
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
 // in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
 
@@ -325,7 +334,7 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
     // per mass, away from the wall
     const double speed = departure(i, k);
     const double slowing =
-        speed < 0.0 ? -speed * share * fluid->impact_rate(type, atom->rho[i], impact(delta)) : 0.0;
+        speed < 0.0 ? -speed * share * impact_rate(*fluid, type, atom->rho[i], impact(delta)) : 0.0;
     const double pressure = times * (stop + slowing) - reflection * p_over_rho2 * denser;
     for (int d = 0; d < 3; d++) {
       const double accel = d == axis ? wall.inwards() * pressure
@@ -378,14 +387,14 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
       const double sound = eos.sound_speed(rho), bend = added.curvature(k) / (support * support);
       s.spring[walls[k].axis()] +=
           std::max(0.0, reflection * fluid->acting_pressure(eos, rho) * eos.rho0 * bend) /
-          (atom_mass(atom, i) * sound * sound * fluid->lattices.slope(type, rho));
+          (atom_mass(atom, i) * sound * sound * fluid->lattices.slope_of(type, rho));
     }
     if (delta < 0.0) {
       const double of_spring = rho / (STOPPING_DEPTH * support);
       s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);
     }
     s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support) +
-        share * fluid->impact_rate(type, rho, impact(delta));
+        share * impact_rate(*fluid, type, rho, impact(delta));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "force.h"
 #include "lammps_util/lammps_version.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -89,6 +90,11 @@ void PairSPHTait::init_style()
     error->all(FLERR,
                "{}: neigh_modify exclude group or molecule would hide neighbors from the sums: "
                "exclude types, or remove it; boundary particles leave each other out by their role",
+               STYLE);
+  if (fluid.sound_follows() && modify->get_fix_by_style("^sph/integrate$").empty())
+    error->all(FLERR,
+               "{}: c0 follows the flow where fix sph/integrate takes the steps: add it, or give a "
+               "constant 'c0 C'",
                STYLE);
   fluid.lattices.set_masses();    // 'mass' may have come since
   comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;
@@ -241,14 +247,14 @@ void PairSPHTait::read_restart(FILE *fp)
 
 void PairSPHTait::write_data(FILE *fp)
 {
-  for (int i = 1; i <= atom->ntypes; i++) release::print(fp, "{} {}\n", i, fluid.words(i, i));
+  for (int i = 1; i <= atom->ntypes; i++) release::print(fp, "{} {}\n", i, fluid.words(i, i, true));
 }
 
 void PairSPHTait::write_data_all(FILE *fp)
 {
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++)
-      release::print(fp, "{} {} {}\n", i, j, fluid.words(i, j));
+      release::print(fp, "{} {} {}\n", i, j, fluid.words(i, j, true));
 }
 
 double PairSPHTait::memory_usage() { return Pair::memory_usage() + fluid.bytes(); }

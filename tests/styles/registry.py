@@ -4,6 +4,7 @@ A new style needs an entry, and a scene in which it acts if none of these will d
 of restart, ranks, newton, units and wrong words.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -218,6 +219,13 @@ def calibrated(scene: Scene, steps: int) -> Scene:
     return replace(scene, forces=forces, steps=steps)
 
 
+def followed(scene: Scene, steps: int) -> Scene:
+    """Return the scene with a speed of sound that is too small at first and follows the flow."""
+    forces = re.sub(r" (c0 \d+)(\S+)", r" \1\2 c0 follow 1\2 99\2 mach 0.05", scene.forces)
+    fixes = scene.fixes + "compute sound all sph/step sound sound/work\n"
+    return replace(scene, forces=forces, fixes=fixes, steps=steps)
+
+
 SCENES = {
     "drop": DROP,
     "rain": RAIN,
@@ -231,10 +239,11 @@ SCENES = {
     "lifted drop": LIFT,
     "gauze": GAUZE,
     "balloons": BALLOONS,
-    "calibrated tank": calibrated(TANK, 50),
-    "calibrated block steps": calibrated(BLOCK, 20),
-    "calibrated sheet as wall": calibrated(SHEET_AS_WALL, 14),
+    "followed flow": followed(FLOW, 30),
 }
+for name, steps in {"tank": 30, "block steps": 22, "sheet as wall": 14}.items():
+    SCENES[f"calibrated {name}"] = calibrated(SCENES[name], steps)
+    SCENES[f"followed {name}"] = followed(SCENES[name], steps)
 
 # ---------------------------------------------------------------------- styles
 
@@ -273,6 +282,7 @@ class Entry:
 SHEET = {"f_sheet[1]": "N", "f_sheet[2]": "N", "f_sheet[3]": "N", "f_sheet[4]": ""}
 AIR = {"f_air[1]": "N", "f_air[3]": "N", "f_air[4]": "J/s", "f_air[5]": "J", "f_air[6]": "m^2"}
 WALL = {f"f_wall[{k}]": "N" for k in range(1, 19)}
+SOUND = {"c_sound[1]": "m/s", "c_sound[2]": "J"}
 CLOTH = "fix s cloth pbd/cloth\n"
 
 ENTRIES = (
@@ -284,6 +294,7 @@ ENTRIES = (
         commands=(
             "pair_style sph/tait 0.1",
             "pair_coeff 1 1 fluid 1000 c0 20",
+            "pair_coeff 1 1 fluid 1000 c0 follow 5 20",
             "pair_coeff 2 2 boundary",
         ),
     ),
@@ -291,13 +302,9 @@ ENTRIES = (
     Entry("pair", "sph/tait", "calibrated block steps", output={"evdwl": "J"}),
     Entry("pair", "sph/tait", "calibrated sheet as wall", output={"evdwl": "J"}),
     Entry("fix", "wall/sph", "calibrated tank", output=WALL),
+    *(Entry("compute", "sph/step", scene, output=SOUND) for scene in SCENES if "followed" in scene),
     Entry("bond", "pbd", "drop", output={"f_sheet[4]": ""}, commands=("bond_coeff 1 1.0",)),
-    Entry(
-        "bond",
-        "pbd",
-        "compliant drop",
-        output={"f_sheet[7]": "J", "f_sheet[4]": ""},
-    ),
+    Entry("bond", "pbd", "compliant drop", output={"f_sheet[7]": "J", "f_sheet[4]": ""}),
     Entry(
         "dihedral",
         "pbd",
@@ -305,12 +312,7 @@ ENTRIES = (
         output={"f_sheet[3]": "N", "f_sheet[4]": ""},
         commands=("dihedral_coeff 1 1.0",),
     ),
-    Entry(
-        "dihedral",
-        "pbd",
-        "compliant drop",
-        output={"f_sheet[7]": "J"},
-    ),
+    Entry("dihedral", "pbd", "compliant drop", output={"f_sheet[7]": "J"}),
     Entry("fix", "pbd/cloth", "drop", output=SHEET, commands=("fix x cloth pbd/cloth",)),
     Entry("fix", "pbd/cloth", "block steps", output={"f_sheet[3]": "N", "f_sheet[4]": ""}),
     Entry(
@@ -335,10 +337,7 @@ ENTRIES = (
             "f_gas[2][1]": "Pa",
         },
         counts={"f_gas[5]": ""},
-        commands=(
-            "fix x cloth cloth/gas pressure 1",
-            "fix x cloth cloth/gas polytropic 1.4 1 0",
-        ),
+        commands=("fix x cloth cloth/gas pressure 1", "fix x cloth cloth/gas polytropic 1.4 1 0"),
     ),
     Entry(
         "fix",

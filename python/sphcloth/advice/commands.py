@@ -23,7 +23,8 @@ class Fluid:
     Attributes:
         kind: atom type, or the range, as in the script.
         words: all arguments of ``pair_coeff``.
-        sound: speed of sound at rest.
+        sound: speed of sound at rest, the fastest if it follows the flow.
+        follows: does it?
         speed: reference speed of ``fluctuation``; None if the script gives the speed of sound.
         alpha, nu: artificial and kinematic viscosity.
         support: radius of the kernel.
@@ -32,6 +33,7 @@ class Fluid:
     kind: str
     words: tuple[str, ...]
     sound: float
+    follows: bool
     speed: float | None
     alpha: float
     nu: float
@@ -41,16 +43,19 @@ class Fluid:
     def of(cls, words: Sequence[str], support: float) -> Fluid:
         """Read the arguments of ``pair_coeff I I fluid rho0 ...``."""
         given = {word: words[n + 1 : n + 3] for n, word in enumerate(words) if n > 3}
+        follows = "follow" in given
         number = {word: float(rest[0]) for word, rest in given.items() if _is_number(rest[:1])}
         speed = None
-        if "fluctuation" in given:
+        if follows:
+            sound = float(given["follow"][1])
+        elif "fluctuation" in given:
             share, speed = map(float, given["fluctuation"])
             sound = speed / math.sqrt(share)
         else:
             sound = number["c0"] if "c0" in number else math.sqrt(number["k"])
         viscosity = number.get("alpha", 0.0), number.get("nu", 0.0)
         own = number.get("support", support)
-        return cls(words[0], tuple(words), sound, speed, *viscosity, own)
+        return cls(words[0], tuple(words), sound, follows, speed, *viscosity, own)
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,7 @@ void FluidEvaluation::begin_run()
   stability.forget();
   scaled.forget();
   pressures_follow = false;
+  lattices.set_expansion(nullptr);
   boundaries = find_fluid_boundaries(modify);
   find_sides();
   cache_pair_values();
@@ -80,14 +81,7 @@ void FluidEvaluation::set_pair(int i, int j, double listed)
 {
   const int n = atom->ntypes + 1;
   FluidModel &model = core->model;
-  PairTerms t = mix(i, j);
-  const double scale = model.pressure_scale[i] * model.pressure_scale[j];
-  t.stiffness /= is_fluid(i) && is_fluid(j) ? std::sqrt(scale) : scale;
-  // density diffuses within a fluid, not across the step between two
-  if (i == j && integrates_density())
-    t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);
-  model.terms[i * n + j] = model.terms[j * n + i] = t;
-  model.terms[j * n + i].rho0_ratio = 1.0 / t.rho0_ratio;
+  const PairTerms t = set_terms(i, j);
   if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
   if (t.nu > 0.0) model.friction = Friction::ANY;
   list_reach[i * n + j] = list_reach[j * n + i] = listed;
@@ -148,9 +142,9 @@ void FluidEvaluation::find_forces()
   core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
-  if (!calibrates()) return;    // else, so far, the rates of the sums
+  if (!lattices.adapts_density()) return;    // else, so far, the rates of the sums
   core->for_active_fluid(
-      [this](int i, int t) { atom->drho[i] *= lattices.slope(t, atom->rho[i]); });
+      [this](int i, int t) { atom->drho[i] *= lattices.slope(i, t, atom->rho[i]); });
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
@@ -329,8 +323,9 @@ void FluidEvaluation::find_densities(const Particles &p)
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
       core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
-    if (!calibrates()) return;
-    return core->for_active_fluid([&](int i, int t) { p.rho[i] = lattices.density(t, p.rho[i]); });
+    if (!lattices.adapts_density()) return;
+    return core->for_active_fluid(
+        [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });
   }
   check_densities();
   core->record(p);
@@ -406,11 +401,12 @@ void FluidEvaluation::find_frequencies()
 void FluidEvaluation::find_pressures(const Particles &p)
 {
   const double min = options.tension ? -std::numeric_limits<double>::max() : 0.0;
+  const bool adapts = lattices.adapts_density();
   const auto find = [&](int i, int t) {
     const double rho = p.rho[i];
     double &term = p_over_rho2[i];
     term = std::max(equation_of_state(t).pressure(rho), min) / (rho * rho);
-    if (calibrates()) term *= lattices.slope(t, rho);
+    if (adapts) term *= lattices.slope(i, t, rho);
     // a density that is renormalized has a gradient that is
     for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number

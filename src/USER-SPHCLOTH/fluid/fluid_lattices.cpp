@@ -7,6 +7,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fluid/sph_materials.h"
+#include "lammps_util/particle_columns.h"
 
 #include <cmath>
 #include <string>
@@ -98,8 +99,31 @@ void FluidLattices::calibrate()
 double FluidLattices::slope_at_rest() const
 {
   for (int type = 1; type <= atom->ntypes; type++)
-    if (materials.is_fluid(type)) return slope(type, materials.equation_of_state(type).rho0);
+    if (materials.is_fluid(type)) return slope_of(type, materials.equation_of_state(type).rho0);
   return 1.0;
+}
+
+// A density that is integrated is what it is.
+
+bool FluidLattices::adapts_density() const
+{
+  return materials.calibrates() || (expansion && !materials.integrates_density());
+}
+
+double FluidLattices::expanded(int i) const
+{
+  return expansion && !materials.integrates_density() ? 1.0 + (*expansion)[0][i] : 1.0;
+}
+
+double FluidLattices::density(int i, int type, double summed) const
+{
+  return expanded(i) * (materials.calibrates() ? calibrations[type].density(summed) : summed);
+}
+
+double FluidLattices::slope(int i, int type, double rho) const
+{
+  const double by = expanded(i);
+  return by * (materials.calibrates() ? slope_of(type, rho / by) : 1.0);
 }
 
 std::vector<WallProfile> FluidLattices::wall_profiles(const WallTable &table,

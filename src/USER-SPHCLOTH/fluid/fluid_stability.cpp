@@ -62,7 +62,7 @@ double FluidStability::find_sound(int i) const
   const double sound =
       eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
   // gradients are those of the density sum
-  return materials.calibrates() ? sound * of_fluids.slope(type, rho) : sound;
+  return materials.calibrates() ? sound * of_fluids.slope_of(type, rho) : sound;
 }
 
 void FluidStability::find_fluid(Fluid &core, const Particles &p,

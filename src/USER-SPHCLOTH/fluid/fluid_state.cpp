@@ -39,6 +39,32 @@ void FluidState::set_active(double **array, int column, bool interpolated)
 }
 
 /* ----------------------------------------------------------------------
+   what the loops know of the materials
+------------------------------------------------------------------------- */
+
+const PairTerms &FluidState::set_terms(int i, int j)
+{
+  FluidModel &model = core->model;
+  const int n = atom->ntypes + 1;
+  PairTerms t = mix(i, j);
+  const double scale = model.pressure_scale[i] * model.pressure_scale[j];
+  t.stiffness /= is_fluid(i) && is_fluid(j) ? std::sqrt(scale) : scale;
+  // density diffuses within a fluid, not across the step between two
+  if (i == j && integrates_density())
+    t.diffusion = 2.0 * options.delta * equation_of_state(i).sound_speed() * 0.5 * support(i);
+  model.terms[i * n + j] = model.terms[j * n + i] = t;
+  model.terms[j * n + i].rho0_ratio = 1.0 / t.rho0_ratio;
+  return model.terms[i * n + j];
+}
+
+void FluidState::change_stiffness(int type, double k)
+{
+  set_stiffness(type, k, 0.0);
+  cache_pair_values();
+  for (int j = 1; j <= atom->ntypes; j++) set_terms(std::min(type, j), std::max(type, j));
+}
+
+/* ----------------------------------------------------------------------
    what the loops read and write
 ------------------------------------------------------------------------- */
 
@@ -131,7 +157,10 @@ double FluidState::pressure_of(int i) const
   const int type = atom->type[i];
   const double rho = atom->rho[i];
   double p = p_over_rho2[i] * rho * rho;
-  if (calibrates()) p /= is_fluid(type) ? lattices.slope(type, rho) : lattices.slope_at_rest();
+  if (is_fluid(type)) {
+    if (lattices.adapts_density()) p /= lattices.slope(i, type, rho);
+  } else if (calibrates())
+    p /= lattices.slope_at_rest();
   if (is_fluid(type))
     for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
   return p;

@@ -99,6 +99,9 @@ class FluidState : public SPHMaterials {
   // time that has passed since the last evaluation, for a density that follows its rate
   void advance(double dt) { elapsed += dt; }
 
+  // The square of the speed of sound of a fluid, from the next evaluation on
+  void change_stiffness(int type, double k);
+
   // Time steps of individual particles, anew for each run.  Null: forces act for the step of all.
   void set_step_hooks(StepHooks *of_scheme) { hooks = of_scheme; }
   // What the hooks call once the forces on the active fluid are known: FluidBoundary::push_more(),
@@ -134,6 +137,8 @@ class FluidState : public SPHMaterials {
   std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
 
   sphcloth::Particles particles();
+  // of a pair of types in the loops
+  const sphcloth::PairTerms &set_terms(int i, int j);
 };
 
 }    // namespace LAMMPS_NS

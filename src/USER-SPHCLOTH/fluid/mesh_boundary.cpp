@@ -162,7 +162,10 @@ Eigen::Vector3d MeshBoundary::rise(const ClosestPoint &closest) const
   const int i = closest.particle;
   const Vec3 slope = closest.value.slope * (1.0 - closest.beyond.lambda) * closest.normal -
       closest.value.lambda * closest.beyond.slope * closest.from_border;
-  if (!adds) return atom->rho[i] * closest.share / (support(i) * (1.0 - covered(closest))) * slope;
+  if (!adds) {
+    const double rho = fluid->lattices.density_of_position(i, atom->rho[i]);
+    return rho * closest.share / (support(i) * (1.0 - covered(closest))) * slope;
+  }
   const double rho0 = fluid->equation_of_state(atom->type[i]).rho0;
   return rho0 * profile(closest).slope * closest.share / support(i) * slope;
 }

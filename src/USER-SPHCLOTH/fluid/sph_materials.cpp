@@ -114,6 +114,37 @@ void SPHMaterials::read(int narg, char **arg, int **setflag)
       COEFF, arg[0], arg[1]);
 }
 
+// c0 follow MIN MAX, mach M
+
+static SoundBounds read_sound_bounds(ArgReader &args)
+{
+  SoundBounds of;
+  args.word("follow");
+  of.min = args.positive("c0 follow MIN");
+  of.max = args.positive("c0 follow MAX");
+  if (!(of.min < of.max))
+    args.fail("c0 follow MAX", fmt::format("{}", of.max),
+              fmt::format("give more than MIN, which is {}", of.min));
+  if (!args.more() || std::strcmp(args.peek(), "mach") != 0) return of;
+  args.word("mach");
+  of.mach = args.positive("c0 follow mach");
+  if (of.mach > 1.0)
+    args.fail("c0 follow mach", fmt::format("{}", of.mach), "give a number up to 1, as 0.1");
+  return of;
+}
+
+// k, c0 and fluctuation are the start where the speed of sound follows the flow.
+
+static void start_sound(ArgReader &args, SPHMaterials::TypeData &t)
+{
+  if (t.eos.k == 0.0) t.eos.k = t.sound.max * t.sound.max;
+  const double start = t.eos.sound_speed();
+  constexpr double ROUNDING = 1e-9;
+  if (start < t.sound.min * (1.0 - ROUNDING) || start > t.sound.max * (1.0 + ROUNDING))
+    args.fail("c0 follow", fmt::format("{} {}", t.sound.min, t.sound.max),
+              fmt::format("the speed of sound at the start, {:.8g}, must be within", start));
+}
+
 SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &pair) const
 {
   TypeData t;
@@ -121,7 +152,9 @@ SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &pair)
   t.eos.rho0 = args.positive("rho0");
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
+    if (keyword == "c0" && args.more() && std::strcmp(args.peek(), "follow") == 0)
+      t.sound = read_sound_bounds(args);
+    else if (keyword == "k" || keyword == "c0" || keyword == "fluctuation")
       t.eos.k = read_stiffness(args, keyword);
     else if (keyword == "gamma") {
       t.eos.gamma = args.number("gamma");
@@ -138,8 +171,12 @@ SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &pair)
     else
       args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support, spacing");
   }
-  if (t.eos.k == 0.0)
-    error->all(FLERR, "{}: a fluid needs a stiffness: add 'k K', 'c0 C' or 'fluctuation ETA VREF'",
+  if (t.sound.follows())
+    start_sound(args, t);
+  else if (t.eos.k == 0.0)
+    error->all(FLERR,
+               "{}: a fluid needs a stiffness: add 'k K', 'c0 C', 'fluctuation ETA VREF' or 'c0 "
+               "follow MIN MAX'",
                COEFF);
   return t;
 }
@@ -249,6 +286,12 @@ double SPHMaterials::sound(int i, int j) const
   return 0.5 * (fluid_of(i, j).eos.sound_speed() + fluid_of(j, i).eos.sound_speed());
 }
 
+bool SPHMaterials::sound_follows() const
+{
+  return std::any_of(types.begin(), types.end(),
+                     [](const TypeData &t) { return t.sound.follows(); });
+}
+
 void SPHMaterials::cache_pair_values()
 {
   forget_pair_values();
@@ -290,6 +333,11 @@ PairTerms SPHMaterials::mix(int i, int j) const
     error->all(FLERR,
                "{}: a stiffness of pair {} {} is for a fluid and a boundary: give each fluid its "
                "own with I = J",
+               COEFF, i, j);
+  if (of_pair.stiffness > 0.0 && a.sound.follows())
+    error->all(FLERR,
+               "{}: a stiffness of pair {} {} is a multiple of that of the fluid, whose c0 follows "
+               "the flow: leave it out",
                COEFF, i, j);
 
   PairTerms t;
@@ -346,12 +394,6 @@ WallImpact SPHMaterials::wall_impact() const
   });
 }
 
-double SPHMaterials::impact_rate(int i, double rho, double impact) const
-{
-  const Tait &eos = types[i].eos;
-  return alpha(i, i) * eos.sound_speed() * eos.rho0 / rho * impact / (2.0 * support(i));
-}
-
 /* ----------------------------------------------------------------------
    restart and data files
 ------------------------------------------------------------------------- */
@@ -392,7 +434,7 @@ void SPHMaterials::read_restart(FILE *fp)
 // All digits, so that a data file gives the same forces.  Data files want a line for every pair; a
 // stiffness is there only if it was given, for there is none to mix.
 
-std::string SPHMaterials::words(int i, int j) const
+std::string SPHMaterials::words(int i, int j, bool state) const
 {
   const auto only_if = [](double value, const char *keyword) {
     return value > 0.0 ? fmt::format(" {} {}", keyword, value) : "";
@@ -406,7 +448,13 @@ std::string SPHMaterials::words(int i, int j) const
   if (is_boundary(i))
     return "boundary pressure " + PRESSURES[static_cast<int>(t.pressure)] +
         only_if(t.volume, "volume");
-  return fmt::format("fluid {} k {} gamma {} nu {} alpha {}", t.eos.rho0, t.eos.k, t.eos.gamma,
+  std::string stiffness = fmt::format("k {}", t.eos.k);
+  if (t.sound.follows()) {
+    const std::string bounds =
+        fmt::format("c0 follow {} {} mach {}", t.sound.min, t.sound.max, t.sound.mach);
+    stiffness = state ? stiffness + " " + bounds : bounds;
+  }
+  return fmt::format("fluid {} {} gamma {} nu {} alpha {}", t.eos.rho0, stiffness, t.eos.gamma,
                      t.nu, t.alpha) +
       only_if(of_pair.support, "support") + (atom->rmass ? only_if(t.spacing, "spacing") : "");
 }

@@ -9,6 +9,7 @@
 
 #include "core/sph/fluid.h"
 #include "core/sph/plane_wall.h"
+#include "core/sph/sound_target.h"
 #include "core/sph/wall_impact.h"
 
 #include <string>
@@ -44,7 +45,9 @@ class SPHMaterials : protected Pointers {
 
   struct TypeData {
     sphcloth::Role role = sphcloth::Role::NONE;
-    sphcloth::Tait eos;
+    sphcloth::Tait eos;    // as it is now
+    sphcloth::SoundBounds sound;    // within which eos.k follows the flow
+    double sound_unchanged_for = 0.0;    // a time
     double nu = 0.0, alpha = 0.0;
     double volume = 0.0;    // of a boundary particle; 0: from the particles around it
     Pressure pressure = Pressure::EXTRAPOLATE;
@@ -62,6 +65,7 @@ class SPHMaterials : protected Pointers {
   bool is_fluid(int i) const { return types[i].role == sphcloth::Role::FLUID; }
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
   const sphcloth::Tait &equation_of_state(int i) const { return types[i].eos; }
+  bool sound_follows() const;    // that of any fluid
   // is the volume of its particles that which they share among themselves?
   bool is_measured(int i) const { return is_boundary(i) && !(types[i].volume > 0.0); }
   bool extrapolates(int i) const
@@ -85,15 +89,18 @@ class SPHMaterials : protected Pointers {
   void cache_pair_values();
   void forget_pair_values();
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
+  void set_stiffness(int i, double k, double unchanged_for)
+  {
+    types[i].eos.k = k;
+    types[i].sound_unchanged_for = unchanged_for;
+  }
   // what acts and what is stored, per mass, at a density: nothing below rest without tension
   double acting_pressure(const sphcloth::Tait &, double rho) const;
   double stored_energy(const sphcloth::Tait &, double rho) const;
   // what a plane wall adds to the density
   sphcloth::WallTable wall_table() const;
-  // how its artificial viscosity slows a particle that approaches a plane; and the rate, where that
-  // table has the value `impact`
+  // how artificial viscosity slows what approaches it
   sphcloth::WallImpact wall_impact() const;
-  double impact_rate(int i, double rho, double impact) const;
   double nu(int i, int j) const;
   double alpha(int i, int j) const;
   // the terms of a pair of types, with the kernel's scale
@@ -105,8 +112,9 @@ class SPHMaterials : protected Pointers {
   void read_options(FILE *);
   void write_restart(FILE *) const;
   void read_restart(FILE *);
-  // the words of pair_coeff I I, or of I J with what follows from mixing
-  std::string words(int i, int j) const;
+  // the words of pair_coeff I I, or of I J with what follows from mixing; without what the flow
+  // changes, or with it
+  std::string words(int i, int j, bool state = false) const;
 
  private:
   struct PairData {    // < 0: not given

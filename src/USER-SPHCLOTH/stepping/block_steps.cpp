@@ -69,6 +69,11 @@ void BlockSteps::advance_clock()
   state.coarsest = clock.line.coarsest();
 }
 
+bool BlockSteps::updates_all_next() const
+{
+  return state.clock.begun() && state.clock.ends_base_step();
+}
+
 // particles whose step begins; sleeping particles stay as they are
 
 void BlockSteps::select_active()

@@ -32,6 +32,7 @@ class BlockSteps : public Stepper, public StepHooks {
 
   // what fix sph/integrate calls
   void init(FluidState *) override;
+  bool updates_all_next() const override;
   void move() override;
   void end_step() override;
   void choose_step() override;

@@ -24,15 +24,7 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   asks_neighbors = scheme != SteppingScheme::GLOBAL;
   interpolates_density = scheme == SteppingScheme::INDIVIDUAL;
   types.assign(atom->ntypes + 1, FluidType());
-  for (int t = 1; t <= atom->ntypes; t++) {
-    FluidType &its = types[t];
-    its.support = fluid->support(t);
-    if (!fluid->is_fluid(t)) continue;
-    its.eos = fluid->equation_of_state(t);
-    its.sound = its.eos.sound_speed();
-    its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
-    its.viscosity = fluid->viscosity(t);
-  }
+  take_materials();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
     cloths.push_back({fix, dynamic_cast<LimitedVertices *>(fix)});
@@ -47,6 +39,19 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
     fluid->want_frequencies(this);
   else if (!cloths.empty())
     fluid->want_wetting();
+}
+
+void ParticleLimits::take_materials()
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    FluidType &its = types[t];
+    its.support = fluid->support(t);
+    if (!fluid->is_fluid(t)) continue;
+    its.eos = fluid->equation_of_state(t);
+    its.sound = its.eos.sound_speed();
+    its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
+    its.viscosity = fluid->viscosity(t);
+  }
 }
 
 double ParticleLimits::inverse_mass_of(int i) const

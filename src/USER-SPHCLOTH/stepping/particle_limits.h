@@ -31,6 +31,8 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   }
 
   void init(FluidState *, SteppingScheme);
+  // what limits follow from, also when a speed of sound has changed
+  void take_materials();
 
   // Fluid particles without pressure are in free flight, which ends where neighbors under pressure
   // press on them.  Where a step is no longer than that of these neighbors they need not be asked.

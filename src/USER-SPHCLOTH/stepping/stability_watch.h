@@ -35,6 +35,8 @@ class StabilityWatch {
   }
   // is the limit to be found in the evaluation that comes next?
   bool due() const { return now.remaining == 0; }
+  // it has changed by more than the motion
+  void demand() { now.remaining = 0; }
   // of all ranks, after an evaluation in which it was due
   void found(const sphcloth::StepLimit &tightest, tagint particle)
   {

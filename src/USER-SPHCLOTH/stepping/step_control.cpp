@@ -155,6 +155,14 @@ double StepControl::largest_compression() const
   return largest;
 }
 
+double StepControl::fastest_sound() const
+{
+  double fastest = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (fluid->is_fluid(t)) fastest = std::max(fastest, fluid->equation_of_state(t).sound_speed());
+  return fastest;
+}
+
 Compression StepControl::compression_of_ranks() const
 {
   double largest = largest_compression(), mine[2] = {0.0, 0.0}, all[2];

@@ -27,6 +27,7 @@ class StepControl : protected Pointers {
   StepControl(LAMMPS *, const StepOptions &, std::string label, int groupbit);
 
   void init(FluidState *, double shortest_sound_time);
+  void set_sound_time(double shortest) { control.sound_time = shortest; }
 
   // a step of the run begins, whatever LAMMPS calls it: reset_timestep changes its number
   void begin_step() { n_steps++; }
@@ -47,6 +48,8 @@ class StepControl : protected Pointers {
   sphcloth::Limit limited_by() const { return limit; }
   // of this rank
   double largest_compression() const;
+  // the largest speed of sound at rest of all fluids
+  double fastest_sound() const;
 
   // `wanted`, held between floor and ceiling and to the growth from the step before; an error if it
   // is below a floor that ends the run

@@ -4,6 +4,7 @@
 #include "stepping/step_options.h"
 
 #include "error.h"
+#include "fluid/sph_materials.h"
 #include "lammps_util/arg_reader.h"
 #include "stepping/output_times.h"
 
@@ -102,7 +103,7 @@ bool StepOptions::scales_mass(SteppingScheme scheme_in_force) const
 }
 
 void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times,
-                        bool integrates_density, const std::string &label, Error *error) const
+                        const SPHMaterials &fluid, const std::string &label, Error *error) const
 {
   if (times.interval > 0.0 && scheme_in_force == SteppingScheme::CONSTANT)
     error->all(FLERR,
@@ -117,7 +118,12 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                "out, or use the scheme global without acoustic, viscous and wetted",
                label);
   if (!unequal) return;
-  if (integrates_density)
+  if (fluid.sound_follows() && (individual || block.sleep > 0.0))
+    error->all(FLERR,
+               "{}: a speed of sound that follows the flow changes where all particles are updated "
+               "together, with {} they never are: use another scheme, or a constant 'c0 C'",
+               label, individual ? "individual" : "sleep");
+  if (fluid.integrates_density())
     error->all(
         FLERR,
         "{}: steps of individual particles need densities by summation, 'density continuity' "

@@ -15,6 +15,7 @@ namespace LAMMPS_NS {
 class ArgReader;
 class Error;
 class OutputTimes;
+class SPHMaterials;
 
 // of the scheme block
 
@@ -49,7 +50,7 @@ struct StepOptions {
   // is the mass of vertices beside fluid scaled with this scheme?
   bool scales_mass(SteppingScheme) const;
   // an error, in the name of the fix, where they do not go with the scheme in force
-  void check(SteppingScheme, const OutputTimes &, bool integrates_density, const std::string &label,
+  void check(SteppingScheme, const OutputTimes &, const SPHMaterials &, const std::string &label,
              Error *) const;
 };
 

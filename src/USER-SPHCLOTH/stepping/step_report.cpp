@@ -4,6 +4,7 @@
 #include "stepping/step_report.h"
 
 #include "atom.h"
+#include "fluid/adaptive_sound.h"
 #include "stepping/block_state.h"
 #include "stepping/stepper.h"
 
@@ -17,7 +18,7 @@ void StepReport::count_particle(const StepLimit &limit)
   if (by <= Limit::CEILING) particles_by_limit[static_cast<int>(by)]++;
 }
 
-double StepReport::output(int n, Stepper &stepper, StepControl &control,
+double StepReport::output(int n, Stepper &stepper, StepControl &control, const AdaptiveSound &sound,
                           const UpdateRows &rows) const
 {
   const bool has_bins = stepper.clock() && stepper.clock()->begun();
@@ -33,6 +34,8 @@ double StepReport::output(int n, Stepper &stepper, StepControl &control,
     case IDEAL_UPDATES: return has_bins ? sum_of_ranks(ideal_updates) : 0.0;
     case LONGEST_WAIT: return max_of_ranks(longest_wait);
     case MEAN_WAIT: return mean_wait();
+    case SOUND_SPEED: return control.fastest_sound();
+    case SOUND_WORK: return sum_of_ranks(sound.work);
     default: break;
   }
   if (n < PARTICLES_BY_LIMIT) return steps_by_limit[n - STEPS_BY_LIMIT + 1];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[33].
+// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[35].
 
 #ifndef SPHCLOTH_STEPPING_STEP_REPORT_H
 #define SPHCLOTH_STEPPING_STEP_REPORT_H
@@ -14,6 +14,7 @@
 
 namespace LAMMPS_NS {
 
+class AdaptiveSound;
 class Stepper;
 class StepControl;
 struct StepOptions;
@@ -36,6 +37,8 @@ class StepReport : protected Pointers {
     IDEAL_UPDATES,
     LONGEST_WAIT,
     MEAN_WAIT,
+    SOUND_SPEED,
+    SOUND_WORK,
     N_OUTPUTS
   };
 
@@ -64,7 +67,7 @@ class StepReport : protected Pointers {
   void count_particle(const sphcloth::StepLimit &limit);
 
   // collective
-  double output(int n, Stepper &, StepControl &, const UpdateRows &) const;
+  double output(int n, Stepper &, StepControl &, const AdaptiveSound &, const UpdateRows &) const;
   std::string steps_in_words() const;
   std::string waits_in_words() const;    // collective
 

@@ -50,6 +50,8 @@ class Stepper : protected Pointers {
 
   // before each run
   virtual void init(FluidState *);
+  // are all particles updated at the end of the step that comes next?
+  virtual bool updates_all_next() const { return true; }
   // lines 30 to 33 of Algorithm 1, then tells the pair style which particles are updated
   virtual void move() = 0;
   // forces are known, of all styles

@@ -2,9 +2,9 @@
 
 ``python -m sphcloth.validation.water resolutions --out FOLDER`` lets coarse and fine water come to
 rest beside each other; ``... corner`` finds the density in a corner of plane walls, ``... bounce``
-how deep water gets behind one, ``... impact`` the energy with which single particles leave it, and
-``... drops`` the energy that colliding drops lose or gain with each scheme of the time step. Each
-prints a table.
+how deep water gets behind one, ``... impact`` the energy with which single particles leave it,
+``... drops`` the energy that colliding drops lose or gain with each scheme of the time step, and
+``... rest`` what a speed of sound that follows the flow saves. Each prints a table.
 """
 
 from __future__ import annotations
@@ -39,6 +39,10 @@ IMPACTS = ((0.1, ""), (0.05, ""), (0.0, ""), (0.0, "stability 0.5"))
 IMPACT_SPEEDS = (0.01, 0.05, 0.15, 0.4)
 FACTORS = (0.94, 0.97, 1.0, 1.03, 1.06)
 CEILING = 0.01  # s, longer than the limits
+
+# speeds of sound of in.rest, and its time in s
+FLUIDS = ("c0 30", "c0 follow 5 30", "c0 12")
+REST_TIME = 8.0
 
 # schemes of in.drops, and what each is given: a step in s, or limits
 DROPS: tuple[tuple[str, dict[str, Value]], ...] = (
@@ -110,6 +114,23 @@ def bounce(runner: Runner, what: str, scheme: str, support: int, speed: float) -
     }
 
 
+def rest(runner: Runner, density: str, fluid: str) -> dict[str, Value]:
+    """Return what water needs that collapses and comes to rest, and where it lies in the end."""
+    given = {"density": density, "fluid": fluid}
+    run = runner.run(f"{density}_{fluid.replace(' ', '_')}", REST_TIME, given)
+    log, late = run.thermo, run.thermo["Time"] > 0.8 * REST_TIME
+    return {
+        "density": density,
+        "speed of sound": fluid,
+        "steps": int(log["Step"][-1]),
+        "loop time, s": float(log["v_spent"][-1]),
+        "sound at the end, m/s": float(log["v_sound"][-1]),
+        "largest compression, late": float(log["v_compression"][late].max()),
+        "center of mass, m": float(log["v_height"][late].mean()),
+        "work, J": float(log["v_work"][-1]),
+    }
+
+
 def impact(runner: Runner, density: str, alpha: float, limits: str) -> dict[str, Value]:
     """Return the energy with which particles leave a wall over that with which they came."""
     setting = f"{density}_{alpha}_{limits.replace(' ', '_')}"
@@ -155,6 +176,11 @@ STUDIES: Mapping[str, Callable[[Runner], Points]] = {
         impact(runner, density, *each)
         for density in ("summation", "calibrated")
         for each in IMPACTS
+    ],
+    "rest": lambda runner: [
+        rest(runner, density, fluid)
+        for density in ("summation", "calibrated", "continuity")
+        for fluid in FLUIDS
     ],
     "drops": lambda runner: [drops(runner, scheme, given) for scheme, given in DROPS],
 }

@@ -287,6 +287,18 @@ CASES = [
     # fix sph/integrate and run_style
     case("step: scheme", STEP + "local", r"scheme is 'local'.*constant or global"),
     case("step: keyword", STEP + "global speed 1", r"unknown keyword 'speed'"),
+    case("step: accuracy 0", STEP + "global accuracy 0", r"accuracy is '0'.*> 0"),
+    case("step: accuracy 2", STEP + "global accuracy 2", r"accuracy is '2'.*share up to 1"),
+    case(
+        "step: accuracy and a limit",
+        STEP + "global force 0.1 accuracy 0.01",
+        r"fix step sph/integrate: accuracy is '0.01': it takes the place of velocity, force.*leave",
+    ),
+    case(
+        "step: accuracy and acoustic",
+        STEP + "global accuracy 0.01 acoustic 0.5",
+        r"accuracy is '0.01': it takes the place of .*acoustic.*leave these out",
+    ),
     case("step: growth", STEP + "global growth 3", r"growth is '3.*at most 2"),
     case("step: below", STEP + "global below zero", r"below is 'zero'.*stop or clamp"),
     case("step: relative", STEP + "global relative -1", r"relative is '-1'.*>= 0"),

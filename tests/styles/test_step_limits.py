@@ -252,3 +252,44 @@ def test_a_density_in_free_flight_may_pass_rest_by_what_others_may_change(rho):
     assert np.all(rate > 0)
     np.testing.assert_allclose(limited, (1000 - rho + 0.1 * rho) / rate, rtol=1e-9)
     np.testing.assert_array_equal(free, 1.0)  # the ceiling
+
+
+def coefficients(options):
+    """Steps that speed, force, rate of the density and stability allow one of two particles."""
+    found = {}
+    for name, scene in {
+        "velocity": "velocity all set 3 0 0\n",
+        "force": "fix push all addforce 100 0 0\n",
+        "density": "set type 1 sph/rho 1050\nset atom 2 vx -3\n",
+        "stability": "set type 1 sph/rho 1000.01\n",
+    }.items():
+        limit = {"velocity": 0, "force": 1, "stability": 2, "density": 4}[name]
+        mass, sound = (1.25, 1) if name == "density" else (0.125, 20)
+        with instance() as lmp:
+            lmp.commands_string(
+                header(atoms=FLUID)
+                + box("-1 1 -1 1 -1 1")
+                + f"mass 1 {mass}\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 0.06 0 0\n"
+                + "set type 1 sph/rho 990\n"
+                + scene
+                + sph_tait(f"1 1 fluid 1000 c0 {sound}", options="density continuity delta 0")
+                + neighbor(0.03)
+                + f"timestep 1\nfix step all sph/integrate global {options}\n"
+                + "compute by all sph/step limit particles/*\nthermo_style custom step c_by[*]\n"
+                + "run 0"
+            )
+            found[name] = own_steps(lmp), lmp.last_thermo()[f"c_by[{2 + limit}]"]
+    return found
+
+
+def test_accuracy_is_one_number_for_all_limits():
+    """The defaults are those of a hundredth; stability grows no farther."""
+    usual, hundredth = coefficients(""), coefficients("accuracy 0.01")
+    fine, coarse = coefficients("accuracy 0.001"), coefficients("accuracy 0.02")
+    for name, (steps, particles) in usual.items():
+        assert particles > 0, name
+        np.testing.assert_array_equal(hundredth[name][0], steps)
+        np.testing.assert_allclose(fine[name][0], 0.1 * steps, rtol=1e-9)
+        assert np.all(coarse[name][0] >= steps)
+    np.testing.assert_allclose(coarse["velocity"][0], 2 * usual["velocity"][0], rtol=1e-9)
+    np.testing.assert_array_equal(coarse["stability"][0], usual["stability"][0])

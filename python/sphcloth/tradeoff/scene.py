@@ -21,6 +21,7 @@ SCHEMES = ("constant", "global", "individual", "block")
 AS_WRITTEN = "as written"
 # keywords of fix sph/integrate: what a scheme that chooses its steps may be given
 LIMITS = (
+    "accuracy",
     "velocity",
     "force",
     "stability",

@@ -36,11 +36,15 @@ static void choose_stability(ArgReader &args, std::optional<double> stability,
 
 void StepOptions::read(ArgReader &args, OutputTimes &times)
 {
-  std::optional<double> stability, acoustic, viscous, force;
+  std::optional<double> accuracy, stability, acoustic, viscous, velocity, force, density;
   while (args.more()) {
     const std::string keyword = args.word("keyword");
-    if (keyword == "velocity")
-      lambda.velocity = args.at_least(keyword, 0.0);
+    if (keyword == "accuracy") {
+      accuracy = args.positive(keyword);
+      if (*accuracy > 1.0)
+        args.fail(keyword, fmt::format("{}", *accuracy), "give a share up to 1, as 0.01");
+    } else if (keyword == "velocity")
+      velocity = args.at_least(keyword, 0.0);
     else if (keyword == "force")
       force = args.at_least(keyword, 0.0);
     else if (keyword == "stability")
@@ -52,7 +56,7 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
     else if (keyword == "viscous")
       viscous = args.at_least(keyword, 0.0);
     else if (keyword == "density")
-      lambda.density = args.at_least(keyword, 0.0);
+      density = args.at_least(keyword, 0.0);
     else if (keyword == "relative")
       lambda.relative = args.at_least(keyword, 0.0);
     else if (keyword == "cloth")
@@ -90,10 +94,20 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
     else
       args.unknown(
           keyword,
-          "velocity, force, stability, acoustic, wetted, viscous, density, relative, cloth, "
-          "fluctuation, output, until, ratio, gain, waking, sleep, overdue, mass_scaling, min, "
-          "max, growth, below");
+          "accuracy, velocity, force, stability, acoustic, wetted, viscous, density, relative, "
+          "cloth, fluctuation, output, until, ratio, gain, waking, sleep, overdue, mass_scaling, "
+          "min, max, growth, below");
   }
+  if (accuracy) {
+    if (velocity || force || density || stability || acoustic || viscous || lambda.wetted)
+      args.fail("accuracy", fmt::format("{}", *accuracy),
+                "it takes the place of velocity, force, density, stability, acoustic, viscous and "
+                "wetted: leave these out");
+    lambda.set_accuracy(*accuracy);
+    return;
+  }
+  lambda.velocity = velocity.value_or(lambda.velocity);
+  lambda.density = density.value_or(lambda.density);
   choose_stability(args, stability, acoustic, viscous, force, lambda);
 }
 

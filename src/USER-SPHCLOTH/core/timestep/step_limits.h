@@ -84,6 +84,20 @@ struct StepCoefficients {
   double cloth = 0.0;    // displacement of a vertex over the shortest edge at it
   std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
 
+  // With which kinetic energy is off by less than this share: it is that of velocities half a step
+  // old, and its error is of first order in the step.  The defaults are those of USUAL; stability
+  // allows no more than they do.
+  static constexpr double USUAL = 0.01;
+  void set_accuracy(double error)
+  {
+    const StepCoefficients usual;
+    const double times = error / USUAL;
+    velocity = usual.velocity * times;
+    force = usual.force * times;
+    density = usual.density * times;
+    stability = usual.stability * std::min(1.0, times);
+  }
+
   static constexpr double ACOUSTIC = 0.5, VISCOUS = 0.2, FORCE = 0.05;    // with these limits
 };
 

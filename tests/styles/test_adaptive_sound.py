@@ -78,10 +78,12 @@ def test_pressure_stays_as_the_speed_of_sound_falls(density, squeezed, options, 
     assert sound[-1] < 25.0
     # what is left of the change by density decays as waves cross the box ten times
     size = len(x) ** (1 / dimension) * DX
-    decay = sound[:-1] * np.diff(time) / (10 * size)
-    stiffer = np.abs(1 - (sound[-1] / sound[0]) ** 2)
     change = np.abs(np.diff(pressure) / pressure[:-1])
-    assert np.all(change <= 1.1 * stiffer * decay + 1e-9)
+    updated = np.flatnonzero(change > 1e-9)
+    assert set(fallen) <= set(updated) | {fallen[0]}
+    decay = sound[updated[:-1] + 1] * np.diff(time[updated + 1]) / (10 * size)
+    stiffer = np.abs(1 - (sound[-1] / sound[0]) ** 2)
+    assert np.all(change[updated[1:]] <= 1.1 * stiffer * decay)
     assert np.all(np.diff(sound**2)[fallen] < -0.018 * sound[fallen] ** 2)
     np.testing.assert_allclose(by_id(lmp, "x"), x, rtol=0, atol=1e-9)
 

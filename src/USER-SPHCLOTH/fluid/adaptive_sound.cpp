@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -63,7 +64,7 @@ void AdaptiveSound::measure()
 
 bool AdaptiveSound::update()
 {
-  if (!on() || !(elapsed > 0.0)) return false;
+  if (!on() || elapsed < due()) return false;
   measure();
   for (int t = 1; t <= atom->ntypes; t++)
     if (volumes[t] > 0.0)
@@ -86,6 +87,19 @@ bool AdaptiveSound::update()
   }
   elapsed = 0.0;
   return any;
+}
+
+// Often enough for the fastest rise: in times in which sound crosses a smoothing length.
+
+double AdaptiveSound::due() const
+{
+  constexpr double EVERY = 2.0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (fluid->is_fluid(t))
+      shortest = std::min(
+          shortest, EVERY * 0.5 * fluid->support(t) / fluid->equation_of_state(t).sound_speed());
+  return shortest;
 }
 
 // length of a cube, or side of a square, of its volume

@@ -28,7 +28,7 @@ class AdaptiveSound : protected Pointers {
 
   bool on() const { return !columns.empty(); }
   void begin_run(FluidState *);
-  // Before an evaluation of all particles, collective: is any speed another now?
+  // Before an evaluation of all particles, collective, where it is due: is any speed another now?
   bool update();
 
   double work = 0.0;    // given to the fluid of this rank by changes so far
@@ -42,6 +42,7 @@ class AdaptiveSound : protected Pointers {
   std::vector<int> counts_here, counts_of_ranks;
   std::vector<double> volumes_here, volumes;    // [ntypes + 1]
 
+  double due() const;    // `elapsed` for which an update is worth its cost
   void measure();
   double size(int type) const;
   void restore_positions(int type, double left);

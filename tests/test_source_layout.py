@@ -224,7 +224,8 @@ def scripts() -> dict[str, str]:
     paths += [*(ROOT / "packaging").rglob("*")]
     paths += [*(ROOT / "examples").glob("*/in.*"), *(ROOT / "tests").rglob("*.py")]
     paths += [*(ROOT / "tests").rglob("*.txt"), *(ROOT / "tests").rglob("in.*")]
-    texts = {str(path.relative_to(ROOT)): path.read_text() for path in paths if path.is_file()}
+    paths = [path for path in paths if path.is_file() and path.suffix != ".pyc"]
+    texts = {str(path.relative_to(ROOT)): path.read_text() for path in paths}
     return {file: text for file, text in texts.items() if file not in SPELLING_TABLES}
 
 

@@ -2,6 +2,8 @@
 
 #include "core/sph/plane_wall.h"
 
+#include "half_space.h"
+
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -15,21 +17,6 @@ using namespace sphcloth;
 namespace {
 
 constexpr double DELTAS[] = {0.0, 0.013, 0.2, 0.331, 0.5, 0.77, 0.96};
-
-// Midpoint rule over the slab between delta and 1, rings of radius t around its axis; in two
-// dimensions a ring is two points.  Uses nothing of core/sph/plane_wall.h.
-template <class Term> double behind(double delta, int dim, const Term &term)
-{
-  const int n = 1000;
-  const double dz = (1.0 - delta) / n, dt = 1.0 / n;
-  double sum = 0.0;
-  for (int a = 0; a < n; a++)
-    for (int b = 0; b < n; b++) {
-      const double z = delta + (a + 0.5) * dz, t = (b + 0.5) * dt, q = std::sqrt(z * z + t * t);
-      if (q < 1.0) sum += term(q, z) * (dim == 3 ? 2.0 * PI * t : 2.0) * dz * dt;
-    }
-  return sum;
-}
 
 template <class K> void check_wall()
 {

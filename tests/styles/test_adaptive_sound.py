@@ -16,6 +16,7 @@ from scenes import (
     jitter,
     lattice,
     neighbor,
+    periodic_water,
     sph_tait,
 )
 
@@ -28,16 +29,12 @@ DENSITIES = ("summation", "calibrated", "continuity")
 def at_rest(density, fluid=FOLLOW, squeezed=1.002, options="", dimension=3):
     """A periodic lattice of some density, whose forces cancel: nothing moves."""
     spacing = DX * squeezed ** (-1 / dimension)
-    side, slab = 8 * spacing, 8 * spacing if dimension == 3 else spacing
     lmp = instance()
     lmp.commands_string(
-        header(atoms=FLUID, dimension=dimension)
-        + box(f"0 {side} 0 {side} {-0.5 * slab} {0.5 * slab}")
-        + lattice(spacing, dimension)
-        + "create_atoms 1 box\n"
-        + sph_tait(f"1 1 fluid {RHO0} spacing {DX} {fluid}", options=f"density {density} {options}")
+        periodic_water(
+            spacing, f"{RHO0} spacing {DX} {fluid}", f"density {density} {options}", dimension
+        )
         + f"set group all sph/rho {RHO0 * squeezed}\n"
-        + neighbor(0.02)
         + """timestep 2e-3
 fix step all sph/integrate global
 compute state all sph/atom pressure energy sound
@@ -237,6 +234,12 @@ def test_new_particles_have_the_density_of_their_positions():
     expected = sound**2 * RHO0 / 7 * ((rho / RHO0) ** 7 - 1)
     np.testing.assert_allclose(pressure[~old], expected, rtol=1e-9)
     assert pressure[old].mean() > 1.2 * pressure[~old].mean()
+
+
+def test_what_begins_to_follow_between_runs_counts_no_time_before_it():
+    late, new = at_rest("summation", "c0 30"), at_rest("summation", f"k 900 {FOLLOW}")
+    late.commands_string(f"run 500\npair_coeff 1 1 fluid {RHO0} k 900 {FOLLOW}\nrun 0")
+    np.testing.assert_allclose(histories(late, 40)[2], histories(new, 40)[2], rtol=1e-12)
 
 
 def test_a_constant_one_is_told_too():

@@ -14,6 +14,7 @@ from scenes import (
     jitter,
     lattice,
     neighbor,
+    periodic_water,
     sph_tait,
 )
 
@@ -23,18 +24,11 @@ MASS = RHO0 * DX**3
 
 def periodic(density, dimension=3, kernel="wendland/c2", spacing=DX, coeff=f"spacing {DX}"):
     """A lattice of ``spacing`` with the mass of one of DX, periodic."""
-    side, slab = 8 * spacing, 8 * spacing if dimension == 3 else spacing
     lmp = instance()
     lmp.commands_string(
-        header(atoms=FLUID, dimension=dimension)
-        + box(f"0 {side} 0 {side} {-0.5 * slab} {0.5 * slab}")
-        + lattice(spacing, dimension)
-        + "create_atoms 1 box\n"
-        + sph_tait(
-            f"1 1 fluid {RHO0} c0 {C0} {coeff}",
-            options=f"kernel {kernel} density {density}",
+        periodic_water(
+            spacing, f"{RHO0} c0 {C0} {coeff}", f"kernel {kernel} density {density}", dimension
         )
-        + neighbor(0.02)
         + """compute state all sph/atom pressure
 compute mean all reduce ave c_state
 compute pairs all pressure NULL pair

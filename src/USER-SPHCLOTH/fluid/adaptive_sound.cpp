@@ -19,7 +19,10 @@ using namespace sphcloth;
 void AdaptiveSound::begin_run(FluidState *style)
 {
   fluid = style;
-  if (!on() && fluid->sound_follows()) columns.create(1, atom->nmax);
+  if (!on() && fluid->sound_follows()) {
+    columns.create(1, atom->nmax);
+    elapsed = 0.0;
+  }
   if (!on()) return;
   fluid->lattices.set_expansion(&columns);
   const int n = atom->ntypes + 1;

@@ -38,6 +38,7 @@ from scenes.shared import (
     SMALL_SHEET,
     TWO_FLUIDS,
     fall,
+    periodic_water,
 )
 
 __all__ = [
@@ -64,6 +65,7 @@ __all__ = [
     "lattice",
     "neighbor",
     "no_other_bonds",
+    "periodic_water",
     "sheet",
     "sph_tait",
     "stiffness",

@@ -155,6 +155,19 @@ MAKE_FALL = (
 )
 
 
+def periodic_water(spacing, coefficients, options="", dimension=3):
+    """Eight particles along each axis of a periodic lattice; one layer in two dimensions."""
+    side, slab = 8 * spacing, 8 * spacing if dimension == 3 else spacing
+    return (
+        header(atoms=FLUID, dimension=dimension)
+        + box(f"0 {side} 0 {side} {-0.5 * slab} {0.5 * slab}")
+        + lattice(spacing, dimension)
+        + "create_atoms 1 box\n"
+        + sph_tait(f"1 1 fluid {coefficients}", options=options)
+        + neighbor(0.02)
+    )
+
+
 def fall(scheme, ceiling=2e-3, limits=""):
     """Return the script behind MAKE_FALL, with the scheme of time steps."""
     return (

@@ -161,6 +161,19 @@ def test_what_ranks_send_is_counted(tmp_path: Path) -> None:
     assert sent["on"].bytes == pytest.approx(8 * 18 * of_neighbors)
 
 
+def test_ranks_that_share_memory_send_no_messages_for_a_sheet(tmp_path: Path) -> None:
+    count = Counter(tmp_path, across=10)
+    sent = {}
+    for shared in ("yes", "no"):
+        variables = {"scene": "sheet", "shared": shared}
+        short, _ = count(2, {**variables, "steps": 20})
+        long, _ = count(2, {**variables, "steps": 40})
+        sent[shared] = long.less(short, 20).messages
+    # three of water, as above, and new lists
+    assert 3 * 2 < sent["yes"] < 5 * 2
+    assert sent["no"] > 20 * sent["yes"]
+
+
 def test_what_is_expected_of_a_cluster() -> None:
     step = Sent(messages=10, bytes=0, collectives=1, collective_bytes=8)
     on = Cluster(latency=1e-6, bandwidth=1e9, particle=1e-7)

@@ -18,7 +18,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from sphcloth.bench.timing import Runner, read_timing
+from sphcloth.bench.timing import Runner, Spread, read_timing
 from sphcloth.errors import UserError
 from sphcloth.plugin import LIBRARIES
 from sphcloth.programs import lammps_on
@@ -26,13 +26,14 @@ from sphcloth.results import versions
 
 SCRIPT = Path(__file__).parent / "in.messages"
 RANKS = (2, 4, 8)
-# what is in the scene, and the scheme of the time step
+# what is in the scene, and the scheme of the time step; of the last one, ranks that share no memory
 SCENES = {
     "water": {"scene": "water"},
     "water, newton off": {"scene": "water", "newton": "off"},
     "water, global": {"scene": "water", "scheme": "global"},
     "water, block": {"scene": "water", "scheme": "block"},
     "water and sheet": {"scene": "sheet"},
+    "water and sheet, messages alone": {"scene": "sheet", "shared": "no"},
 }
 RENEW = 20  # steps from list to list in the script
 REACH = 2.4  # support and skin over the spacing: how far ghosts lie beyond a rank
@@ -102,15 +103,25 @@ class Counter:
         if not self.library.is_file():
             raise UserError(f"{self.library} is missing: install sphcloth again, from source")
 
-    def __call__(self, ranks: int, variables: Mapping[str, object]) -> tuple[Sent, float]:
-        """Return what a rank sent in a whole run, and how many ghosts it had in the end."""
-        for old in self.folder.glob("sent.*"):
-            old.unlink()
+    def run(self, ranks: int, variables: Mapping[str, object]) -> str:
+        """Return the log of a whole run.
+
+        With ``shared`` no ranks send messages as if each had a node of its own.
+        """
+        variables = dict(variables)
+        shared = str(variables.pop("shared", "yes"))
         command = lammps_on(ranks)
         options = command.index("-n")
         counted = ["-genv", "LD_PRELOAD", str(self.library)]
         counted += ["-genv", "SPHCLOTH_MESSAGES", str(self.folder / "sent")]
-        log = self.script.run([*command[:options], *counted, *command[options:]], variables)
+        counted += ["-genv", "SPHCLOTH_SHARED_MEMORY", shared]
+        return self.script.run([*command[:options], *counted, *command[options:]], variables)
+
+    def __call__(self, ranks: int, variables: Mapping[str, object]) -> tuple[Sent, float]:
+        """Return what a rank sent in a whole run, and how many ghosts it had in the end."""
+        for old in self.folder.glob("sent.*"):
+            old.unlink()
+        log = self.run(ranks, variables)
         files = sorted(self.folder.glob("sent.*"))
         if len(files) != ranks:
             raise UserError(
@@ -138,12 +149,14 @@ def bench_messages(rounds: int, across: int, steps: int, console: Console) -> di
                 status.update(f"{title} on {ranks} ranks")
                 found.append({"scene": title, **_count(count, ranks, steps, variables)})
         particle = _time_of_particle(Path(name), rounds, across, steps)
+        shared = {str(ranks): _time_shared(count, ranks, rounds, steps) for ranks in RANKS[:2]}
     result = {
         "bench": "messages",
         "particles": across**3,
         "versions": versions("lammps", "mpich", "sphcloth"),
         "found": found,
         "particle_ns": 1e9 * particle,
+        "time_shared": {ranks: asdict(spread) for ranks, spread in shared.items()},
         "expected": _expected(found, Cluster(particle=particle)),
     }
     show(result, console)
@@ -163,6 +176,20 @@ def _time_of_particle(folder: Path, rounds: int, across: int, steps: int) -> flo
     run = Runner(SCRIPT, folder, across=across, steps=steps)
     times = [read_timing(run()) for _ in range(rounds)]
     return min(timing.cpu / timing.steps / timing.particles for timing in times)
+
+
+def _time_shared(count: Counter, ranks: int, rounds: int, steps: int) -> Spread:
+    """Return the time of a step with a sheet over that with messages alone, side by side."""
+    ratios = []
+    for _ in range(rounds):
+        time = {
+            shared: read_timing(
+                count.run(ranks, {"scene": "sheet", "shared": shared, "steps": steps})
+            ).loop
+            for shared in ("yes", "no")
+        }
+        ratios.append(time["yes"] / time["no"])
+    return Spread.of(ratios)
 
 
 def _expected(found: list[dict], on: Cluster) -> list[dict]:
@@ -188,6 +215,11 @@ def show(result: dict, console: Console) -> None:
             row["scene"], str(row["ranks"]), f"{row['ghosts']:.0f}", *(f"{f:.3g}" for f in figures)
         )
     console.print(counted)
+    for ranks, spread in result["time_shared"].items():
+        console.print(
+            f"time of {ranks} ranks with a sheet over that with messages alone: "
+            f"{spread['value']:.2f} ({spread['least']:.2f} to {spread['most']:.2f})"
+        )
     on = Cluster(particle=1e-9 * result["particle_ns"])
     expected = Table(
         title="share of its time that a rank computes:\n"

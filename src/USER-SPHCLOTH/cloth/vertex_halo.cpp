@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 using namespace LAMMPS_NS;
@@ -58,6 +59,7 @@ void VertexHalo::connect()
   comm->forward_comm_array(LINK, link_rows.data());
   find_images();
   exchange_requests();
+  open_lanes();
 }
 
 // how many box vectors lie between a ghost and its owner
@@ -121,7 +123,7 @@ void VertexHalo::exchange_requests()
         channels[c].self_from = ask[p][c];
         channels[c].self_to = mine[p];
       } else
-        channels[c].from.push_back({p, std::move(mine[p])});
+        channels[c].from.push_back(Message{p, std::move(mine[p])});
     }
   }
 
@@ -150,9 +152,41 @@ void VertexHalo::exchange_requests()
   for (int p = 0; p < nprocs; p++)
     for (int c = 0; c < nc; c++) {
       const int n = recv_counts[p * nc + c];
-      if (n) channels[c].to.push_back({p, std::vector<int>(next, next + n)});
+      if (n) channels[c].to.push_back(Message{p, std::vector<int>(next, next + n)});
       next += n;
     }
+}
+
+// What goes one way forward goes the other way back.
+
+void VertexHalo::open_lanes()
+{
+  std::map<int, NodeLanes::Need> needs;
+  const auto need_of = [&](int rank) -> NodeLanes::Need & {
+    return needs.try_emplace(rank, NodeLanes::Need{rank, 0, 0}).first->second;
+  };
+  for (const Channel &c : channels) {
+    for (const Message &m : c.to) {
+      NodeLanes::Need &need = need_of(m.rank);
+      need.out = std::max(need.out, 3 * m.slots.size());
+    }
+    for (const Message &m : c.from) {
+      NodeLanes::Need &need = need_of(m.rank);
+      need.in = std::max(need.in, 3 * m.slots.size());
+    }
+  }
+  std::vector<NodeLanes::Need> sorted;
+  for (auto &[rank, need] : needs) {
+    need.out = need.in = std::max(need.out, need.in);
+    sorted.push_back(need);
+  }
+  lanes.connect(sorted);
+  for (Channel &c : channels)
+    for (std::vector<Message> *messages : {&c.from, &c.to})
+      for (Message &m : *messages) {
+        m.to = lanes.to(m.rank);
+        m.from = lanes.from(m.rank);
+      }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -217,26 +251,42 @@ void VertexHalo::transfer(Channel &c, bool reverse, const Data *data, Store stor
 
   std::size_t at = 0;
   for (const Message &m : in) {
-    requests.emplace_back();
-    MPI_Irecv(buffer[at].data(), static_cast<int>(3 * m.slots.size()), MPI_DOUBLE, m.rank, 0, world,
-              &requests.back());
+    if (!m.from) {
+      requests.emplace_back();
+      MPI_Irecv(buffer[at].data(), static_cast<int>(3 * m.slots.size()), MPI_DOUBLE, m.rank, 0,
+                world, &requests.back());
+    }
     at += m.slots.size();
   }
   for (const Message &m : out) {
-    for (std::size_t k = 0; k < m.slots.size(); k++) buffer[at + k] = vector_of(data[m.slots[k]]);
-    requests.emplace_back();
-    MPI_Isend(buffer[at].data(), static_cast<int>(3 * m.slots.size()), MPI_DOUBLE, m.rank, 0, world,
-              &requests.back());
+    if (m.to) {
+      Eigen::Map<Eigen::Matrix3Xd> lane(m.to->begin_write(), 3, m.slots.size());
+      for (std::size_t k = 0; k < m.slots.size(); k++) lane.col(k) = vector_of(data[m.slots[k]]);
+      m.to->end_write();
+    } else {
+      for (std::size_t k = 0; k < m.slots.size(); k++) buffer[at + k] = vector_of(data[m.slots[k]]);
+      requests.emplace_back();
+      MPI_Isend(buffer[at].data(), static_cast<int>(3 * m.slots.size()), MPI_DOUBLE, m.rank, 0,
+                world, &requests.back());
+    }
     at += m.slots.size();
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 
+  // in the order of ranks, whatever way they take
   at = 0;
-  for (const Message &m : in)
-    for (int slot : m.slots) store(slot, buffer[at++]);
+  for (const Message &m : in) {
+    if (m.from) {
+      const Eigen::Map<const Eigen::Matrix3Xd> lane(m.from->begin_read(), 3, m.slots.size());
+      for (std::size_t k = 0; k < m.slots.size(); k++) store(m.slots[k], lane.col(k));
+      m.from->end_read();
+    } else
+      for (std::size_t k = 0; k < m.slots.size(); k++) store(m.slots[k], buffer[at + k]);
+    at += m.slots.size();
+  }
 }
 
 double VertexHalo::memory_usage() const
 {
-  return sphcloth::bytes_of(atoms, slot_by_atom, link, buffer);
+  return sphcloth::bytes_of(atoms, slot_by_atom, link, buffer) + lanes.bytes();
 }

@@ -10,6 +10,7 @@
 #define SPHCLOTH_CLOTH_VERTEX_HALO_H
 
 #include "core/pbd/cloth_solver.h"
+#include "lammps_util/node_lanes.h"
 #include "pointers.h"
 
 #include <Eigen/Core>
@@ -23,7 +24,7 @@ class VertexHalo : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  explicit VertexHalo(LAMMPS *lmp_) : Pointers(lmp_) {}
+  explicit VertexHalo(LAMMPS *lmp_) : Pointers(lmp_), lanes(lmp_) {}
 
   // 1. start anew after a list build, with the owned vertices
   void reset(int n_channels, const std::vector<int> &owned_atoms);
@@ -67,6 +68,7 @@ class VertexHalo : protected Pointers {
   struct Message {    // with one other rank, in one channel
     int rank;
     std::vector<int> slots;
+    sphcloth::SharedLane *to = nullptr, *from = nullptr;    // of ranks that share memory
   };
   struct Channel {
     std::vector<Message> from, to;    // ghosts filled here, owned vertices sent
@@ -82,11 +84,13 @@ class VertexHalo : protected Pointers {
   std::vector<double> link;    // of each atom, ghosts have that of their owner: rank, slot, x, y, z
   std::vector<double *> link_rows;
   std::vector<Channel> channels;
+  NodeLanes lanes;
   std::vector<Vec3> buffer, scalars;
   std::vector<MPI_Request> requests;
 
   void find_images();
   void exchange_requests();
+  void open_lanes();
   Vec3 shift(int slot, double vectors, double rates) const;
   std::vector<Message> &receivers(Channel &c, bool reverse) { return reverse ? c.to : c.from; }
   std::vector<Message> &senders(Channel &c, bool reverse) { return reverse ? c.from : c.to; }

@@ -241,7 +241,7 @@ SCENES = {
     "balloons": BALLOONS,
     "followed flow": followed(FLOW, 30),
 }
-for name, steps in {"tank": 30, "block steps": 22, "sheet as wall": 14}.items():
+for name, steps in {"tank": 30, "block steps": 19, "sheet as wall": 14}.items():
     SCENES[f"calibrated {name}"] = calibrated(SCENES[name], steps)
     SCENES[f"followed {name}"] = followed(SCENES[name], steps)
 

@@ -155,6 +155,16 @@ class DualLists {
     if (column == 0) return {nullptr, 0};
     return {outer(slot, column).of, n_inner[of(slot, column)]};
   }
+  // The same for output, which must leave the order of lists, and so of sums, as it is: one that
+  // does not hold is not pruned, but read as a whole.
+  NeighborSpan without_pruning(int slot, int t) const
+  {
+    const int column = number[t];
+    if (column == 0) return {nullptr, 0};
+    const bool holds =
+        at(block[slot], type_of(slot), column).approach <= inner_until[of(slot, column)];
+    return holds ? (*this)(slot, t) : outer(slot, column);
+  }
   int slot(int owned) const { return slot_of[owned]; }
   // of the inner list of one particle, if it were pruned now
   double inner_skin(int slot, int t) const

@@ -171,12 +171,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::forces_on(const Particles &p, int slot, i
   const bool fluid = is_fluid(t);
   // a particle without an impulse of its own gets those of others only
   const bool gives = !IMPULSE || (fluid && acts[i]);
-  lists.refresh(slot);
+  if (!VIRIAL) lists.refresh(slot);
   Sums<OUTPUTS, VIRIAL> sums;
   int n_found = 0;
   for (const int other : lists.present_types()) {
-    const NeighborSpan found = gives ? lists(slot, other)
-                                     : lists.others(0, slot, other, acts.data());
+    const NeighborSpan found = VIRIAL ? lists.without_pruning(slot, other)
+        : gives                       ? lists(slot, other)
+                                      : lists.others(0, slot, other, acts.data());
     if (found.n == 0 || !(fluid || is_fluid(other))) continue;
     n_found += found.n;
     const Terms &terms_of_pair = pair(t, other);

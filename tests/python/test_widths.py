@@ -78,6 +78,7 @@ def figures_of_messages() -> dict:
     return {
         "particles": 110592,
         "particle_ns": 1234.5,
+        "time_shared": dict.fromkeys(("2", "4"), SMALL),
         "found": [{"scene": scene} | counts for scene in messages.SCENES],
         "expected": [
             {"scene": scene, "particles": 1e9, "shares": shares} for scene in messages.SCENES

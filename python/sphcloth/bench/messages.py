@@ -32,8 +32,8 @@ SCENES = {
     "water, newton off": {"scene": "water", "newton": "off"},
     "water, global": {"scene": "water", "scheme": "global"},
     "water, block": {"scene": "water", "scheme": "block"},
-    "water and sheet": {"scene": "sheet"},
-    "water and sheet, messages alone": {"scene": "sheet", "shared": "no"},
+    "sheet in one node": {"scene": "sheet"},
+    "sheet, messages alone": {"scene": "sheet", "shared": "no"},
 }
 RENEW = 20  # steps from list to list in the script
 REACH = 2.4  # support and skin over the spacing: how far ghosts lie beyond a rank

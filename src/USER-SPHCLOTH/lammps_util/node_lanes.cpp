@@ -38,6 +38,7 @@ void NodeLanes::find_node()
 {
   searched = true;
   shares.assign(comm->nprocs, false);
+  if (comm->nprocs == 1) return;
   MPI_Comm node;
   MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, comm->me, MPI_INFO_NULL, &node);
   MPI_Group here, all;
@@ -45,7 +46,7 @@ void NodeLanes::find_node()
   MPI_Comm_group(world, &all);
   int n;
   MPI_Group_size(here, &n);
-  if (n > cores_of(node)) wait = SharedLane::Wait::ASLEEP;
+  if (const int cores = cores_of(node); cores > 0 && n > cores) wait = SharedLane::Wait::ASLEEP;
   std::vector<int> of_node(n), ranks(n);
   std::iota(of_node.begin(), of_node.end(), 0);
   MPI_Group_translate_ranks(here, n, of_node.data(), all, ranks.data());

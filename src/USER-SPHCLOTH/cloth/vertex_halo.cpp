@@ -161,26 +161,12 @@ void VertexHalo::exchange_requests()
 
 void VertexHalo::open_lanes()
 {
-  std::map<int, NodeLanes::Need> needs;
-  const auto need_of = [&](int rank) -> NodeLanes::Need & {
-    return needs.try_emplace(rank, NodeLanes::Need{rank, 0, 0}).first->second;
-  };
-  for (const Channel &c : channels) {
-    for (const Message &m : c.to) {
-      NodeLanes::Need &need = need_of(m.rank);
-      need.out = std::max(need.out, 3 * m.slots.size());
-    }
-    for (const Message &m : c.from) {
-      NodeLanes::Need &need = need_of(m.rank);
-      need.in = std::max(need.in, 3 * m.slots.size());
-    }
-  }
-  std::vector<NodeLanes::Need> sorted;
-  for (auto &[rank, need] : needs) {
-    need.out = need.in = std::max(need.out, need.in);
-    sorted.push_back(need);
-  }
-  lanes.connect(sorted);
+  std::map<int, std::size_t> needs;
+  for (const Channel &c : channels)
+    for (const std::vector<Message> *messages : {&c.from, &c.to})
+      for (const Message &m : *messages)
+        needs[m.rank] = std::max(needs[m.rank], 3 * m.slots.size());
+  lanes.connect(needs);
   for (Channel &c : channels)
     for (std::vector<Message> *messages : {&c.from, &c.to})
       for (Message &m : *messages) {

@@ -5,7 +5,6 @@
 
 #include "comm.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <numeric>
@@ -56,20 +55,15 @@ void NodeLanes::find_node()
   MPI_Comm_free(&node);
 }
 
-// Both ranks of a pair find the same, since each knows what goes both ways.
-
-void NodeLanes::connect(const std::vector<Need> &needs)
+void NodeLanes::connect(const std::map<int, std::size_t> &needs)
 {
   constexpr std::size_t SPARE = 2;    // of what is needed
   if (!searched) find_node();
   std::vector<int> too_short;
-  for (const Need &need : needs) {
-    if (!shares[need.rank]) continue;
-    Pair &pair = pairs[need.rank];
-    if (need.out <= pair.out.capacity && need.in <= pair.in.capacity) continue;
-    pair.out.capacity = std::max(pair.out.capacity, SPARE * need.out);
-    pair.in.capacity = std::max(pair.in.capacity, SPARE * need.in);
-    too_short.push_back(need.rank);
+  for (const auto &[rank, need] : needs) {
+    if (!shares[rank] || need <= pairs[rank].capacity) continue;
+    pairs[rank].capacity = SPARE * need;
+    too_short.push_back(rank);
   }
   open_lanes(too_short);
 }
@@ -92,9 +86,11 @@ void NodeLanes::open_lanes(const std::vector<int> &ranks)
   };
 
   for (std::size_t k = 0; k < n; k++) {
-    End &out = pairs[ranks[k]].out;
-    begin_lane(out, SharedMemory());
-    if (!refused) out.memory = SharedMemory::create(SharedLane::size_of(out.capacity));
+    Pair &pair = pairs[ranks[k]];
+    End &out = pair.out;
+    out.lane.reset();
+    out.memory = refused ? SharedMemory()
+                         : SharedMemory::create(SharedLane::size_of(pair.capacity));
     if (out.memory.is_open()) SharedLane::prepare(out.memory.address());
     my_names[k].fill('\0');
     out.memory.name().copy(my_names[k].data(), NAME - 1);
@@ -102,26 +98,28 @@ void NodeLanes::open_lanes(const std::vector<int> &ranks)
   exchange([&](std::size_t k) { return my_names[k].data(); },
            [&](std::size_t k) { return names[k].data(); }, NAME, MPI_CHAR);
   for (std::size_t k = 0; k < n; k++) {
-    End &in = pairs[ranks[k]].in;
+    Pair &pair = pairs[ranks[k]];
     const bool is_named = names[k][0] != '\0' && !refused;
-    const std::size_t size = SharedLane::size_of(in.capacity);
-    begin_lane(in, is_named ? SharedMemory::open(names[k].data(), size) : SharedMemory());
-    opened[k] = in.memory.is_open();
+    const std::size_t size = SharedLane::size_of(pair.capacity);
+    begin_lane(pair.in, is_named ? SharedMemory::open(names[k].data(), size) : SharedMemory(),
+               pair.capacity);
+    opened[k] = pair.in.memory.is_open();
   }
   exchange([&](std::size_t k) { return &opened[k]; },
            [&](std::size_t k) { return &they_opened[k]; }, 1, MPI_INT);
   for (std::size_t k = 0; k < n; k++) {
-    End &out = pairs[ranks[k]].out;
-    out.memory.forget_name();
-    begin_lane(out, they_opened[k] ? std::move(out.memory) : SharedMemory());
+    Pair &pair = pairs[ranks[k]];
+    pair.out.memory.forget_name();
+    begin_lane(pair.out, they_opened[k] ? std::move(pair.out.memory) : SharedMemory(),
+               pair.capacity);
   }
 }
 
-void NodeLanes::begin_lane(End &end, SharedMemory memory) const
+void NodeLanes::begin_lane(End &end, SharedMemory memory, std::size_t capacity) const
 {
   end.lane.reset();
   end.memory = std::move(memory);
-  if (end.memory.is_open()) end.lane.emplace(end.memory.address(), end.capacity, wait);
+  if (end.memory.is_open()) end.lane.emplace(end.memory.address(), capacity, wait);
 }
 
 SharedLane *NodeLanes::lane_of(int rank, End Pair::*which)

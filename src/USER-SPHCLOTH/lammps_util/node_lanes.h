@@ -18,16 +18,11 @@ namespace LAMMPS_NS {
 
 class NodeLanes : protected Pointers {
  public:
-  // what this rank and another one send each other at once, in numbers; both say the same
-  struct Need {
-    int rank;
-    std::size_t out, in;
-  };
-
   explicit NodeLanes(LAMMPS *lmp_) : Pointers(lmp_) {}
 
-  // Collective.  Lanes that are long enough stay.
-  void connect(const std::vector<Need> &);
+  // Collective.  By rank, the most numbers that it and this one send each other at once, either
+  // way: both say the same.  Lanes that are long enough stay.
+  void connect(const std::map<int, std::size_t> &needs);
 
   // null: they take messages
   sphcloth::SharedLane *to(int rank) { return lane_of(rank, &Pair::out); }
@@ -39,10 +34,10 @@ class NodeLanes : protected Pointers {
   struct End {
     SharedMemory memory;
     std::optional<sphcloth::SharedLane> lane;    // where there is memory
-    std::size_t capacity = 0;    // that was asked for, even where there is none
   };
   struct Pair {
     End out, in;
+    std::size_t capacity = 0;    // that was asked for, even where there are no lanes
   };
   std::map<int, Pair> pairs;    // by rank
   std::vector<bool> shares;    // by rank
@@ -51,7 +46,7 @@ class NodeLanes : protected Pointers {
 
   void find_node();
   void open_lanes(const std::vector<int> &ranks);
-  void begin_lane(End &, SharedMemory) const;
+  void begin_lane(End &, SharedMemory, std::size_t capacity) const;
   sphcloth::SharedLane *lane_of(int rank, End Pair::*which);
 };
 

@@ -188,7 +188,7 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner curtain cloth_on_water hammock net sail \
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner curtain cloth_on_water hammock net parachute sail \
   shower strainer two_resolutions)
 pictures: $(EXAMPLE_PICTURES)
 

@@ -34,8 +34,8 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 TINY = {
     name: ("tiny", {})
     for name in (
-        *("balloon", "chair", "cloth_on_water", "curtain", "hammock", "net", "pour", "sail"),
-        *("shower", "stack", "strainer", "towel", "two_resolutions", "water_balloon"),
+        *("balloon", "chair", "cloth_on_water", "curtain", "hammock", "net", "parachute", "pour"),
+        *("sail", "shower", "stack", "strainer", "towel", "two_resolutions", "water_balloon"),
     )
 }
 RUNS = {**TINY, "banner": ("small", {"t_end": "1.0", "frames": "10"})}

@@ -14,6 +14,8 @@ import pytest
 
 from sphcloth import ClothMesh
 from sphcloth.log import ThermoTable
+from sphcloth.metrics.intersections import Intersections
+from sphcloth.roles import Roles
 from sphcloth.trajectory import Trajectory
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -187,11 +189,34 @@ def test_a_bag_of_rubber_grows_with_the_water_in_it(tmp_path):
     assert 0.05 < table["v_strain"].max() < 1
 
 
+def test_a_parachute_opens(tmp_path):
+    _, table = run("parachute", tmp_path)
+    assert table["c_radius"][0] == pytest.approx(0.443, abs=1e-3)
+    assert table["c_radius"][-1] > 0.7
+    assert table["v_speed"][0] == 8
+    assert table["v_speed"][-1] < 4.5
+    assert table["c_strain"].max() < 0.06
+    # lines to the load, which are drawn
+    assert len(Roles.read(tmp_path / "parachute.data").strings.links) == 12
+    if find_spec("ipctk"):
+        mesh = ClothMesh.read(tmp_path / "parachute.data")
+        frames = Trajectory(tmp_path / "parachute.lammpstrj")
+        canopy = Intersections.of(mesh)
+        assert not any(canopy.intersect(mesh.positions(frame)) for frame in frames)
+
+
+def test_what_the_mouth_catches_opens_the_parachute(tmp_path):
+    _, table = run("parachute", tmp_path, "mouth=0")
+    assert table["c_radius"][-1] < 0.65
+    assert table["v_speed"][-1] > 7
+
+
 @pytest.mark.parametrize(
     ("example", "mesh", "scripts"),
     [
         ("balloon", "balloon", ["balloon/make_balloon.py"]),
         ("water_balloon", "bag", ["water_balloon/make_bag.py"]),
+        ("parachute", "canopy", ["parachute/make_parachute.py"]),
         ("shower", "shirt", ["shower/make_shirt.py"]),
         ("chair", "chair", ["shower/make_shirt.py", "chair/make_chair.py"]),
     ],

@@ -178,7 +178,7 @@ class ClothMesh:
         Raises:
             UserError: the frame lacks a vertex.
         """
-        return frame.positions[self._rows(frame)]
+        return frame.positions[rows_of(self.ids, frame)]
 
     def vectors(self, frame: Frame, *names: str) -> NDArray[np.float64]:
         """Return columns of a frame for the vertices, shape (V, number of names).
@@ -186,16 +186,7 @@ class ClothMesh:
         Raises:
             UserError: the frame lacks a vertex or a column.
         """
-        return frame.vectors(*names)[self._rows(frame)]
-
-    def _rows(self, frame: Frame) -> NDArray[np.int64]:
-        """Return the rows of the vertices in a frame, shape (V,)."""
-        rows = np.searchsorted(frame.ids, self.ids)
-        rows = np.minimum(rows, len(frame) - 1)
-        lost = self.ids[frame.ids[rows] != self.ids] if len(frame) else self.ids
-        if len(lost):
-            raise UserError(f"cloth vertex {lost[0]} is not in the dump at step {frame.step}")
-        return rows
+        return frame.vectors(*names)[rows_of(self.ids, frame)]
 
     def corners(self, frame: Frame) -> NDArray[np.float64]:
         """Return the corners of each triangle in a frame, shape (T, 3 corners, 3)."""
@@ -205,3 +196,16 @@ class ClothMesh:
         """Return the lengths of the edges in a frame, shape (E,)."""
         start, end = np.moveaxis(self.positions(frame)[self.edges], 1, 0)
         return np.linalg.norm(end - start, axis=1)
+
+
+def rows_of(ids: NDArray[np.int64], frame: Frame) -> NDArray[np.int64]:
+    """Return the rows of some vertices of cloth in a frame.
+
+    Raises:
+        UserError: the frame lacks a vertex.
+    """
+    rows = np.minimum(np.searchsorted(frame.ids, ids), len(frame) - 1)
+    lost = ids[frame.ids[rows] != ids] if len(frame) else ids
+    if len(lost):
+        raise UserError(f"cloth vertex {lost[0]} is not in the dump at step {frame.step}")
+    return rows

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh, read_sections
+from sphcloth.strings import Strings
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Roles:
         mesh: triangles of cloth and obstacles; None if there are none.
         volume: type of water -> volume of a particle at rest, an area in two dimensions.
         rest_density: type of water -> density at rest.
+        strings: edges beside the triangles; None if there are none.
     """
 
     fluid: frozenset[int] | None = None
@@ -27,6 +29,7 @@ class Roles:
     mesh: ClothMesh | None = None
     volume: dict[int, float] = field(default_factory=dict)
     rest_density: dict[int, float] = field(default_factory=dict)
+    strings: Strings | None = None
 
     @classmethod
     def read(cls, data: Path) -> Roles:
@@ -41,6 +44,8 @@ class Roles:
         sections = read_sections(data)
         angles = sections.get("Angles")
         mesh = ClothMesh.of_angles(angles, data) if angles else None
+        bonds = sections.get("Bonds")
+        strings = Strings.of_bonds(bonds, mesh, data) if bonds and mesh else None
         words = _coefficients(sections)
         fluid = {int(row[0]): float(row[2]) for row in words if row[1] == "fluid"}
         walls = frozenset(int(row[0]) for row in words if row[1] == "boundary")
@@ -50,7 +55,7 @@ class Roles:
             for kind, rho in fluid.items()
             if str(kind) in masses
         }
-        return cls(frozenset(fluid) if fluid else None, walls, mesh, volume, fluid)
+        return cls(frozenset(fluid) if fluid else None, walls, mesh, volume, fluid, strings)
 
     @classmethod
     def beside(cls, dump: Path) -> Roles:

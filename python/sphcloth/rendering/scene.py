@@ -19,14 +19,15 @@ from sphcloth.rendering.scene_roles import SceneRoles, check_positions
 from sphcloth.rendering.shading import Environment, Geometry, Solid, draw
 from sphcloth.rendering.subdivision import Refinement
 from sphcloth.rendering.surface import Particles, Surface, smoothed, water_surface
+from sphcloth.rendering.tubes import tubes
 from sphcloth.trajectory import Frame
 
 # front and back of each piece of cloth, in turn; then of obstacles, pins and spheres of water
 CLOTH_COLORS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
-OBSTACLE_COLOR, PIN_COLOR = "#b9bcc2", "#8c2f25"
+OBSTACLE_COLOR, PIN_COLOR, STRING_COLOR = "#b9bcc2", "#8c2f25", "#5b5349"
 SPHERE_COLOR = "#2f7fd0"
 
-PIN_RADIUS = 0.006  # of the scene
+PIN_RADIUS, STRING_RADIUS, KNOT_RADIUS = 0.006, 0.002, 0.02  # of the scene
 # from the scene to the camera; of a two-dimensional scene almost straight in front of it
 VIEW, FLAT_VIEW = np.array([1.0, -1.8, 0.95]), np.array([0.25, -1.0, 0.22])
 # towards the sun from the camera: aside, upwards, back; and how high it stands at least
@@ -131,7 +132,8 @@ class Renderer:
             UserError: a vertex or a column is not in the frame, or a number is not finite.
         """
         scene = self._scene
-        solids = self._solids(frame)
+        sheet = None if self._unwrap is None else self._unwrap(frame)
+        solids = [] if sheet is None else self._solids(frame, sheet)
         spheres = [self._pins(frame)] if len(scene.pinned) else []
         particles = _within(scene.roles.water(frame), scene.environment)
         water, tint = Surface.empty(), None
@@ -142,6 +144,10 @@ class Renderer:
                 water_surface(particles), particles, solids, scene.roles.largest_spacing
             )
             tint = None if scene.scale is None else _linear(scene.scale.shades(water.values))
+        if scene.roles.strings is not None:
+            strings, knots = self._strings(frame, sheet)
+            solids.append(strings)
+            spheres.append(knots)
         surfaces = [solid.surface for solid in solids]
         room = (scene.environment.center, LIT_ROOM * scene.environment.radius)
         light = Light.on(surfaces, water, spheres, scene.environment.sun, room)
@@ -157,16 +163,25 @@ class Renderer:
         picture = draw(scene.camera.turned(angle), scene.environment, geometry)
         return picture if scene.scale is None else add_scale(picture, scene.scale)
 
-    def _solids(self, frame: Frame) -> list[Solid]:
-        """Return cloth and obstacles of a frame."""
-        if self._unwrap is None:
-            return []
-        points = self._scene.roles.upright(self._unwrap(frame))
+    def _solids(self, frame: Frame, sheet: NDArray[np.float64]) -> list[Solid]:
+        """Return cloth and obstacles of a frame, whose vertices are at some places."""
+        points = self._scene.roles.upright(sheet)
         check_positions(points, frame)
         return [
             Solid(Surface.of(fine.weights @ points, fine.triangles), front, back)
             for fine, front, back in self._parts
         ]
+
+    def _strings(self, frame: Frame, sheet: NDArray[np.float64]) -> tuple[Solid, Spheres]:
+        """Return strings, and balls where they end."""
+        strings, radius = self._scene.roles.strings, self._scene.environment.radius
+        points = self._scene.roles.upright(strings.positions(frame, sheet))
+        check_positions(points, frame)
+        color = _linear(STRING_COLOR)
+        surface = tubes(points, strings.links, STRING_RADIUS * radius)
+        centers = points[strings.knots]
+        size = np.full(len(centers), KNOT_RADIUS * radius)
+        return Solid(surface, color, color), Spheres(centers, size, np.tile(color, (len(size), 1)))
 
     def _pins(self, frame: Frame) -> Spheres:
         scene = self._scene
@@ -211,7 +226,7 @@ def _framed(frames: Sequence[Frame], roles: SceneRoles) -> tuple[NDArray[np.floa
     """Return points that are to be seen, shape (N, 3), and the height of the floor."""
     cloth, water = np.zeros((0, 3)), [np.zeros((0, 3))]
     if roles.mesh is not None:
-        cloth = np.concatenate([roles.upright(roles.mesh.positions(frame)) for frame in frames])
+        cloth = np.concatenate([roles.upright(_ends(frame, roles)) for frame in frames])
     for frame in frames:
         positions = roles.upright(frame.positions[np.isin(frame.types, list(roles.fluid))])
         water.append(positions[np.isfinite(positions).all(axis=1)])
@@ -235,6 +250,14 @@ def _framed(frames: Sequence[Frame], roles: SceneRoles) -> tuple[NDArray[np.floa
     if not len(cloth) and len(walls):
         floor = min(floor, walls[:, 2].min())
     return points, float(floor) - radius
+
+
+def _ends(frame: Frame, roles: SceneRoles) -> NDArray[np.float64]:
+    """Return the vertices of cloth and the ends of strings, where they are in the box."""
+    sheet = roles.mesh.positions(frame)
+    if roles.strings is None:
+        return sheet
+    return np.concatenate([sheet, roles.strings.positions(frame, sheet)])
 
 
 def _most_of(water: NDArray, low: NDArray, high: NDArray) -> NDArray[np.float64]:

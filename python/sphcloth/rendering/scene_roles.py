@@ -14,6 +14,7 @@ from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.rendering.surface import REACH, WIDTH, Particles
 from sphcloth.roles import Roles
+from sphcloth.strings import Strings
 from sphcloth.trajectory import Frame
 
 QUANTITIES = {"speed": ("vx", "vy", "vz"), "pressure": ("pressure",), "density": ("rho",)}
@@ -52,6 +53,7 @@ class SceneRoles:
         spacing: of each type of water and wall.
         is_flat: whether the scene is two-dimensional, in the plane of x and y.
         color_by: a key of ``QUANTITIES``, or None.
+        strings: edges beside the triangles, or None.
     """
 
     fluid: frozenset[int]
@@ -61,6 +63,7 @@ class SceneRoles:
     spacing: dict[int, float]
     is_flat: bool
     color_by: str | None
+    strings: Strings | None = None
 
     @classmethod
     def of(cls, frames: Sequence[Frame], roles: Roles, choice: Choice) -> SceneRoles:
@@ -75,6 +78,8 @@ class SceneRoles:
         corners = _corner_types(frames[0], roles.mesh)
         vertices = frozenset(np.unique(corners).tolist())
         _check_types(choice, present, vertices)
+        if roles.strings is not None:
+            vertices |= roles.strings.types(frames[0])
         walls = (roles.walls | _still_types(frames)) - vertices - (choice.fluid or frozenset())
         fluid = choice.fluid or roles.fluid or present - vertices - walls
         cloth = np.isin(corners, list(choice.cloth or vertices)).all(axis=1)
@@ -91,6 +96,7 @@ class SceneRoles:
             spacing,
             is_flat,
             choice.color_by,
+            roles.strings,
         )
 
     @property

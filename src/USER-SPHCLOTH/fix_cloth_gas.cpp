@@ -287,6 +287,7 @@ double FixClothGas::excess_of_step(const Chamber &chamber, double mobility) cons
   motion.expected = chamber.volume + chamber.dt * (2.0 * rate - earlier);
   motion.last_excess = chamber.applied_before;
   motion.volume_by_excess = chamber.dt * chamber.dt * mobility * force->ftm2v / force->nktv2p;
+  if (has_inflow) motion.inflow = inflow.value() * chamber.dt;
   return implicit_excess(law, chamber.gas, motion);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace sphcloth;
 
@@ -70,6 +71,54 @@ BOOST_AUTO_TEST_CASE(short_steps_see_the_law_and_a_valve_bounds_it)
   BOOST_TEST(implicit_excess(law, 1.0, {1.0, 1e4, 1.0, 0.0, 0.0}) == law.excess(1.0, 1.0));
   law.limit = 5e3;
   BOOST_TEST(implicit_excess(law, 1.0, {1.0, 5e3, 1.0, 0.0, 1e-6}) <= 5e3);
+}
+
+BOOST_AUTO_TEST_CASE(the_pressure_is_that_of_the_volume_it_leads_to)
+{
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  GasLaw law = air(1.4);
+  law.limit = 1.003e4;
+  for (int n = 0; n < 1000; n++) {
+    ChamberMotion motion{
+        1.0 + 0.05 * uniform(engine), 1e4 * (1.0 + 0.003 * uniform(engine)), 0.0, 0.0, 0.0,
+        0.01 * uniform(engine)};
+    motion.expected = motion.volume + 0.05 * uniform(engine);
+    motion.last_excess = 1e4 * (1.0 + 0.003 * uniform(engine));
+    motion.volume_by_excess = std::pow(10.0, 2.0 * uniform(engine)) / law.stiffness(1.0, 1.0);
+    const double c = motion.volume_by_excess, found = implicit_excess(law, 1.0, motion);
+    const double volume = motion.expected + c * (found - motion.last_excess);
+    const PressureWeights weights(c * law.stiffness(1.0, motion.volume));
+    const double led_to = std::min(weights.next * law.excess(1.0 + motion.inflow, volume) +
+                                       weights.now * law.excess(1.0, motion.volume) +
+                                       weights.before * motion.excess_before,
+                                   law.limit);
+    BOOST_CHECK_SMALL((found - led_to) / law.limit, 1e-6);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(walls_follow_what_flows_in)
+{
+  GasLaw law = air(1.4);
+  law.ambient = law.start;
+  const double inflow = 1e-3;
+  for (const double omega_dt_sq : {1e2, 1e4}) {
+    const double c = omega_dt_sq / law.stiffness(1.0, 1.0);
+    double gas = 1.0, now = 1.0, before = 1.0, earlier = 1.0, excess_before = 0.0, applied = 0.0;
+    for (int n = 0; n < 200; n++) {
+      const double expected = 3.0 * now - 3.0 * before + earlier;
+      const double excess = law.excess(gas, now);
+      applied = implicit_excess(law, gas, {now, excess_before, expected, applied, c, inflow});
+      const double next = 2.0 * now - before + c * applied;
+      earlier = before;
+      before = now;
+      now = next;
+      excess_before = excess;
+      gas += inflow;
+    }
+    // by less than what flows in in one step
+    BOOST_CHECK_SMALL(now - gas, 0.1 * inflow);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(at_rest_the_pressure_is_that_of_the_law_for_every_step)

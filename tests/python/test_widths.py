@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from rich.console import Console
 
-from sphcloth.bench import activity, cloth, coupling, messages, pair, peers, size, watch
+from sphcloth.bench import activity, air, cloth, coupling, messages, pair, peers, size, watch
 from sphcloth.stress.command import show_cases as show_stress_cases
 from sphcloth.tradeoff import report
 from sphcloth.tradeoff.front import Point
@@ -102,6 +102,7 @@ COUPLING = {
     "pour": {"size": "small", "contact_share": 0.0123},
 }
 LOOKS = dict.fromkeys(watch.LIMITS, SMALL)
+AIR = dict.fromkeys(air.RUNS, SMALL)
 COUNTS = {"particles": 110592, "rounds": 5}
 SHEET = {"vertices": 25600, "edges": 76000, "hinges": 75000, "figures": figures_of_a_sheet()}
 
@@ -114,6 +115,7 @@ TABLES = {
     "activity": lambda console: activity.show(COUNTS | {"corners": [CORNER] * 3}, console),
     "watch": lambda console: watch.show(COUNTS | {"look": LOOKS}, console),
     "coupling": lambda console: coupling.show(COUPLING, console),
+    "air": lambda console: air.show(SHEET | COUNTS | {"more": AIR}, console),
 }
 
 

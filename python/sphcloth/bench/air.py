@@ -1,6 +1,6 @@
 """``sphcloth bench air``: what fix cloth/air costs.
 
-A banner without air, with wind, and with gusts. The density is so low that all of them move alike:
+A banner without air, with wind, with gusts, with a lee, and with added mass. The density is so low that all of them move alike:
 what differs is the work of the fix. Times are processor times of one core.
 """
 
@@ -16,7 +16,12 @@ from sphcloth.bench.timing import Runner, Timing, figure, read_timing
 from sphcloth.results import versions
 
 SCRIPT = Path(__file__).parent / "in.air"
-RUNS = {"wind": "yes", "wind and gusts": "gust"}
+RUNS = {
+    "wind": "yes",
+    "wind and gusts": "gust",
+    "wind, shaded": "shaded",
+    "wind and added mass": "mass",
+}
 
 
 def bench_air(rounds: int, across: int, steps: int, console: Console) -> dict:

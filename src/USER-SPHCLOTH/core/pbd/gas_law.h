@@ -56,6 +56,7 @@ struct ChamberMotion {
   double expected;    // after the next step, if the pressure stays as it was
   double last_excess;    // that pressure
   double volume_by_excess;    // change of the next volume by the pressure, dt^2 sum |dV/dx|^2 / m
+  double inflow = 0.0;    // of gas until then
 };
 
 // By K of the breathing mode.  Where steps are long that mode is damped, and beta allows for walls
@@ -76,8 +77,8 @@ struct PressureWeights {
 };
 
 // Excess pressure of the next step: with q = a + b p(V), V = expected + c (q - last_excess), V is
-// the root of h(V) = V - expected - c (a + b p(V) - last_excess), which rises and is concave:
-// Newton's iterations from below rise to it.
+// the root of h(V) = V - expected - c (a + b p(V) - last_excess), which rises, with a bend where a
+// valve opens: Newton's iterations, between bounds.
 
 inline double implicit_excess(const GasLaw &law, double gas, const ChamberMotion &motion)
 {
@@ -85,23 +86,27 @@ inline double implicit_excess(const GasLaw &law, double gas, const ChamberMotion
   const double now = law.excess(gas, motion.volume);
   if (!(c > 0.0)) return now;
   const PressureWeights weights(c * law.stiffness(gas, motion.volume));
+  const double next_gas = gas + motion.inflow;
   const double known = weights.now * now + weights.before * motion.excess_before;
   const auto averaged = [&](double volume) {
-    return std::min(known + weights.next * law.excess(gas, volume), law.limit);
+    return std::min(known + weights.next * law.excess(next_gas, volume), law.limit);
   };
   const auto h = [&](double volume) {
     return volume - motion.expected - c * (averaged(volume) - motion.last_excess);
   };
 
-  constexpr int MAX_HALVINGS = 200, MAX_ITERATIONS = 100;
-  double volume = motion.volume;
-  for (int k = 0; k < MAX_HALVINGS && h(volume) > 0.0; k++) volume *= 0.5;
+  constexpr int MAX_HALVINGS = 200, MAX_ITERATIONS = 200;
+  double low = motion.volume;
+  for (int k = 0; k < MAX_HALVINGS && h(low) > 0.0; k++) low *= 0.5;
+  double high = low - h(low), volume = low;    // h rises by 1 at least
   for (int k = 0; k < MAX_ITERATIONS; k++) {
-    const double slope = c * weights.next * law.stiffness(gas, volume);
-    const bool limited = law.pressure(gas, volume) - law.ambient > law.limit;
-    const double step = -h(volume) / (limited ? 1.0 : 1.0 + slope);
-    volume += step;
-    if (std::abs(step) <= std::numeric_limits<double>::epsilon() * volume) break;
+    const double error = h(volume);
+    (error > 0.0 ? high : low) = volume;
+    const bool limited = law.pressure(next_gas, volume) - law.ambient > law.limit;
+    const double slope = limited ? 0.0 : c * weights.next * law.stiffness(next_gas, volume);
+    const double newton = volume - error / (1.0 + slope), last = volume;
+    volume = newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (std::abs(volume - last) <= std::numeric_limits<double>::epsilon() * volume) break;
   }
   return averaged(volume);
 }

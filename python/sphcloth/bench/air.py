@@ -1,7 +1,8 @@
 """``sphcloth bench air``: what fix cloth/air costs.
 
-A banner without air, with wind, with gusts, with a lee, and with added mass. The density is so low that all of them move alike:
-what differs is the work of the fix. Times are processor times of one core.
+A banner without air, with wind, and with wind and gusts, a lee or added mass. The density is so low
+that all of them move alike: what differs is the work of the fix. Times are processor times of one
+core.
 """
 
 from __future__ import annotations

@@ -4,20 +4,26 @@ import itertools
 
 import numpy as np
 import pytest
-from air_scenes import ALL, COEFFICIENTS, NORMAL, RHO, TANGENTIAL, G, air_of, sheet
+from air_scenes import (
+    ABOVE,
+    ALL,
+    BELOW,
+    COEFFICIENTS,
+    NORMAL,
+    RHO,
+    TANGENTIAL,
+    G,
+    air_of,
+    sheet,
+    wet_sheet,
+)
 from harness import by_id, instance, run, write
 from scenes import (
     SMALL_SHEET,
-    cloth_box,
-    filled,
     gravity,
-    header,
-    lattice,
-    neighbor,
-    no_other_bonds,
-    sph_tait,
-    stiffness,
 )
+
+FAR = "-0.25 0.25 -0.25 0.25 0.3 0.4"  # of water that is not at the sheet
 
 
 def law(wind, area=0.16):
@@ -175,25 +181,11 @@ def test_what_a_rigid_body_feels_is_what_the_air_gives():
 
 def test_covered_triangles_take_no_air():
     """Water on the sheet takes half of the force of what it lies on, water on both sides all."""
-    make = (
-        header("f f f", "hybrid sph molecular")
-        + cloth_box("-0.5 0.5 -0.5 0.5 -0.5 0.5")
-        + "mass * 0.125\ncreate_cloth 2 0.5 size 0.4 0.4 spacing 0.05 group cloth\n"
-        + lattice(0.05)
-        + "{water}group water type 1\n"
-        + sph_tait("1 1 fluid 1000 c0 20", "2 2 none")
-        + stiffness()
-        + no_other_bonds()
-        + neighbor(0.05)
-        + "group pins union cloth\nfix step water sph/integrate constant\ntimestep 1e-6\n"
-        + "fix s cloth pbd/cloth pin pins\n"
-        + "fix air cloth cloth/air density 1.2 normal 1.2 wind 0 0 5\n"
-    )
-    above, below = "-0.25 0.25 -0.25 0.25 0.02 0.22", "-0.25 0.25 -0.25 0.25 -0.22 -0.02"
-    areas = []
-    for blocks in ((), (above,), (below,), (above, below), ("-0.25 0.25 -0.25 0.25 0.3 0.4",)):
-        water = "".join(filled(f"w{k}", sides) for k, sides in enumerate(blocks))
-        areas.append(air_of(make.format(water=water), 1)[5])
+    air = "fix air cloth cloth/air density 1.2 normal 1.2 wind 0 0 5\n"
+    areas = [
+        air_of(wet_sheet(blocks, pinned=True) + air, 1)[5]
+        for blocks in ((), (ABOVE,), (BELOW,), (ABOVE, BELOW), (FAR,))
+    ]
     np.testing.assert_allclose(areas, [0.16, 0.08, 0.08, 0, 0.16], atol=1e-9)
 
 

@@ -2,7 +2,18 @@
 
 import numpy as np
 import pytest
-from air_scenes import ALL, COEFFICIENTS, NORMAL, RHO, G, air_of, sheet
+from air_scenes import (
+    ABOVE,
+    ALL,
+    BELOW,
+    COEFFICIENTS,
+    NORMAL,
+    RHO,
+    G,
+    air_of,
+    sheet,
+    wet_sheet,
+)
 from harness import by_id, instance, run, write
 from scenes import SMALL_SHEET, cloth_box, gravity, header, neighbor, no_other_bonds, stiffness
 
@@ -90,9 +101,9 @@ AREAL, THICKNESS = 0.5, 0.4
 ADDED = f"density {RHO} normal 0 added_mass {THICKNESS}"
 
 
-def of_air(lmp):
+def of_air(lmp, kind=1):
     """Added mass over that of each vertex of a flat sheet: each has a third of its triangles."""
-    x, mass = by_id(lmp, "x"), lmp.numpy.extract_atom("mass")[1]
+    x, mass = by_id(lmp, "x"), lmp.numpy.extract_atom("mass")[kind]
     area = np.zeros(len(x))
     for _, *corners in lmp.numpy.gather_angles():
         a, b, c = x[np.array(corners) - 1]
@@ -138,6 +149,26 @@ def test_along_the_sheet_nothing_is_added():
     late = 0.5e-3 / 10  # velocities are those of half a substep ago
     expected = np.broadcast_to([0, 0, -G * (0.05 - late)], v.shape)
     np.testing.assert_allclose(v, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "dry"), [((), 1.0), ((ABOVE,), 0.5), ((BELOW,), 0.5), ((ABOVE, BELOW), 0.0)]
+)
+def test_the_side_that_water_covers_moves_no_air(blocks, dry):
+    """A vertex in the middle is pushed for some steps by a weight alone."""
+    air = f"fix air cloth cloth/air density {RHO} added_mass {THICKNESS}\n"
+    with instance() as lmp:
+        lmp.commands_string(
+            wet_sheet(blocks, pinned=False) + "fix weight cloth gravity 9.81 vector 0 0 -1\n" + air
+        )
+        lmp.command("run 20")
+        cloth = by_id(lmp, "type") == 2
+        share, v, x = of_air(lmp, 2)[cloth], by_id(lmp, "v")[cloth], by_id(lmp, "x")[cloth]
+    middle = np.hypot(x[:, 0], x[:, 1]) < 0.08
+    assert share[middle].min() > 0.1
+    late = 0.5e-6 / 10  # velocities are those of half a substep ago
+    expected = -G * (20e-6 - late) / (1 + dry * share)
+    np.testing.assert_allclose(v[middle, 2], expected[middle], rtol=1e-4)
 
 
 def half_period(air, solver):

@@ -7,26 +7,23 @@
 #include "comm.h"
 #include "lammps_util/atom_tools.h"
 
-#include <array>
-
 using namespace LAMMPS_NS;
-using sphcloth::WindShadow;
 
 void WindShade::find(const std::vector<AirMesh *> &meshes)
 {
-  using Corners = std::array<double, 9>;
-  std::vector<Corners> mine;
+  corners_here.clear();
   AirMesh::Vec3 here = AirMesh::Vec3::Zero(), wind;
   for (const AirMesh *mesh : meshes) {
     for (int s = 0; s < mesh->halo.n_owned(); s++) here += mesh->wind[s];
     for (int t = 0; t < mesh->n_triangles_here(); t++) {
-      mine.emplace_back();
-      for (int k = 0; k < 9; k++) mine.back()[k] = mesh->triangle(t)[k / 3][k % 3];
+      corners_here.emplace_back();
+      for (int k = 0; k < 9; k++) corners_here.back()[k] = mesh->triangle(t)[k / 3][k % 3];
     }
   }
   MPI_Allreduce(here.data(), wind.data(), 3, MPI_DOUBLE, MPI_SUM, world);
-  std::vector<WindShadow::Triangle> triangles;
-  for (const Corners &c : allgather(mine, comm->nprocs, world))
+  allgather(corners_here, corners, comm->nprocs, world);
+  triangles.clear();
+  for (const Corners &c : corners)
     triangles.push_back({AirMesh::Vec3(c[0], c[1], c[2]), AirMesh::Vec3(c[3], c[4], c[5]),
                          AirMesh::Vec3(c[6], c[7], c[8])});
   const bool blows = !wind.isZero(0.0);

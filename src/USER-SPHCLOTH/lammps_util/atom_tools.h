@@ -83,7 +83,8 @@ inline tagint largest_id(const Atom *atom, MPI_Comm world)
 // collective: every rank's list behind one another
 
 template <class Record>
-std::vector<Record> allgather(const std::vector<Record> &mine, int nprocs, MPI_Comm world)
+void allgather(const std::vector<Record> &mine, std::vector<Record> &all, int nprocs,
+               MPI_Comm world)
 {
   static_assert(std::is_trivially_copyable_v<Record>);
   constexpr int SIZE = sizeof(Record);
@@ -91,9 +92,16 @@ std::vector<Record> allgather(const std::vector<Record> &mine, int nprocs, MPI_C
   std::vector<int> counts(nprocs), displs(nprocs, 0);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-  std::vector<Record> all((displs.back() + counts.back()) / SIZE);
+  all.resize((displs.back() + counts.back()) / SIZE);
   MPI_Allgatherv(mine.data(), n, MPI_BYTE, all.data(), counts.data(), displs.data(), MPI_BYTE,
                  world);
+}
+
+template <class Record>
+std::vector<Record> allgather(const std::vector<Record> &mine, int nprocs, MPI_Comm world)
+{
+  std::vector<Record> all;
+  allgather(mine, all, nprocs, world);
   return all;
 }
 

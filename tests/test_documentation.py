@@ -208,6 +208,9 @@ PROVOKED = {
     )
     + "run 0",
     "`Using a manybody potential with bonds`": SCENE + "run 0",
+    "A run without setup": SCENE
+    + "fix sheet cloth pbd/cloth\nfix air cloth cloth/air density 1.2\nrun 1\n"
+    "write_data /dev/null\nrun 1 pre no",
     "`time integrated more than once`": SCENE
     + "fix sheet cloth pbd/cloth pin pins\nfix move pins move linear 0.1 0 0\nrun 0",
     "Particles were lost": SCENE

@@ -35,9 +35,10 @@ using namespace sphcloth;
 FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
     held(lmp, this, options), mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
-    reference(lmp, label, options.reference, constraints), vertices(lmp), holders(lmp, vertices),
-    substepping(lmp, label, options.solving, constraints, vertices), scaled(lmp, vertices),
-    holder_force{}, measured(true), last_residual(0.0), last_energy(0.0), last_unconverged(0.0)
+    reference(lmp, label, options.reference, constraints), vertices(lmp), lists_of_atoms(lmp),
+    holders(lmp, vertices), substepping(lmp, label, options.solving, constraints, vertices),
+    scaled(lmp, vertices), holder_force{}, measured(true), last_residual(0.0), last_energy(0.0),
+    last_unconverged(0.0)
 {
   time_integrate = 1;
   restart_peratom = 1;
@@ -118,6 +119,7 @@ int FixPBDCloth::setmask()
 
 void FixPBDCloth::init()
 {
+  lists_of_atoms.initialized();
   couplings = {&scaled};
   solved_here = {this};
   scaled.init();
@@ -174,6 +176,7 @@ void FixPBDCloth::post_neighbor()
   halo.reset(constraints.n_channels(), owned);
   constraints.collect(halo);
   halo.connect();
+  lists_of_atoms.lists_are_new();
 
   std::vector<double> w(halo.n_slots());
   vertices.attached.clear();
@@ -212,6 +215,7 @@ void FixPBDCloth::post_integrate()
 
 void FixPBDCloth::begin_step(int substeps)
 {
+  lists_of_atoms.check(label);
   held.move_pins(vertices.halo);
   substepping.begin_step(update->dt, substeps, present, holders);
   if (scaled.on()) scaled.scale_forces(update->dt, substepping.part_with_forces());

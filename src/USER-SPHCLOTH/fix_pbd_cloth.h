@@ -25,6 +25,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "contact/contact_mesh.h"
 #include "fluid/scaled_vertices.h"
 #include "lammps_util/ghost_reach.h"
+#include "lammps_util/list_guard.h"
 #include "stepping/limited_vertices.h"
 
 #include <string>
@@ -113,6 +114,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ClothConstraints constraints;
   ReferenceStep reference;
   ClothVertices vertices;
+  ListGuard lists_of_atoms;
   HolderForces holders;
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;

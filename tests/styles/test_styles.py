@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harness import instance, last_frame, run, write
+from harness import attempt, instance, last_frame, run, write
 from registry import ENTRIES, SCENES, Entry
 from scenes import SMALL_SHEET, final_dump
 from scenes.units import convert, render, units
@@ -27,6 +27,7 @@ SUMS = 1e-12
 # so that cuts go through sheets, which are level
 GRIDS = {1: "1 1 1", 2: "2 1 1", 4: "2 2 1"}
 STATE = {"x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
+ERROR_WITHOUT_SETUP = "since the last setup, as write_restart, write_data and balance do: leave 'p"
 SYSTEMS = ("lj", "cgs", "micro", "nano", "real", "metal")
 
 
@@ -198,6 +199,30 @@ def test_fixes_may_be_replaced_by_others_of_their_ids(scene, tmp_path, monkeypat
             lmp.commands_string(parts.make + "\nclear")
         lmp.commands_string(render(f"{parts.first()}\n{again}run 2\n", "si"))
         assert lmp.extract_global("ntimestep") == 2
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("scene", SCENES)
+def test_a_file_is_written_between_runs_of_which_one_has_no_setup(scene, ranks, runs, tmp_path):
+    """The same as without the file, or an error that says why: atoms may be in other places."""
+    runs._write_data(scene, "si", tmp_path)
+    ends = {}
+    for between in ("", "write_restart half.restart noinit\n", "write_restart half.restart\n"):
+        first = f"processors {GRIDS[ranks]}\n{SCENES[scene].first()}dump now all custom 1 now.dump "
+        script = render(
+            f"{first}id {' '.join(STATE)}\ndump_modify now sort id format float %.17g\n"
+            f"run 12\n{between}run 12 pre no\n",
+            "si",
+        )
+        printed = attempt(write(tmp_path, script), ranks)
+        if "Total wall time" in printed:
+            ends[between] = last_frame(tmp_path / "now.dump")
+        else:
+            assert "restart\n" in between
+            assert ERROR_WITHOUT_SETUP in " ".join(printed.split()), printed[-2000:]
+    plain, *others = ends.values()
+    np.testing.assert_array_equal(others[0], plain)
+    np.testing.assert_allclose(others[-1], plain, rtol=0, atol=ROUND_OFF)
 
 
 @pytest.mark.parametrize(("entry", "ranks"), checked("1", "2"))

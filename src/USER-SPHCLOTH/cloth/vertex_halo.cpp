@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "core/util/bytes.h"
 #include "domain.h"
+#include "lammps_util/list_guard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,6 +194,14 @@ void VertexHalo::add_to_images(int channel, Vec3 *data, double vectors, double r
   forward_all(channel, data, vectors, rates);
 }
 
+// There are channels from the first list build on.
+
+VertexHalo::Channel &VertexHalo::connected(int channel)
+{
+  if (channels.empty()) error->all(FLERR, "fix pbd/cloth: {}", ListGuard::REMEDY);
+  return channels[channel];
+}
+
 void VertexHalo::add_to_images(int channel, sphcloth::Vertex *data, double vectors, double rates)
 {
   forward_all(channel, data, vectors, rates);
@@ -201,7 +210,7 @@ void VertexHalo::add_to_images(int channel, sphcloth::Vertex *data, double vecto
 template <class Data>
 void VertexHalo::forward_all(int channel, Data *data, double vectors, double rates)
 {
-  Channel &c = channels[channel];
+  Channel &c = connected(channel);
   const auto store = [&](int ghost, const Vec3 &value) {
     put(data[ghost], Vec3(value + shift(ghost, vectors, rates)));
   };
@@ -220,7 +229,7 @@ void VertexHalo::forward(int channel, std::vector<double> &data)
 
 void VertexHalo::reverse_add(int channel, Vec3 *data)
 {
-  Channel &c = channels[channel];
+  Channel &c = connected(channel);
   transfer(c, true, data, [&](int slot, const Vec3 &value) { data[slot] += value; });
   for (std::size_t k = 0; k < c.self_to.size(); k++) data[c.self_from[k]] += data[c.self_to[k]];
 }

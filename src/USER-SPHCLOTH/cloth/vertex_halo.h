@@ -88,6 +88,7 @@ class VertexHalo : protected Pointers {
   std::vector<Vec3> buffer, scalars;
   std::vector<MPI_Request> requests;
 
+  Channel &connected(int channel);
   void find_images();
   void exchange_requests();
   void open_lanes();

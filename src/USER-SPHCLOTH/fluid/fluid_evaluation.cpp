@@ -44,6 +44,7 @@ void FluidEvaluation::forget()
 
 void FluidEvaluation::begin_run()
 {
+  lists_of_atoms.initialized();
   active = nullptr;    // until a fix sets the active particles
   hooks = nullptr;
   stability.forget();
@@ -117,7 +118,7 @@ void FluidEvaluation::begin(bool new_neighbors)
 {
   is_evaluated = false;
   new_lists = new_neighbors;
-  if (new_lists) begin_lists();
+  new_lists ? begin_lists() : lists_of_atoms.check(STYLE);
   const Particles p = particles();
   update_lists(p);
   select(p);
@@ -199,6 +200,7 @@ void FluidEvaluation::begin_lists()
                  atom->tag[i], v[0], v[1], v[2]);
   }
   evaluated_order = order_of_atoms(atom);
+  lists_of_atoms.lists_are_new();
   stability.lists_have_changed();
 }
 

@@ -6,6 +6,7 @@
 #define SPHCLOTH_FLUID_FLUID_EVALUATION_H
 
 #include "fluid/fluid_state.h"
+#include "lammps_util/list_guard.h"
 
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace LAMMPS_NS {
 class FluidEvaluation : public FluidState {
  public:
   FluidEvaluation(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
-      FluidState(lmp_, pair_, ghosts_)
+      FluidState(lmp_, pair_, ghosts_), lists_of_atoms(lmp_)
   {
   }
 
@@ -45,6 +46,7 @@ class FluidEvaluation : public FluidState {
  private:
   std::vector<double> list_reach;    // of pairs of types, (ntypes+1)^2, 0: never
   bool new_lists = false;    // in this evaluation
+  ListGuard lists_of_atoms;
   // on any rank, at the last list build: boundary particles whose volume is measured, those whose
   // pressure is the fluid's, fluid
   bool measure_volume = false, extrapolate = false, any_fluid = true;

@@ -112,6 +112,7 @@ void FixClothAir::post_neighbor()
     cloth.mesh->rebuild();
     if (cloth.added) cloth.added->rebuild();
   }
+  shade.forget();
 }
 
 // Wind and water of the time of the positions: at the start of the next step some have moved.
@@ -200,12 +201,13 @@ void FixClothAir::post_integrate()
 void FixClothAir::end_step(const Cloth &cloth)
 {
   const AirMesh &mesh = *cloth.mesh;
+  const double inv_dt = 1.0 / update->dt;
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const int i = mesh.halo.atom_of(s);
     const Vec3 &j = mesh.impulse[s], &before = cloth.velocity[s];
     const Vec3 of_added = cloth.added ? cloth.added->impulse_on_mesh(s) : Vec3::Zero();
     const double w = cloth.fix->inverse_mass(i);
-    const Vec3 v = w == 0.0 ? Vec3(atom->v[i]) : Vec3((Vec3(atom->x[i]) - mesh.x[s]) / update->dt);
+    const Vec3 v = w == 0.0 ? Vec3(atom->v[i]) : Vec3(inv_dt * (Vec3(atom->x[i]) - mesh.x[s]));
     const bool first = std::isnan(motion[VELOCITY][i]);
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Vec3 gain = first || w == 0.0 ? Vec3::Constant(unknown) : Vec3(v - before - w * j);
@@ -276,6 +278,7 @@ struct FixClothAir::Record {
 
 void FixClothAir::write_restart(FILE *fp)
 {
+  shade.forget();
   double all;
   MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   const Vec3 &carried = options.wind.carried;

@@ -95,6 +95,49 @@ def test_other_ranks_keep_the_wind_off(tmp_path, grid):
     assert across(7) < found[0][1] < 1.9 * across(7)
 
 
+def test_what_moves_or_turns_into_the_lee_is_found_in_time():
+    """A sheet that drifts across the wind of another, and a wind that turns: no list is built.
+
+    Within half a triangle, and the third of one that is looked up: 0.21 of a sheet.
+    """
+    drift = two_sheets(0.5, shift=0.4).replace("pin pins", "").replace("pin all pins", "")
+    drift = drift.replace("neighbor 0.05", "neighbor 0.9")
+    drift += "region high block INF INF INF INF 0.25 INF\ngroup high region high\n"
+    drift += "velocity high set -2 0 0\ntimestep 1e-3\n"
+    air = f"fix air cloth cloth/air {COEFFICIENTS} wind 0 0 7 shaded yes\n"
+    air = air.replace(f"density {RHO}", f"density {1e-9 * RHO}")
+    by = 1e9 / across(7)
+    with instance() as lmp:
+        lmp.commands_string(drift + air + "thermo_style custom step f_air[3]\nrun 0 post no")
+        for steps, low, high in ((1, 1.99, 2.01), (99, 1.29, 1.71), (100, 0.99, 1.21)):
+            lmp.command(f"run {steps} pre no post no")
+            assert low < by * lmp.extract_fix("air", 0, 1, 2, 0) < high, steps
+
+    turning = two_sheets(0.5) + "variable u equal 7*step/50\n"
+    air = air.replace("wind 0 0 7", "wind v_u 0 7")
+    with instance() as lmp:
+        lmp.commands_string(turning + air + "thermo_style custom step f_air[3]\nrun 0 post no")
+        for steps, low, high in ((1, 0.99, 1.01), (20, 1.29, 1.71), (40, 1.99, 2.01)):
+            lmp.command(f"run {steps} pre no post no")
+            assert low < by * lmp.extract_fix("air", 0, 1, 2, 0) < high, steps
+
+
+def test_a_restart_file_from_within_a_run_continues_with_the_same_lee(tmp_path):
+    """It is written between two searches, and no list is built there."""
+    make = two_sheets(0.1, shift=0.2).replace("pin all pins", "").replace("pin pins", "")
+    make = make.replace("neighbor 0.05", "neighbor 0.9")
+    air = f"fix air cloth cloth/air {COEFFICIENTS} wind 3 0 7 gust 2 0.2 3 shaded yes\n"
+    air += "dump all all custom 7 {} id x y z vx vy vz\n"
+    air += "dump_modify all sort id format float %.17g\ntimestep 1e-3\n"
+    whole = f"{make}{air}run 27 post no\nwrite_restart half noinit\n"
+    run(write(tmp_path, whole.format("one") + "run 28 pre no post no\n"), 1)
+    again = f"read_restart half\n{make[make.index('pair_style') :]}{air}run 28\n"
+    run(write(tmp_path, again.format("again"), "in.again"), 1)
+    one, two = ((tmp_path / name).read_text().split("ITEM: TIMESTEP") for name in ("one", "again"))
+    assert len(one) > 3
+    assert two[-1] == one[-1]
+
+
 # added mass
 
 AREAL, THICKNESS = 0.5, 0.4

@@ -7,7 +7,7 @@
 #include "core/util/bytes.h"
 #include "force.h"
 
-#include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using sphcloth::Vertex;
@@ -24,19 +24,20 @@ void AddedMass::rebuild()
     }
     n++;
   }
-  share.assign(n, 0.0);
-  for (std::vector<Vec3> *each : {&normal, &received, &before, &expected})
-    each->assign(n, Vec3::Zero());
+  layers.assign(n, Layer());
+  both_masses.assign(n, 0.0);
 }
 
 void AddedMass::find_shares()
 {
   mesh->find_dry_areas(area);
   for (int s = 0; s < mesh->halo.n_owned(); s++) {
+    const int slot = slot_in_solver[s];
     const double size = area[s].norm(), w = mesh->mesh->inverse_mass(mesh->halo.atom_of(s));
     const double of_air = areal * size * w;    // over the mass of the vertex
-    share[slot_in_solver[s]] = of_air / (1.0 + of_air);
-    normal[slot_in_solver[s]] = size > 0.0 ? Vec3(area[s] / size) : Vec3::Zero();
+    const double root = std::sqrt(of_air / (1.0 + of_air));
+    layers[slot].across = root > 0.0 ? Vec3(root / size * area[s]) : Vec3::Zero();
+    both_masses[slot] = root > 0.0 ? (1.0 + of_air) / w : 0.0;
   }
 }
 
@@ -44,43 +45,46 @@ void AddedMass::find_shares()
 
 bool AddedMass::begin_step(const Vertex *start, const Vertex *end, double dt)
 {
-  std::fill(received.begin(), received.end(), Vec3::Zero());
   for (std::size_t k = 0; k < slot_in_solver.size(); k++) {
     const int s = slot_in_solver[k], i = mesh->halo.atom_of(static_cast<int>(k));
     const Vec3 way(end[s].x - start[s].x, end[s].y - start[s].y, end[s].z - start[s].z);
-    before[s] = way / dt - dt * force->ftm2v * mesh->mesh->inverse_mass(i) * Vec3(atom->f[i]);
+    const Vec3 kick = dt * force->ftm2v * mesh->mesh->inverse_mass(i) * Vec3(atom->f[i]);
+    layers[s].speed = layers[s].across.dot(way / dt - kick);
+    layers[s].gain = -layers[s].speed;
   }
   return true;
 }
 
-void AddedMass::begin_substep(const Vertex *, const Vertex *, double dt)
-{
-  substep_dt = dt;
-  for (const int s : slot_in_solver) expected[s] = dt * before[s];
-}
+void AddedMass::begin_substep(const Vertex *, const Vertex *, double dt) { substep_dt = dt; }
 
 void AddedMass::project(Vertex *displacement)
 {
-  for (const int s : slot_in_solver) {
-    Vertex &d = displacement[s];
-    if (share[s] == 0.0) continue;
-    const Vec3 &n = normal[s];
-    const Vec3 change = Vec3(d.x, d.y, d.z) - expected[s];
-    const Vec3 kept_off = share[s] * change.dot(n) * n;
-    d.x -= kept_off[0];
-    d.y -= kept_off[1];
-    d.z -= kept_off[2];
-    expected[s] = Vec3(d.x, d.y, d.z);
-    received[s] -= kept_off / (d.w * substep_dt);
+  const double dt = substep_dt, inv_dt = 1.0 / dt;
+  Vertex *d = displacement;
+  for (Layer &layer : layers) {
+    const Vec3 &m = layer.across;
+    const double share = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+    const double change = inv_dt * (m[0] * d->x + m[1] * d->y + m[2] * d->z) - layer.speed;
+    const double withheld = dt * change;
+    d->x -= withheld * m[0];
+    d->y -= withheld * m[1];
+    d->z -= withheld * m[2];
+    layer.speed += (1.0 - share) * change;
+    d++;
   }
 }
 
 void AddedMass::end_substep(Vertex *v, double)
 {
-  for (const int s : slot_in_solver) before[s] = Vec3(v[s].x, v[s].y, v[s].z);
+  for (Layer &layer : layers) {
+    const double next = layer.across.dot(Vec3(v->x, v->y, v->z));
+    layer.gain += layer.speed - next;
+    layer.speed = next;
+    v++;
+  }
 }
 
 double AddedMass::bytes() const
 {
-  return sphcloth::bytes_of(slot_in_solver, share, normal, received, before, expected, area);
+  return sphcloth::bytes_of(slot_in_solver, layers, both_masses, area);
 }

@@ -35,21 +35,30 @@ class AddedMass : public SolverCoupling, protected Pointers {
   void project(sphcloth::Vertex *displacement) override;
   void end_substep(sphcloth::Vertex *v, double dt) override;
   void end_step() override {}
-  Vec3 impulse_on(int slot) const override { return received[slot]; }
+  Vec3 impulse_on(int slot) const override
+  {
+    const Layer &layer = layers[slot];
+    return -both_masses[slot] * (layer.gain + layer.speed) * layer.across;
+  }
 
   // of an owned vertex of the mesh, which is another order
-  Vec3 impulse_on_mesh(int slot) const { return received[slot_in_solver[slot]]; }
+  Vec3 impulse_on_mesh(int slot) const { return impulse_on(slot_in_solver[slot]); }
   double bytes() const;
 
  private:
+  // The air of an owned vertex of the solver, in its order.  With s its share in the mass across
+  // the cloth, all speeds are those along the normal times the root of s.
+  struct Layer {
+    Vec3 across = Vec3::Zero();    // the normal times the root of s; 0 of a held vertex
+    double speed = 0.0;    // by what the vertex has got; at the start of a substep without forces
+    double gain = 0.0;    // by forces and constraints in this step, less that speed
+  };
+
   AirMesh *const mesh;
   const double areal;
   std::vector<int> slot_in_solver;    // of owned vertices of the mesh
-  // of owned vertices of the solver, in its order
-  std::vector<double> share;    // of the air in the mass across the cloth; 0 of a held vertex
-  std::vector<Vec3> normal, received;
-  std::vector<Vec3> before;    // velocity at the start of the substep, without its forces
-  std::vector<Vec3> expected;    // displacement by that and by what the vertex got so far
+  std::vector<Layer> layers;
+  std::vector<double> both_masses;    // of vertex and air
   std::vector<Vec3> area;    // of vertices of the mesh
   double substep_dt = 0.0;
 };

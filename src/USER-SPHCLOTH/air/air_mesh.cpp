@@ -124,9 +124,9 @@ void AirMesh::find_dry_areas(std::vector<Vec3> &area)
 {
   area.assign(halo.n_slots(), Vec3::Zero());
   for (int t = 0; t < triangles.size(); t++) {
-    const auto [a, b, c] = triangle(t);
+    const auto [a, b, c] = corners(t);
     const double dry = triangles.open_share.empty() ? 1.0 : triangles.open_share[t];
-    const Vec3 third = dry / 6.0 * (b - a).cross(c - a);
+    const Vec3 third = dry / 6.0 * (x[b] - x[a]).cross(x[c] - x[a]);
     for (const std::vector<int> &slots : triangles.slot) area[slots[t]] += third;
   }
   halo.reverse_add(ALL, area.data());

@@ -42,11 +42,11 @@ class AirMesh : protected Pointers {
   // by slot, of owned vertices: a third of each triangle, as far as no water covers it; collective
   void find_dry_areas(std::vector<Vec3> &);
 
-  // of this rank; behind forward_motion()
+  // of this rank
   int n_triangles_here() const { return triangles.size(); }
-  std::array<Vec3, 3> triangle(int t) const
+  std::array<int, 3> corners(int t) const    // slots
   {
-    return {x[triangles.slot[0][t]], x[triangles.slot[1][t]], x[triangles.slot[2][t]]};
+    return {triangles.slot[0][t], triangles.slot[1][t], triangles.slot[2][t]};
   }
   void set_lee_share(int t, double share) { triangles.lee_share[t] = share; }
   double bytes() const;

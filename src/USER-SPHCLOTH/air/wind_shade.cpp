@@ -7,28 +7,76 @@
 #include "comm.h"
 #include "lammps_util/atom_tools.h"
 
+#include <limits>
+
 using namespace LAMMPS_NS;
+
+// of the mean size of a triangle in the picture: parts that moved less against each other leave
+// what is in the lee as it is
+static constexpr double MOVES = 0.5;
 
 void WindShade::find(const std::vector<AirMesh *> &meshes)
 {
-  corners_here.clear();
-  AirMesh::Vec3 here = AirMesh::Vec3::Zero(), wind;
-  for (const AirMesh *mesh : meshes) {
-    for (int s = 0; s < mesh->halo.n_owned(); s++) here += mesh->wind[s];
-    for (int t = 0; t < mesh->n_triangles_here(); t++) {
-      corners_here.emplace_back();
-      for (int k = 0; k < 9; k++) corners_here.back()[k] = mesh->triangle(t)[k / 3][k % 3];
-    }
+  const Vec3 direction = mean_direction(meshes);
+  if (still_holds(meshes, direction)) return;
+  found_with = direction;
+  const bool blows = !direction.isZero(0.0);
+  if (blows) {
+    gather(meshes);
+    shadow.build(points, corners, direction);
   }
-  MPI_Allreduce(here.data(), wind.data(), 3, MPI_DOUBLE, MPI_SUM, world);
-  allgather(corners_here, corners, comm->nprocs, world);
-  triangles.clear();
-  for (const Corners &c : corners)
-    triangles.push_back({AirMesh::Vec3(c[0], c[1], c[2]), AirMesh::Vec3(c[3], c[4], c[5]),
-                         AirMesh::Vec3(c[6], c[7], c[8])});
-  const bool blows = !wind.isZero(0.0);
-  if (blows) shadow.build(triangles, wind);
+  std::size_t n = 0;
   for (AirMesh *mesh : meshes)
     for (int t = 0; t < mesh->n_triangles_here(); t++)
-      mesh->set_lee_share(t, blows ? shadow.lee_share(mesh->triangle(t)) : 0.0);
+      mesh->set_lee_share(t, blows ? shadow.lee_share(corners_here[n++]) : 0.0);
+}
+
+WindShade::Vec3 WindShade::mean_direction(const std::vector<AirMesh *> &meshes) const
+{
+  Vec3 here = Vec3::Zero(), sum;
+  for (const AirMesh *mesh : meshes)
+    for (int s = 0; s < mesh->halo.n_owned(); s++) here += mesh->wind[s];
+  MPI_Allreduce(here.data(), sum.data(), 3, MPI_DOUBLE, MPI_SUM, world);
+  return sum.normalized();
+}
+
+// A turn of the wind moves what is behind in the picture against what is in front.
+
+bool WindShade::still_holds(const std::vector<AirMesh *> &meshes, const Vec3 &direction) const
+{
+  if (found_with.isZero(0.0)) return false;
+  const double allowed = MOVES * shadow.mean_size();
+  if ((direction - found_with).norm() * shadow.depth() > allowed) return false;
+  Eigen::Array<double, 6, 1> here, range;    // of displacements: maxima, and minima times -1
+  here.setConstant(-std::numeric_limits<double>::infinity());
+  std::size_t n = 0;
+  for (const AirMesh *mesh : meshes)
+    for (int s = 0; s < mesh->halo.n_slots(); s++) {
+      const Eigen::Array3d moved = (mesh->x[s] - Vec3(points_here[n++].data())).array();
+      here.head<3>() = here.head<3>().max(moved);
+      here.tail<3>() = here.tail<3>().max(-moved);
+    }
+  MPI_Allreduce(here.data(), range.data(), 6, MPI_DOUBLE, MPI_MAX, world);
+  return (range.head<3>() + range.tail<3>()).matrix().norm() <= allowed;
+}
+
+void WindShade::gather(const std::vector<AirMesh *> &meshes)
+{
+  points_here.clear();
+  corners_here.clear();
+  int before = 0, n_here = 0;    // vertices of other ranks, and of meshes
+  for (const AirMesh *mesh : meshes) n_here += mesh->halo.n_slots();
+  MPI_Exscan(&n_here, &before, 1, MPI_INT, MPI_SUM, world);
+  if (comm->me == 0) before = 0;    // MPI leaves it undefined
+  for (const AirMesh *mesh : meshes) {
+    const int first = before + static_cast<int>(points_here.size());
+    for (int s = 0; s < mesh->halo.n_slots(); s++)
+      points_here.push_back({mesh->x[s][0], mesh->x[s][1], mesh->x[s][2]});
+    for (int t = 0; t < mesh->n_triangles_here(); t++) {
+      const std::array<int, 3> s = mesh->corners(t);
+      corners_here.push_back({first + s[0], first + s[1], first + s[2]});
+    }
+  }
+  allgather(points_here, points, comm->nprocs, world);
+  allgather(corners_here, corners, comm->nprocs, world);
 }

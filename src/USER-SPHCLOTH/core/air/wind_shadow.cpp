@@ -3,78 +3,81 @@
 
 #include "core/air/wind_shadow.h"
 
-#include "core/geometry/buckets.h"
 #include "core/util/bytes.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 using namespace sphcloth;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// of the size of a cell: what is in front by less is taken to touch
+// of the mean size of a triangle: what is in front by less is taken to touch
 static constexpr double TOUCHES = 1e-6;
 
-void WindShadow::build(const std::vector<Triangle> &triangles, const Vector3d &wind)
+void WindShadow::build(const std::vector<Point> &points, const std::vector<Corners> &triangles,
+                       const Vector3d &wind)
 {
+  Eigen::Matrix3d axes;
   axes.row(2) = wind.normalized();
   axes.row(0) = axes.row(2).transpose().unitOrthogonal();
   axes.row(1) = axes.row(2).transpose().cross(axes.row(0).transpose());
+  seen.clear();
+  for (const Point &x : points) seen.push_back(axes * Eigen::Map<const Vector3d>(x.data()));
+
+  faces.clear();
   pictures.clear();
-  Box bounds;
-  double mean_size = 0.0;
-  for (const Triangle &t : triangles) {
-    pictures.push_back({seen(t[0]), seen(t[1]), seen(t[2])});
-    const auto &[a, b, c] = pictures.back();
-    const Vector3d size = a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c);
-    mean_size += std::max(size[0], size[1]) / static_cast<double>(triangles.size());
-    for (const Vector3d &corner : {a, b, c}) bounds.extend(Vector3d(corner[0], corner[1], 0.0));
+  size = 0.0;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+  for (const Corners &t : triangles) {
+    Box box(seen[t[0]]);
+    box.extend(seen[t[1]]).extend(seen[t[2]]);
+    const Vector3d sides = box.sizes();
+    size += std::max(sides[0], sides[1]) / static_cast<double>(triangles.size());
+    nearest = std::min(nearest, box.min()[2]);
+    farthest = std::max(farthest, box.max()[2]);
+    box.min()[2] = box.max()[2] = 0.0;
+    pictures.push_back(box);
+    faces.push_back(face_of(t));
   }
-  tolerance = TOUCHES * mean_size;
-  grid = CellGrid();
-  if (pictures.empty()) return;
-  grid.cut(bounds, Vector3d::Constant(mean_size), pictures.size());
-  const auto for_each = [this](auto add) {
-    for (std::size_t t = 0; t < pictures.size(); t++) {
-      const auto &[a, b, c] = pictures[t];
-      grid.for_cells(grid.of(a.cwiseMin(b).cwiseMin(c)), grid.of(a.cwiseMax(b).cwiseMax(c)),
-                     [&](const auto &, std::size_t cell) { add(cell, static_cast<int>(t)); });
-    }
-  };
-  sort_into_buckets(grid.size(), for_each, first, items);
-}
-
-double WindShadow::lee_share(const Triangle &t) const
-{
-  if (grid.empty()) return 0.0;
-  const Vector3d middle = (t[0] + t[1] + t[2]) / 3.0;
-  int n = 0;
-  for (const Vector3d &corner : t) n += in_lee(seen(0.5 * (middle + corner)));
-  return n / 3.0;
-}
-
-static double twice_area(const Vector3d &a, const Vector3d &b, const Vector3d &c)
-{
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  range = triangles.empty() ? 0.0 : farthest - nearest;
+  grid.build(pictures);
 }
 
 // A triangle that the wind sees edge-on hides nothing.
 
-bool WindShadow::in_lee(const Vector3d &p) const
+WindShadow::Face WindShadow::face_of(const Corners &t) const
 {
-  const CellGrid::Cell cell = grid.of(p);
-  const std::size_t number = grid.number(cell[0], cell[1], cell[2]);
-  for (int k = first[number]; k < first[number + 1]; k++) {
-    const auto &[a, b, c] = pictures[items[k]];
-    if (std::min({a[2], b[2], c[2]}) >= p[2] - tolerance) continue;
-    const double whole = twice_area(a, b, c);
-    if (whole == 0.0) continue;
-    const double of_a = twice_area(p, b, c) / whole, of_b = twice_area(a, p, c) / whole,
-                 of_c = 1.0 - of_a - of_b;
-    if (of_a < 0.0 || of_b < 0.0 || of_c < 0.0) continue;
-    if (of_a * a[2] + of_b * b[2] + of_c * c[2] < p[2] - tolerance) return true;
-  }
-  return false;
+  const Vector3d &a = seen[t[0]], b = seen[t[1]] - a, c = seen[t[2]] - a;
+  const double whole = b[0] * c[1] - b[1] * c[0];
+  Face face{a, Vector2d::Zero(), Vector2d::Zero(), b[2], c[2]};
+  if (whole == 0.0) return face;
+  face.to_b = Vector2d(c[1], -c[0]) / whole;
+  face.to_c = Vector2d(-b[1], b[0]) / whole;
+  face.min_depth = a[2] + std::min({0.0, b[2], c[2]});
+  return face;
 }
 
-double WindShadow::bytes() const { return bytes_of(pictures, first, items); }
+// A face is read once for the three points, which lie close together.
+
+double WindShadow::lee_share(const Corners &t) const
+{
+  const Vector3d middle = (seen[t[0]] + seen[t[1]] + seen[t[2]]) / 3.0;
+  std::array<Vector3d, 3> open;    // points in front of which nothing was found yet
+  Box around;
+  for (int k = 0; k < 3; k++) {
+    open[k] = 0.5 * (middle + seen[t[k]]) - Vector3d(0.0, 0.0, TOUCHES * size);
+    around.extend(Vector3d(open[k][0], open[k][1], 0.0));
+  }
+  const double depth = std::max({open[0][2], open[1][2], open[2][2]});
+  int n = 3;
+  grid.query(around, [&](int f) {
+    const Face &face = faces[f];
+    if (face.min_depth >= depth) return;
+    for (int k = n - 1; k >= 0; k--)
+      if (face.hides(open[k])) open[k] = open[--n];
+  });
+  return (3 - n) / 3.0;
+}
+
+double WindShadow::bytes() const { return bytes_of(seen, faces, pictures) + grid.bytes(); }

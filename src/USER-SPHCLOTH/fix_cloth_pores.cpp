@@ -53,11 +53,11 @@ int FixClothPores::setmask() { return INITIAL_INTEGRATE | POST_INTEGRATE | POST_
 
 void FixClothPores::init()
 {
-  const FluidState *state = FluidState::find(force);
-  if (!state)
+  const FluidState *found = FluidState::find(force);
+  if (!found)
     error->all(FLERR, "{}: pores let fluid through, and there is none: use 'pair_style sph/tait'",
                label);
-  fluid = options.of(state, groupbit);
+  fluid = options.of(found, groupbit);
   check_integrators();
   find_meshes();
 }

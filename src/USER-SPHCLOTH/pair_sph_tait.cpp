@@ -208,9 +208,9 @@ int PairSPHTait::pack_reverse_comm(int n, int first, double *buf)
   return fluid.pack_reverse(for_ghosts, n, first, buf);
 }
 
-void PairSPHTait::unpack_reverse_comm(int n, int *list, double *buf)
+void PairSPHTait::unpack_reverse_comm(int n, int *owners, double *buf)
 {
-  fluid.add(for_ghosts, n, list, buf);
+  fluid.add(for_ghosts, n, owners, buf);
 }
 
 /* ----------------------------------------------------------------------

@@ -222,6 +222,23 @@ def test_edges_of_an_obstacle_stop_edges_of_cloth():
     assert x[:-3, 2].max() > 0 > x[:-3, 2].min()
 
 
+@pytest.mark.parametrize("solver", ["gs iterations 40", "jacobi iterations 40", "substeps"])
+@pytest.mark.parametrize("aside", ["0.001 0.002", "0.012 0.021"])
+@pytest.mark.parametrize("start", [0.025, 0.03, 0.035])
+def test_a_sheet_that_lands_by_thicknesses_a_step_is_not_thrown(solver, start, aside):
+    """All its edges pass those of a plate in one step; no vertex becomes faster by that."""
+    fixes = f"fix sheet upper pbd/cloth solver {solver}\n"
+    contact = "fix touch upper cloth/contact 0.004 cloth yes obstacle lower\n"
+    upper = FLAT.replace("0.01 0.02", aside)
+    text = scene(upper, start, fixes, contact, weight="", dt=0.01).replace("pin rim pins", "")
+    with started(text.replace("timestep", "velocity upper set 0 0 -1.7\ntimestep")) as lmp:
+        met, crossed, x = watch(lmp, 4, moving=225)
+        speed = np.linalg.norm(by_id(lmp, "v")[225:], axis=1)
+    assert (met, crossed) == (0, 0)
+    assert np.all(np.abs(x[225:, 2]) < 0.02)
+    assert speed.max() < 1.7
+
+
 ERRORS = {
     "too thick": (
         {"contact": "fix touch cloth cloth/contact 0.05 cloth yes\n"},

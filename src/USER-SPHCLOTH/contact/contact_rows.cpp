@@ -310,19 +310,19 @@ void ContactRows::project_normal(int k)
 }
 
 // They turn little: where their direction turns round inside both, one side has passed the other.
+// A point then passes one triangle, but with it all edges that end there: these count as they did.
 
 ContactRows::Vec3 ContactRows::find_closest_points(int k)
 {
   ContactRow &row = rows[k];
   const ClosestPoints at = closest_points(row.kind, row.of_slots(mesh.end));
-  const double length = at.vector.norm();
   const bool passed = at.vector.dot(row.normal) < 0.0 && inside_both(row.kind, at);
-  row.distance = passed ? -length : length;
+  row.distance = (passed ? -1.0 : 1.0) * at.vector.norm();
   row.normal = normal_of(row, at);
   masses.add_load(row, -row.normal_correction);
   row.weight = at.weight;
   masses.add_load(row, row.normal_correction);
-  row.share = passed ? 1.0 : share(k, at);
+  if (!passed || row.kind == PairKind::POINT_TRIANGLE) row.share = passed ? 1.0 : share(k, at);
   row.mass = masses.of(row, mesh.w_solver);
   return at.vector;
 }

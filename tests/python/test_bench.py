@@ -128,6 +128,7 @@ def test_air_from_end_to_end() -> None:
     said = io.StringIO()
     result = bench_air(1, 10, 5, Console(file=said, width=200))
     assert result["vertices"] == 11 * 15
+    assert result["vertices_of_balloon"] == 162
     # so few steps say nothing of the cost
     assert list(result["more"]) == list(RUNS)
     assert "more than without air" in said.getvalue()

@@ -115,7 +115,9 @@ TABLES = {
     "activity": lambda console: activity.show(COUNTS | {"corners": [CORNER] * 3}, console),
     "watch": lambda console: watch.show(COUNTS | {"look": LOOKS}, console),
     "coupling": lambda console: coupling.show(COUPLING, console),
-    "air": lambda console: air.show(SHEET | COUNTS | {"more": AIR}, console),
+    "air": lambda console: air.show(
+        SHEET | COUNTS | {"vertices_of_balloon": 2562, "more": AIR}, console
+    ),
 }
 
 

@@ -88,33 +88,40 @@ std::vector<double> ClothTopology::positions() const
 
 // Each rank measures a part of the elements.
 
-void ClothTopology::measure()
+template <std::size_t N>
+double ClothTopology::width_sq(const ClothElements<N> &elements, const std::vector<double> &x) const
 {
-  const std::vector<double> x = positions();
-  const auto width_sq = [&](const auto &vertices) {
-    double largest = 0.0;
-    for (int a : vertices)
-      for (int b : vertices) {
+  double largest = 0.0;
+  for (std::size_t m = comm->me; m < elements.size(); m += comm->nprocs)
+    for (int a : elements.vertices[m])
+      for (int b : elements.vertices[m]) {
         if (b >= a) continue;
         double d[3];
         for (int k = 0; k < 3; k++) d[k] = x[3 * a + k] - x[3 * b + k];
         release::minimum_image(domain, d);
         largest = std::max(largest, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       }
-    return largest;
-  };
-  double here[2] = {0.0, 0.0}, all[2];
-  const auto measure_all = [&](const auto &elements, double &largest) {
-    for (std::size_t m = comm->me; m < elements.size(); m += comm->nprocs)
-      largest = std::max(largest, width_sq(elements.vertices[m]));
-  };
-  measure_all(triangles, here[0]);
-  here[1] = here[0];
-  measure_all(edges, here[1]);
-  measure_all(hinges, here[1]);
+  return largest;
+}
+
+void ClothTopology::measure()
+{
+  const std::vector<double> x = positions();
+  const double of_triangles = width_sq(triangles, x);
+  const double here[2] = {of_triangles,
+                          std::max({of_triangles, width_sq(edges, x), width_sq(hinges, x)})};
+  double all[2];
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_MAX, world);
   longest = std::sqrt(all[0]);
   widest = std::sqrt(all[1]);
+}
+
+void ClothTopology::measure_triangles()
+{
+  const double here = width_sq(triangles, positions());
+  double all;
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  longest = std::sqrt(all);
 }
 
 void ClothTopology::gather(int groupbit, Leaving leaving)

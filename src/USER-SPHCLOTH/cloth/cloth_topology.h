@@ -47,6 +47,7 @@ class ClothTopology : protected Pointers {
   // collective: from the positions of the atoms, which must not be farther apart than half a
   // periodic box
   void measure();
+  void measure_triangles();    // alone
   double longest_edge() const { return longest; }    // of the triangles
   double widest_element() const { return widest; }
 
@@ -66,6 +67,9 @@ class ClothTopology : protected Pointers {
 
   template <std::size_t N, class Collect>
   void gather_elements(ClothElements<N> &, const char *, Leaving, Collect);
+  // of this rank's share of the elements
+  template <std::size_t N>
+  double width_sq(const ClothElements<N> &, const std::vector<double> &x) const;
 };
 
 }    // namespace LAMMPS_NS

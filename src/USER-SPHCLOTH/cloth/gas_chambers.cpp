@@ -40,6 +40,7 @@ void GasChambers::gather(int groupbit, bool warns)
   std::vector<Vec3> x = unwrapped();
   unwrap(x);
   check_surface(warns);
+  find_members();
   find_frames(x);
 }
 
@@ -214,14 +215,14 @@ void GasChambers::find_frames(const std::vector<Vec3> &x)
 void GasChambers::require_ghosts()
 {
   if (!ghosts.matters()) return;
-  mesh.measure();
+  mesh.measure_triangles();
   ghosts.require(mesh.longest_edge(), mesh.longest_edge());
 }
 
 void GasChambers::require_ghosts_in_run()
 {
   if (!ghosts.matters()) return;
-  mesh.measure();
+  mesh.measure_triangles();
   ghosts.require_in_run(mesh.longest_edge(), mesh.longest_edge());
 }
 
@@ -235,53 +236,62 @@ int GasChambers::owned(int vertex) const
   return i >= 0 && i < atom->nlocal ? i : -1;
 }
 
-int GasChambers::slot_of(int chamber, int vertex) const
+int GasChambers::member(int chamber, int vertex) const
 {
-  const auto it = std::lower_bound(slots.begin(), slots.end(), Slot{chamber, vertex, -1, 0.0});
-  return static_cast<int>(it - slots.begin());
+  const auto it = std::lower_bound(members.begin(), members.end(), Member{chamber, vertex});
+  return static_cast<int>(it - members.begin());
+}
+
+void GasChambers::find_members()
+{
+  members.clear();
+  for (std::size_t m = 0; m < surface.triangles.size(); m++)
+    for (const int v : surface.triangles[m]) members.push_back({surface.part[m], v});
+  std::sort(members.begin(), members.end());
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+  corners.clear();
+  for (std::size_t m = 0; m < surface.triangles.size(); m++) {
+    const auto &[a, b, c] = surface.triangles[m];
+    const int part = surface.part[m];
+    corners.push_back({member(part, a), member(part, b), member(part, c)});
+  }
 }
 
 void GasChambers::collect(const std::function<double(int)> &inverse_mass)
 {
-  triangles.clear();
   slots.clear();
+  slot_of_member.clear();
+  for (const auto &[chamber, vertex] : members) {
+    const int mine = owned(vertex);
+    slot_of_member.push_back(mine < 0 ? -1 : static_cast<int>(slots.size()));
+    if (mine >= 0) slots.push_back({chamber, mine, inverse_mass(mine)});
+  }
+  gradient.resize(slots.size());
+  triangles.clear();
   for (std::size_t m = 0; m < surface.triangles.size(); m++) {
-    auto t = surface.triangles[m];
-    const bool counted = owned(t[0]) >= 0;
-    for (int turns = 0; turns < 2 && owned(t[0]) < 0; turns++)
-      std::rotate(t.begin(), t.begin() + 1, t.end());
-    const int i = owned(t[0]);
-    if (i < 0) continue;
+    const std::array<int, 3> &t = surface.triangles[m];
     Triangle here{};
+    int first = 0;    // of its vertices that this rank owns
+    for (int k = 2; k >= 0; k--) {
+      here.slot[k] = slot_of_member[corners[m][k]];
+      if (here.slot[k] >= 0) first = k;
+    }
+    here.counted = here.slot[0] >= 0;
+    std::rotate(here.slot, here.slot + first, here.slot + 3);
+    if (here.slot[0] < 0) continue;
+    const int i = slots[here.slot[0]].atom;
     here.chamber = surface.part[m];
-    here.shift = &shifts[t[0]];
-    here.counted = counted;
+    here.shift = &shifts[t[first]];
     const Vec3 offset = position(i, *here.shift) - Vec3(atom->x[i]);
     std::copy(offset.data(), offset.data() + 3, here.offset);
-    for (int k = 0; k < 3; k++) {
-      here.atom[k] = k ? mesh.image_here(t[k], i) : i;
-      const int mine = owned(t[k]);
-      here.slot[k] = mine < 0 ? -1 : t[k];
-      if (mine >= 0) slots.push_back({here.chamber, t[k], mine, inverse_mass(mine)});
-    }
+    here.atom[0] = i;
+    for (int k = 1; k < 3; k++) here.atom[k] = mesh.image_here(t[(first + k) % 3], i);
     triangles.push_back(here);
   }
-  std::sort(slots.begin(), slots.end());
-  const auto same = [](const Slot &a, const Slot &b) { return !(a < b) && !(b < a); };
-  slots.erase(std::unique(slots.begin(), slots.end(), same), slots.end());
-  add_slots();
-}
-
-void GasChambers::add_slots()
-{
-  for (Triangle &t : triangles)
-    for (int &slot : t.slot)
-      if (slot >= 0) slot = slot_of(t.chamber, slot);
   lid_slots.clear();
-  if (options.closes_holes)
-    for (const auto &hole : surface.holes)
-      for (const int v : hole.loop) lid_slots.push_back(owned(v) < 0 ? -1 : slot_of(hole.part, v));
-  gradient.resize(slots.size());
+  if (!options.closes_holes) return;
+  for (const auto &hole : surface.holes)
+    for (const int v : hole.loop) lid_slots.push_back(slot_of_member[member(hole.part, v)]);
 }
 
 /* ----------------------------------------------------------------------
@@ -389,6 +399,5 @@ void GasChambers::push(const std::vector<double> &by_chamber) const
 
 double GasChambers::bytes() const
 {
-  return sphcloth::bytes_of(triangles) + sphcloth::bytes_of(slots) + sphcloth::bytes_of(gradient) +
-      sphcloth::bytes_of(shifts);
+  return sphcloth::bytes_of(triangles, slots, gradient, shifts, members, corners, slot_of_member);
 }

@@ -68,26 +68,22 @@ class GasChambers : protected Pointers {
  private:
   struct Triangle {
     int atom[3];    // the first is owned, the others are its nearest images
-    int slot[3];    // at first a vertex; -1: owned by another rank
+    int slot[3];    // -1: owned by another rank
     int chamber;
     const std::array<int, 3> *shift;    // of the first one
     double offset[3];    // from where it is to where the surface is, unless the box changes
     bool counted;    // here, and by no other rank
   };
-  struct Slot {    // of a vertex that this rank owns, in a chamber; sums go by them, whatever the
-    // order of the atoms
-    int chamber, vertex, atom;
+  struct Slot {    // of a vertex that this rank owns, in a chamber
+    int chamber, atom;
     double inverse_mass;
-    bool operator<(const Slot &b) const
-    {
-      return chamber != b.chamber ? chamber < b.chamber : vertex < b.vertex;
-    }
   };
+  using Member = std::array<int, 2>;    // a chamber, and a vertex of it
   // The direction in which a chamber hangs together with its periodic images, if any
   struct Wrap {
     std::array<int, 3> along{};
     bool several = false;
-    bool any() const { return along != std::array<int, 3>{}; }
+    bool any() const { return along[0] || along[1] || along[2]; }
   };
 
   const std::string owner;
@@ -98,10 +94,14 @@ class GasChambers : protected Pointers {
   std::vector<std::array<int, 3>> shifts;    // of each vertex, in periods of the box
   std::vector<Wrap> wraps;    // of each chamber
   std::vector<Frame> frames;
+  std::vector<Member> members;    // ascending
+  std::vector<std::array<int, 3>> corners;    // members of each triangle
   std::vector<int> lid_slots;    // of the vertices of all holes, where they are closed
 
   std::vector<Triangle> triangles;
-  std::vector<Slot> slots;
+  std::vector<Slot>
+      slots;    // in the order of members, which sums have, whatever that of the atoms
+  std::vector<int> slot_of_member;    // -1: owned by another rank
   std::vector<Vec3> gradient;    // of each slot
 
   void check_surface(bool warns) const;
@@ -112,8 +112,8 @@ class GasChambers : protected Pointers {
   Vec3 lattice(const std::array<int, 3> &) const;
   Vec3 position(int atom, const std::array<int, 3> &shift) const;
   int owned(int vertex) const;
-  int slot_of(int chamber, int vertex) const;
-  void add_slots();
+  void find_members();
+  int member(int chamber, int vertex) const;
   double add_triangle(const Triangle &, const Frame &, const Vec3 &wrap);
   void add_lids(const std::vector<Frame> &, double *volumes);
 };

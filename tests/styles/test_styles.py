@@ -208,15 +208,14 @@ def test_a_file_is_written_between_runs_of_which_one_has_no_setup(scene, ranks, 
     runs._write_data(scene, "si", tmp_path)
     ends = {}
     for between in ("", "write_restart half.restart noinit\n", "write_restart half.restart\n"):
-        first = f"processors {GRIDS[ranks]}\n{SCENES[scene].first()}dump now all custom 1 now.dump "
         script = render(
-            f"{first}id {' '.join(STATE)}\ndump_modify now sort id format float %.17g\n"
-            f"run 12\n{between}run 12 pre no\n",
+            f"processors {GRIDS[ranks]}\n{SCENES[scene].first()}"
+            f"run 12\n{between}run 12 pre no\n{final_dump(' '.join(STATE), 'end.txt')}",
             "si",
         )
         printed = attempt(write(tmp_path, script), ranks)
         if "Total wall time" in printed:
-            ends[between] = last_frame(tmp_path / "now.dump")
+            ends[between] = last_frame(tmp_path / "end.txt")
         else:
             assert "restart\n" in between
             assert ERROR_WITHOUT_SETUP in " ".join(printed.split()), printed[-2000:]

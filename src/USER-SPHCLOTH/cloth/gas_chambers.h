@@ -99,8 +99,7 @@ class GasChambers : protected Pointers {
   std::vector<int> lid_slots;    // of the vertices of all holes, where they are closed
 
   std::vector<Triangle> triangles;
-  std::vector<Slot>
-      slots;    // in the order of members, which sums have, whatever that of the atoms
+  std::vector<Slot> slots;    // in the order of members, whatever that of the atoms: sums have it
   std::vector<int> slot_of_member;    // -1: owned by another rank
   std::vector<Vec3> gradient;    // of each slot
 

@@ -189,17 +189,17 @@ static void put(sphcloth::Vertex &data, const Eigen::Vector3d &value)
   data.z = value[2];
 }
 
-void VertexHalo::add_to_images(int channel, Vec3 *data, double vectors, double rates)
-{
-  forward_all(channel, data, vectors, rates);
-}
-
 // There are channels from the first list build on.
 
 VertexHalo::Channel &VertexHalo::connected(int channel)
 {
   if (channels.empty()) error->all(FLERR, "fix pbd/cloth: {}", ListGuard::REMEDY);
   return channels[channel];
+}
+
+void VertexHalo::add_to_images(int channel, Vec3 *data, double vectors, double rates)
+{
+  forward_all(channel, data, vectors, rates);
 }
 
 void VertexHalo::add_to_images(int channel, sphcloth::Vertex *data, double vectors, double rates)

@@ -30,15 +30,15 @@ inline std::uint64_t hash_with(std::uint64_t hash, std::uint64_t number)
   return (hash ^ number) * 0x100000001b3U;
 }
 
-// A number that changes when the owned atoms, or their places in the arrays, do.
+// A number that changes when the first n atoms, or their places in the arrays, do.
 
-inline std::uint64_t order_of_atoms(const Atom *atom)
+inline std::uint64_t order_of_atoms(const Atom *atom, int n)
 {
   std::uint64_t hash = EMPTY_HASH;
-  for (int i = 0; i < atom->nlocal; i++)
-    hash = hash_with(hash, static_cast<std::uint64_t>(atom->tag[i]));
+  for (int i = 0; i < n; i++) hash = hash_with(hash, static_cast<std::uint64_t>(atom->tag[i]));
   return hash;
 }
+inline std::uint64_t order_of_atoms(const Atom *atom) { return order_of_atoms(atom, atom->nlocal); }
 
 inline std::uint64_t bits_of(double number)
 {

@@ -48,10 +48,8 @@ class ListGuard : protected Pointers {
 
   std::uint64_t order_of_all() const
   {
-    std::uint64_t hash = hash_with(EMPTY_HASH, static_cast<std::uint64_t>(atom->nlocal));
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-      hash = hash_with(hash, static_cast<std::uint64_t>(atom->tag[i]));
-    return hash;
+    return hash_with(order_of_atoms(atom, atom->nlocal + atom->nghost),
+                     static_cast<std::uint64_t>(atom->nlocal));
   }
 };
 

@@ -465,7 +465,7 @@ def test_the_list_names_all_scenes(
 ) -> None:
     assert call(monkeypatch, "--list") == 0
     shown = capsys.readouterr().out
-    for name in ("dam-break", "oscillating-drop", "lintearia", "pour", "two-resolutions"):
+    for name in all_scenes():
         assert name in shown
 
 

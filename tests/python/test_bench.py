@@ -12,15 +12,18 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from sphcloth.bench import activity, block
 from sphcloth.bench.activity import Steps, bench_activity, usual_steps
 from sphcloth.bench.air import RUNS, bench_air
+from sphcloth.bench.block import Compared, Ratios, bench_block
 from sphcloth.bench.coupling import bench_coupling
 from sphcloth.bench.layers import bench_layers
 from sphcloth.bench.messages import Cluster, Counter, Sent, expect
 from sphcloth.bench.size import bench_size, edges, figures_of
-from sphcloth.bench.timing import Spread, read_timing
+from sphcloth.bench.timing import Runner, Spread, read_timing
 from sphcloth.bench.watch import bench_watch
 from sphcloth.errors import UserError
+from sphcloth.tradeoff.command import all_scenes
 
 LOG = """
 Per MPI rank memory allocation (min/avg/max) = 3.5 | 4.0 | 4.5 Mbytes
@@ -227,3 +230,71 @@ def test_activity_from_end_to_end() -> None:
         assert 0 < corner["active"] < 0.5
         assert corner["over_all"]["value"] > 0
     assert "left out" in said.getvalue()
+
+
+def test_what_block_steps_save_is_a_share_of_what_the_updates_say() -> None:
+    assert Ratios(0.8, 0.5).saved == pytest.approx(0.4)
+    assert Ratios(1.1, 0.5).saved == pytest.approx(-0.2)
+    rounds = [Ratios(0.8, 0.5), Ratios(0.7, 0.5), Ratios(1.0, 0.5)]
+    found = block.figures_of("basins", rounds)
+    assert list(found) == ["basins", "basins_updates", "basins_saved"]
+    assert found["basins"] == {"value": 0.8, "least": 0.7, "most": 1.0}
+    assert found["basins_saved"]["value"] == pytest.approx(0.4)
+    assert list(block.figures_of("basins", [Ratios(0.8, 1.0)])) == ["basins", "basins_updates"]
+    assert list(block.figures_of("light_cloth", rounds)) == ["light_cloth", "light_cloth_updates"]
+    assert list(block.figures_of("uniform", rounds)) == ["uniform"]
+
+
+@pytest.mark.parametrize("name", block.COMPARED)
+def test_scenes_with_block_steps_are_run_as_the_trade_off_runs_them(name: str) -> None:
+    compared = block.COMPARED[name]
+    varied = all_scenes()[compared.scene].variations["block"]
+    assert all(value in varied[setting] for setting, value in compared.block.items())
+    assert not compared.both
+
+
+def test_block_steps_from_end_to_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    pool = {"across": "8", "layers": "8", "radius": "0.05", "t_settle": "0.4", "t_fall": "0.06"}
+    small = {
+        "two_resolutions": Compared("drop-in-pool", {"gain": "1"}, pool, quick=True),
+        "basins": Compared(
+            "basins", {"sleep": "0.5"}, {"spacing": "0.04", "t_end": "4.3"}, quick=True
+        ),
+        "drop_in_pool": Compared("drop-in-pool", {"sleep": "0.02"}, pool, quick=True),
+        "light_cloth": Compared("pour", both={"t_end": "0.2"}, quick=True, saves=False),
+    }
+    monkeypatch.setattr(block, "COMPARED", small)
+    said = io.StringIO()
+    result = bench_block(1, 16, 128, Console(file=said, width=200))
+    scenes = ("two_resolutions", "basins", "drop_in_pool")
+    ratios = [f"{name}{metric}" for name in scenes for metric in ("", "_updates")]
+    ratios += ["light_cloth", "light_cloth_updates", "uniform", "one_percent_active"]
+    # so short runs say nothing of the cost, but updates are the same on any machine
+    figures = result["figures"]
+    assert set(ratios) <= set(figures)
+    assert all(0 < figures[name]["value"] < np.inf for name in ratios)
+    assert figures["basins_updates"]["value"] < 0.9 and np.isfinite(
+        figures["basins_saved"]["value"]
+    )
+    assert "saved of" in said.getvalue()
+
+
+def test_one_metric_of_block_steps_alone(tmp_path: Path) -> None:
+    command = [Path(sys.executable).parent / "sphcloth", "bench"]
+    options = ["--rounds", "1", "--only", "light_cloth", "--json", tmp_path / "out.json"]
+    subprocess.run([*command, "block", *options], check=True, capture_output=True, timeout=600)
+    figures = json.loads((tmp_path / "out.json").read_text())["figures"]
+    assert list(figures) == ["light_cloth", "light_cloth_updates"]
+    done = subprocess.run([*command, "air", *options], capture_output=True, text=True)
+    assert done.returncode == 2 and "only block has metrics" in " ".join(done.stderr.split())
+    with pytest.raises(UserError, match="--only sail: choose from two_resolutions, basins"):
+        bench_block(1, 16, 128, Console(), only="sail")
+
+
+def test_all_steps_of_water_at_rest_are_equal_with_both_schemes(tmp_path: Path) -> None:
+    """The ceiling sets them, so that both schemes take as many."""
+    run = Runner(activity.SCRIPT, tmp_path, across=10, steps=40, share=0)
+    for scheme in block.SCHEMES:
+        said = run(scheme=scheme)
+        assert "steps by limit: max 104\n" in said
+        assert read_timing(said).steps == 40

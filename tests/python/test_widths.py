@@ -9,7 +9,18 @@ from collections.abc import Callable
 import pytest
 from rich.console import Console
 
-from sphcloth.bench import activity, air, cloth, coupling, messages, pair, peers, size, watch
+from sphcloth.bench import (
+    activity,
+    air,
+    block,
+    cloth,
+    coupling,
+    messages,
+    pair,
+    peers,
+    size,
+    watch,
+)
 from sphcloth.stress.command import show_cases as show_stress_cases
 from sphcloth.tradeoff import report
 from sphcloth.tradeoff.front import Point
@@ -103,6 +114,12 @@ COUPLING = {
 }
 LOOKS = dict.fromkeys(watch.LIMITS, SMALL)
 AIR = dict.fromkeys(air.RUNS, SMALL)
+SAVED = {"value": -0.1234, "least": -0.2345, "most": -0.09876}
+BLOCK = {
+    f"{name}{metric}": figure
+    for name in block.METRICS
+    for metric, figure in (("", SMALL), ("_updates", SMALL), ("_saved", SAVED))
+}
 COUNTS = {"particles": 110592, "rounds": 5}
 SHEET = {"vertices": 25600, "edges": 76000, "hinges": 75000, "figures": figures_of_a_sheet()}
 
@@ -118,6 +135,7 @@ TABLES = {
     "air": lambda console: air.show(
         SHEET | COUNTS | {"vertices_of_balloon": 2562, "more": AIR}, console
     ),
+    "block": lambda console: block.show(COUNTS | {"figures": BLOCK}, console),
 }
 
 

@@ -26,6 +26,7 @@ def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
     """Return name -> function, usual number of rounds, particles across and steps."""
     from sphcloth.bench.activity import bench_activity
     from sphcloth.bench.air import bench_air
+    from sphcloth.bench.block import bench_block
     from sphcloth.bench.cloth import bench_cloth
     from sphcloth.bench.coupling import bench_coupling
     from sphcloth.bench.layers import bench_layers
@@ -46,6 +47,7 @@ def _known() -> dict[str, tuple[Callable[..., dict], int, int, int]]:
         "size": (bench_size, 5, 100, 30),
         "activity": (bench_activity, 5, 32, 400),
         "air": (bench_air, 5, 50, 200),
+        "block": (bench_block, 3, 32, 400),
     }
 
 
@@ -55,13 +57,15 @@ def bench(
         typer.Argument(
             metavar="NAME",
             help="What to measure: pair, cloth, coupling, layers, watch, messages, peers, size, "
-            "activity, air.",
+            "activity, air, block.",
         ),
     ],
     rounds: Annotated[
         int | None,
         typer.Option(
-            min=1, help="How often everything is measured.", show_default="5; 1 for peers"
+            min=1,
+            help="How often everything is measured.",
+            show_default="5; 3 for messages and block, 1 for peers",
         ),
     ] = None,
     across: Annotated[
@@ -82,6 +86,10 @@ def bench(
             show_default="by what is measured, 18 to 400",
         ),
     ] = None,
+    only: Annotated[
+        str | None,
+        typer.Option(metavar="METRIC", help="Measure this one of the metrics of block alone."),
+    ] = None,
     json_file: JsonFile = None,
 ) -> None:
     """Measure speed as ratios, side by side in one run, with the spread."""
@@ -90,8 +98,10 @@ def bench(
     known = _known()
     if name not in known:
         raise UserError(f"no benchmark '{name}': use {', '.join(known)}")
+    if only is not None and name != "block":
+        raise UserError(f"--only {only}: only block has metrics to choose from, not {name}")
     measure, usual_rounds, usual_across, usual_steps = known[name]
     size = (rounds or usual_rounds, across or usual_across, steps or usual_steps)
-    figures = measure(*size, Console())
+    figures = measure(*size, Console(), **({} if only is None else {"only": only}))
     if json_file is not None:
         write_json(json_file, figures)

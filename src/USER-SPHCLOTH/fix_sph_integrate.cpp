@@ -39,7 +39,7 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
   time_integrate = 1;
   nevery = 1;
   comm_forward = 3;
-  comm_reverse = 1;
+  comm_reverse = 4;
   restart_global = 1;
   restart_peratom = 1;
   create_attribute = 1;

@@ -74,6 +74,11 @@ BOOST_AUTO_TEST_CASE(a_long_box_has_as_many_blocks_as_particles_fill)
   }
 }
 
+static bool all_have(const BlockMinMax &of, int value, int b, int t)
+{
+  return of.smallest(b, t) >= value && of.greatest(b, t) <= value;
+}
+
 BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)
 {
   Scattered s(9000);
@@ -82,7 +87,7 @@ BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)
   survey.take(s.value.data());
   for (int b = 0; b < s.blocks.count(); b++)
     for (int t = 1; t <= TYPES; t++)
-      BOOST_CHECK(survey.all_have(3, b, t) && survey.greatest(b, t) == 3);
+      BOOST_CHECK(all_have(survey, 3, b, t) && survey.greatest(b, t) == 3);
 
   // two others, of one type
   const int low = 100, high = 200;
@@ -94,12 +99,13 @@ BOOST_AUTO_TEST_CASE(minimum_and_maximum_of_neighbors_whatever_their_block)
     const int b = s.block(i), t = s.type[low];
     if (s.near(i, low) || s.near(i, high)) {
       beside++;
-      BOOST_CHECK(!survey.all_have(3, b, t));
+      BOOST_CHECK(!all_have(survey, 3, b, t));
       if (s.near(i, high)) BOOST_CHECK(survey.greatest(b, t) == 7);
+      if (s.near(i, low)) BOOST_CHECK(survey.smallest(b, t) == 1);
     }
-    BOOST_CHECK(!survey.all_have(1, b, t));
-    BOOST_CHECK(survey.all_have(3, b, 3 - t));    // no particle of the other type has changed
-    quiet += survey.all_have(3, b, t);
+    BOOST_CHECK(!all_have(survey, 1, b, t));
+    BOOST_CHECK(all_have(survey, 3, b, 3 - t));    // no particle of the other type has changed
+    quiet += all_have(survey, 3, b, t);
   }
   BOOST_CHECK(beside > 20);
   BOOST_CHECK(quiet > s.n / 2);
@@ -113,8 +119,8 @@ BOOST_AUTO_TEST_CASE(no_particles_have_no_minimum_or_maximum)
   blocks.divide({x.data(), type.data(), 1, 1, TYPES}, WIDTH);
   BlockMinMax survey(blocks);
   survey.take(value.data());
-  BOOST_CHECK(survey.all_have(4, 0, 1) && !survey.all_have(5, 0, 1));
-  BOOST_CHECK(survey.all_have(5, 0, 2));
+  BOOST_CHECK(all_have(survey, 4, 0, 1) && !all_have(survey, 5, 0, 1));
+  BOOST_CHECK(all_have(survey, 5, 0, 2));
   BOOST_CHECK(survey.greatest(0, 2) < -1000000);
 }
 

@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(types_without_particles_take_no_memory)
                       std::vector<int>(other.of, other.of + other.n));
         BOOST_CHECK(others.inner_skin(slot, among[t]) == lists.inner_skin(slot, t));
       }
-      BOOST_CHECK(others(slot, 17).n == 0 && others.others(0, slot, 17, value.data()).n == 0);
+      BOOST_CHECK(others(slot, 17).n == 0 && !others.any_below(9, slot, 17, value.data(), false));
       BOOST_CHECK(!others.any_above(1, slot, 17, value.data(), false));
       BOOST_CHECK(others.any_above(1, slot, 3, value.data(), false) == (others(slot, 3).n > 0));
     }

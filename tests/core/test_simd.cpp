@@ -45,20 +45,6 @@ template <class Compact> void check_compact(const Compact &compaction)
   }
 }
 
-template <class Pick> void check_pick(const Pick &pick)
-{
-  for (int n = 0; n < 70; n++) {
-    std::vector<int> value(100), index(n), expected, found(n + 16);
-    for (int &each : value) each = static_cast<int>(3.0 * uniform());
-    for (int &each : index) {
-      each = static_cast<int>(100.0 * uniform());
-      if (value[each] != 1) expected.push_back(each);
-    }
-    found.resize(pick(value.data(), 1, index.data(), n, found.data()));
-    BOOST_CHECK(found == expected);
-  }
-}
-
 // in front those below the limit, behind them the others, both in order; the rest is not touched
 
 template <class Partition> void check_partition(const Partition &part)
@@ -122,15 +108,6 @@ BOOST_AUTO_TEST_CASE(compaction_keeps_what_is_below_the_limit_in_order)
   check_compact([](auto... a) { return compact_plain(a...); });
 #ifdef SPHCLOTH_X86_TARGETS
   if (HAVE_AVX2) check_compact([](auto... a) { return compact_avx2(a...); });
-#endif
-}
-
-BOOST_AUTO_TEST_CASE(particles_with_another_value_are_picked_in_order)
-{
-  check_pick([](auto... a) { return pick_others(a...); });
-  check_pick([](auto... a) { return pick_others_plain(a...); });
-#ifdef SPHCLOTH_X86_TARGETS
-  if (HAVE_AVX2) check_pick([](auto... a) { return pick_others_avx2(a...); });
 #endif
 }
 

@@ -140,7 +140,12 @@ void FluidEvaluation::find_densities_and_pressures()
 
 void FluidEvaluation::find_forces()
 {
-  core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
+  if (scaled.wanted()) scaled.find(*core, particles(), stability, boundaries);
+  if (stability.wanted()) find_frequencies();
+  if (const Impulses *impulses = hooks ? hooks->begin_impulses() : nullptr)
+    core->impulses(particles(), *impulses);
+  else
+    core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
   if (!lattices.adapts_density()) return;    // else, so far, the rates of the sums
@@ -160,19 +165,18 @@ void FluidEvaluation::push(FluidBoundary &boundary)
 
 void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 {
-  const Particles updated = particles();
-  if (!hooks) return core->virials(updated, receive, context);
-  Particles all = updated;
+  Particles all = particles();
+  if (!hooks) return core->virials(all, receive, context);
   all.active = nullptr;
   core->select(all);
+  core->record_positions(all, box());
+  core->record(all);
   core->virials(all, receive, context);
-  core->select(updated);
+  core->select(particles());
 }
 
 void FluidEvaluation::end()
 {
-  if (scaled.wanted()) scaled.find(*core, particles(), stability, boundaries);
-  if (stability.wanted()) find_frequencies();
   if (hooks) hooks->apply_impulses();
   for (FluidBoundary *boundary : boundaries) boundary->end();
   is_evaluated = true;
@@ -225,8 +229,7 @@ void FluidEvaluation::update_lists(const Particles &p)
 
 void FluidEvaluation::select(const Particles &p)
 {
-  if (!core->select(p)) return;
-  if (!hooks) return;
+  if (!core->select(p) || !hooks) return;
   active_fluid.clear();
   core->for_active_fluid([this](int i, int) { active_fluid.push_back(i); });
 }

@@ -124,12 +124,14 @@ bool FluidState::is_beside_mesh(int i) const
                      [&](FluidBoundary *boundary) { return boundary->has_vertices_beside(i); });
 }
 
-void FluidState::give_impulses(const std::vector<int> &slots, const double *pressure_time,
-                               const double *span)
+void FluidState::find_pair_forces(std::vector<double> &forces)
 {
-  const Particles p = particles();
-  core->record_impulses(p, pressure_time, span);
-  core->impulses(p, slots);
+  Particles p = particles();
+  forces.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
+  std::vector<double> rates(atom->nmax, 0.0);    // are known
+  p.f = forces.data();
+  p.drho = rates.data();
+  core->forces(p, Target::FLUID);
 }
 
 void FluidState::add_virial(int i, const Eigen::Vector3d &from, const Eigen::Vector3d &on)

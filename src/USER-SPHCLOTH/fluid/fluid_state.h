@@ -106,13 +106,16 @@ class FluidState : public SPHMaterials {
   void set_step_hooks(StepHooks *of_scheme) { hooks = of_scheme; }
   // What the hooks call once the forces on the active fluid are known: FluidBoundary::push_more(),
   // prolong() and defer() of all boundaries; the forces on boundary particles, if all steps are
-  // equal; otherwise the impulses of Fluid::record_impulses() on these owned particles.
+  // equal; otherwise impulses by source.
   void push_walls_more(int i, double p_over_rho2_of_i, double times);
   void prolong_walls(double times);
   void hand_over_pushes(const FluidBoundary::Take &take);
   void push_boundaries() { core->forces(particles(), sphcloth::Target::BOUNDARIES); }
-  void give_impulses(const std::vector<int> &slots, const double *pressure_time,
-                     const double *span);
+  void give_impulses(const sphcloth::Impulses &of) { core->impulses(particles(), of); }
+  // the only particles that may have got some; null: any
+  const std::vector<int> *touched_particles() const { return core->touched(); }
+  // the forces that particles exert on the active fluid, alone
+  void find_pair_forces(std::vector<double> &forces);
 
  protected:
   GhostExchange &ghosts;

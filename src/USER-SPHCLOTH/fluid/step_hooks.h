@@ -8,6 +8,10 @@
 
 #include <vector>
 
+namespace sphcloth {
+struct Impulses;
+}
+
 namespace LAMMPS_NS {
 
 class StepHooks {
@@ -20,11 +24,14 @@ class StepHooks {
   // that time (half-kick correction); true if any velocity has changed.
   virtual bool correct_velocities() = 0;
 
+  // Forces between particles come next.  Where steps are unequal the next ones are chosen now, and
+  // these impulses are to be found with the forces; null if all particles take the same step.
+  virtual const sphcloth::Impulses *begin_impulses() = 0;
+
   // atom->f holds the forces between particles on the active fluid.
   virtual void note_pair_forces() = 0;
 
-  // atom->f holds the forces of walls as well.  The next step of each active particle is chosen,
-  // and its impulses take the place of the forces.
+  // atom->f holds the forces of walls as well: impulses take their place.
   virtual void apply_impulses() = 0;
 
  protected:

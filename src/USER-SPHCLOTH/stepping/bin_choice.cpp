@@ -87,12 +87,15 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
   double *by = state.columns[Columns::BY];
   const double *external[3];
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
+  ParticleLimits::Rates rates{external};
+  if (state.clock.begun() && !state.clock.uniform)
+    rates = {nullptr, state.columns[Columns::ACCEL_SQ], state.columns[Columns::DENSITY_RATE]};
   for (const int i : of) wanted[i] = state.clock.line.step(static_cast<int>(its_bin[i]));
 
   const StepControl &control = parts.control;
   StepLimit tightest;
   parts.limits.ask_neighbors(ask_neighbors);
-  parts.limits.for_particles(of, external, [&](int i, const StepLimit &limit) {
+  parts.limits.for_particles(of, rates, [&](int i, const StepLimit &limit) {
     // what this fix does not move limits no step, as where all take the same
     const bool moves = atom->mask[i] & parts.fix->groupbit;
     const StepLimit allowed = moves ? limit : StepLimit{parts.options.ceiling, Limit::CEILING};
@@ -235,13 +238,10 @@ void BinChoice::find_bins()
   int finest = rank(of_vertices, static_cast<int>(vertex.by));
   int slowest = TimeBins::DEEPEST;
   double reach[2] = {-MAX, -MAX};    // -min, max
-  const double *by = columns[Columns::BY], *event = columns[Columns::EVENT];
+  const double *by = columns[Columns::BY];
   const double *its_reach = columns[Columns::REACH];
-  double *its_bin = columns[Columns::BIN], *before = columns[Columns::BIN_BEFORE];
+  double *its_bin = columns[Columns::BIN];
   for (const int i : fluid->active_particles()) {
-    before[i] = event[i] == Columns::NEW ? StepKey::FIRST
-        : event[i] == Columns::WOKEN     ? StepKey::BROKEN
-                                         : its_bin[i];
     const int wanted_bin = std::max(state.coarsest, clock.line.bin_of(wanted[i]));
     its_bin[i] = wanted_bin;
     slowest = std::min(slowest, wanted_bin);
@@ -277,7 +277,8 @@ void BinChoice::limit_differences()
     if (fluid->is_beside_mesh(i)) its_bin[i] = bin[i] = std::max(bin[i], finest_vertex);
   }
   state.forward_bins();
-  if (state.clock.all_synchronized()) fluid->order().measure_block_ranges(bin.data());
+  state.ranges_known = state.clock.all_synchronized();
+  if (state.ranges_known) fluid->order().measure_block_ranges(bin.data());
   for (const int i : fluid->active_particles())
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
   for (const int i : fluid->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
@@ -291,7 +292,7 @@ bool BinChoice::is_too_coarse(int i) const
   const int slot = lists.slot(i), type_i = atom->type[i];
   for (const int t : lists.present_types())
     if (lists.any_above(state.bin[i] + allowed_difference(type_i, t), slot, t, state.bin.data(),
-                        state.clock.all_synchronized()))
+                        state.ranges_known))
       return true;
   return false;
 }
@@ -329,12 +330,13 @@ void BinChoice::begin_steps()
   double *last = columns[Columns::P_OVER_RHO2], *reach = columns[Columns::REACH];
   double *event = columns[Columns::EVENT];
   for (const int i : fluid->active_particles()) {
-    if (state.clock.uniform) {
+    if (!state.clock.uniform) {
+      state.begin_own_step(i);
+      last[i] = p_over_rho2[i];
+    } else if (reach[i] != half_of_all || event[i] != Columns::NONE) {
       reach[i] = half_of_all;
       event[i] = Columns::NONE;
-    } else
-      state.begin_own_step(i);
-    last[i] = p_over_rho2[i];
+    }
     const double step = state.clock.line.step(static_cast<int>(its_bin[i]));
     parts.rows[i][UpdateRows::OWN_STEP] = step;
     parts.rows[i][UpdateRows::LAST_UPDATE] = now;

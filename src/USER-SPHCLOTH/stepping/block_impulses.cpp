@@ -10,14 +10,19 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
 using Columns = BlockColumns;
 
+// A step is far too long if the limit of the force that is found with it is so many times shorter.
+static constexpr double TOO_LONG = 2.0;
+
 void BlockImpulses::note_pair_forces()
 {
+  if (!found) return;
   pair_forces.resize(3 * static_cast<std::size_t>(atom->nmax), 0.0);
   copy_forces(pair_forces);
 }
@@ -41,20 +46,85 @@ void BlockImpulses::copy_forces(std::vector<double> &to) const
   for (const int i : active) std::copy_n(atom->f[i], 3, to.begin() + 3 * i);
 }
 
+// What other styles have added, and with it the acceleration and the rate of the density from which
+// the next step follows.  A particle whose step is far too long for them ends it.
+
 void BlockImpulses::note_external_forces()
 {
   double *external[3];
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
   for (const int i : state.fluid->active_particles())
     for (int d = 0; d < 3; d++) external[d][i] = atom->f[i][d] - total[3 * i + d];
+  if (!state.clock.uniform) note_rates();
+}
+
+void BlockImpulses::note_rates()
+{
+  const double *external[3];
+  for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
+  double *accel_sq = state.columns[Columns::ACCEL_SQ], *rate = state.columns[Columns::DENSITY_RATE];
+  pushed.clear();
+  for (const int i : state.fluid->active_particles()) {
+    double f_sq = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double f = forces[3 * i + d] + external[d][i];
+      f_sq += f * f;
+    }
+    const double per_force = limits.acceleration(i, 1.0), a_sq = per_force * per_force * f_sq;
+    // the step goes with its fourth root
+    constexpr double TOO_MUCH = TOO_LONG * TOO_LONG * TOO_LONG * TOO_LONG;
+    const bool faster = a_sq > TOO_MUCH * accel_sq[i];
+    const bool compressed = std::fabs(atom->drho[i]) > TOO_LONG * std::fabs(rate[i]);
+    accel_sq[i] = a_sq;
+    rate[i] = atom->drho[i];
+    if ((faster || compressed) && state.columns.bin(i) < state.clock.deepest) pushed.push_back(i);
+  }
+  if (state.options.waking) wake_pushed();
+}
+
+void BlockImpulses::wake_pushed()
+{
+  const ParticleLimits::Rates rates{nullptr, state.columns[Columns::ACCEL_SQ],
+                                    state.columns[Columns::DENSITY_RATE]};
+  limits.for_particles(pushed, rates, [&](int i, const StepLimit &limit) {
+    const double step = state.clock.line.step(state.columns.bin(i));
+    if (step > TOO_LONG * limit.dt && !state.is_asleep(i)) sleeping.wake(i);
+  });
+}
+
+const Impulses *BlockImpulses::begin()
+{
+  found = state.clock.chosen && !state.clock.uniform;
+  if (!found) return nullptr;
+  find_spans();
+  impulses = state.impulses(state.giving, true);
+  return &impulses;
+}
+
+// For how long does the energy of each particle act?  What an impulse before gave too much is taken
+// back, but friction does not run backwards.
+
+void BlockImpulses::find_spans()
+{
+  if (sleeping.enabled()) state.find_sleeping();
+  state.select_giving();
+  state.begin_giving();
+  const double *p_over_rho2 = state.fluid->p_over_rho2_of_all();
+  const BlockColumns &columns = state.columns;
+  for (const int i : state.giving) {
+    const double half = state.half_step(i), ahead = columns[Columns::AHEAD][i];
+    state.span[i] = std::max(0.0, half - ahead);
+    state.impulse[i] = ahead > 0.0 ? half * p_over_rho2[i] - columns[Columns::TAKEN_BACK][i]
+                                   : state.span[i] * p_over_rho2[i];
+  }
 }
 
 void BlockImpulses::apply()
 {
-  if (state.clock.uniform)
-    apply_uniform();
-  else
-    apply_by_bin();
+  if (state.clock.uniform) return apply_uniform();
+  forces.resize(3 * static_cast<std::size_t>(atom->nmax), 0.0);
+  copy_forces(forces);
+  apply_by_bin();
 }
 
 // All particles take the same step: forces are impulses, but for a step that differs from the last.
@@ -70,128 +140,91 @@ void BlockImpulses::apply_uniform()
   state.fluid->prolong_walls(times);
 }
 
-// A particle whose neighbors all take its step, and took the same before, has the force itself for
-// all of its time.  For others it is summed anew, pair by pair.
-
 void BlockImpulses::apply_by_bin()
 {
-  find_spans();
-  state.forward_impulses();
-  if (state.clock.all_synchronized()) state.fluid->order().measure_block_ranges(state.key.data());
+  if (!found) {
+    find_spans();
+    state.fluid->find_pair_forces(pair_forces);
+    state.fluid->give_impulses(state.impulses(state.giving, false));
+  }
+  for (const int i : state.giving) push_walls(i);
+  state.refresh_inactive();
   state.clear_ghost_marks();
   state.marked.clear();
-  slots.clear();
-  for (const int i : state.fluid->active_particles()) {
-    if (state.is_asleep(i))    // since now
-      std::fill_n(atom->f[i], 3, 0.0);
-    else if (neighbors_share_step(i))
-      add_pair_force(i, state.span[i] - 1.0);
-    else {
-      add_pair_force(i, -1.0);
-      slots.push_back(state.fluid->order().slot(i));
-    }
-  }
+  for (const int i : state.giving) mark_beside(i);
   if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
-  state.reverse_marks();
+  state.reverse_given();
+  hand_out();
   wake_marked();
-  state.fluid->give_impulses(slots, state.impulse.data(), state.span.data());
 }
 
-// For how long does the energy of each particle act?  What an impulse before gave too much is taken
-// back, but friction does not run backwards.
+// for the time beyond one smallest step
 
-void BlockImpulses::find_spans()
+void BlockImpulses::push_walls(int i)
 {
   const double smallest = state.clock.smallest_ticks();
-  const double *p_over_rho2 = state.fluid->p_over_rho2_of_all();
-  const BlockColumns &columns = state.columns;
-  state.select_impelled();
-  for (const int i : state.fluid->active_particles()) {
-    if (state.is_asleep(i)) {
-      state.set_inactive(i);
-      continue;
-    }
-    const double half = state.half_step(i), ahead = columns[Columns::AHEAD][i];
-    state.span[i] = std::max(0.0, half - ahead) / smallest;
-    state.impulse[i] = ahead > 0.0
-        ? (half * p_over_rho2[i] - columns[Columns::TAKEN_BACK][i]) / smallest
-        : state.span[i] * p_over_rho2[i];
-    state.key[i] = StepKey::of(columns.bin(i), static_cast<int>(columns[Columns::BIN_BEFORE][i]));
-  }
-}
-
-// adds `times` the force of other particles, and walls for the time beyond one smallest step
-
-void BlockImpulses::add_pair_force(int i, double times)
-{
-  if (times != 0.0)
-    for (int d = 0; d < 3; d++) atom->f[i][d] += times * pair_forces[3 * i + d];
+  const double span = state.span[i] / smallest, impulse = state.impulse[i] / smallest;
   const double p_over_rho2 = state.fluid->p_over_rho2_of_all()[i];
-  if (state.span[i] != 1.0 || state.impulse[i] != p_over_rho2)
-    state.fluid->push_walls_more(i, state.impulse[i] - p_over_rho2, state.span[i] - 1.0);
+  if (span != 1.0 || impulse != p_over_rho2)
+    state.fluid->push_walls_more(i, impulse - p_over_rho2, span - 1.0);
 }
 
-// Do the particle and its neighbors have impulses for the same time?  Neighbors that have none are
-// marked, since they feel one.
+// Impulses take the place of the forces between particles.
 
-bool BlockImpulses::neighbors_share_step(int i)
+void BlockImpulses::hand_out()
 {
+  const double per_step = 1.0 / state.clock.smallest_ticks();
+  for (const int i : state.fluid->active_particles()) {
+    const bool falls_asleep = state.is_asleep(i);
+    for (int d = 0; d < 3; d++)
+      atom->f[i][d] = falls_asleep ? 0.0 : atom->f[i][d] - pair_forces[3 * i + d];
+  }
+  state.for_touched([&](int i) {
+    for (int d = 0; d < 3; d++) atom->f[i][d] += per_step * state.given_to(i)[d];
+  });
+  state.end_giving();
+}
+
+// Neighbors that sleep, and those whose steps are too long for the particle's: where all particles
+// are synchronized no other one is inactive.
+
+void BlockImpulses::mark_beside(int i)
+{
+  if (!state.options.waking) return;
+  const int allowed = state.columns.bin(i) - state.options.max_bin_difference();
+  const bool any_inactive = !state.clock.all_synchronized() && allowed > 0;
+  if (!any_inactive && !sleeping.enabled()) return;
+  const int finest_allowed = any_inactive ? allowed : 0;
   DualLists &lists = state.fluid->order();
-  const int slot = lists.slot(i), key_i = state.key[i];
-  bool share = StepKey::before(key_i) != StepKey::BROKEN;
-  for (const int t : lists.present_types()) {
-    const NeighborSpan others =
-        lists.others(key_i, slot, t, state.key.data(), state.clock.all_synchronized());
-    if (others.n > 0) share = examine(i, t, others) && share;
-  }
-  return share;
+  const int slot = lists.slot(i);
+  for (const int t : lists.present_types())
+    if (state.fluid->is_fluid(t) &&
+        lists.any_below(finest_allowed, slot, t, state.bin.data(), state.ranges_known))
+      mark_slow(i, t, finest_allowed);
 }
 
-// Neighbors of one type that have another key.  Where all particles are synchronized no particle is
-// inactive.
-
-bool BlockImpulses::examine(int i, int type, const NeighborSpan &others)
+void BlockImpulses::mark_slow(int i, int type, int finest_allowed)
 {
-  const std::vector<int> &key = state.key;
-  if (state.clock.all_synchronized() && !sleeping.enabled() && state.fluid->is_fluid(type))
-    return false;
-  const int allowed = state.options.max_bin_difference();
-  bool share = true;
-  for (int k = 0; k < others.n; k++) {
-    const int j = others.of[k];
-    if (key[j] == StepKey::BOUNDARY) {
-      state.mark_atom(j, BlockState::FEELS_IMPULSE);
-      continue;
-    }
-    if (StepKey::before(key[j]) == StepKey::SLEEPING) {
-      disturb_sleeping(i, j);
-      continue;
-    }
-    share = false;
-    if (StepKey::before(key[j]) != StepKey::INACTIVE) continue;
-    const bool slow = StepKey::bin(key[i]) - StepKey::bin(key[j]) > allowed;
-    const bool wakes = state.options.waking && slow && state.fluid->inside_support(i, j);
-    state.mark_atom(j, BlockState::FEELS_IMPULSE | (wakes ? BlockState::WAKE : 0));
+  const NeighborSpan near = state.fluid->neighbors(i, type);
+  for (int k = 0; k < near.n; k++) {
+    const int j = near.of[k], bin = state.bin[j];
+    if (bin >= finest_allowed || !state.fluid->inside_support(i, j)) continue;
+    if (bin == Columns::ASLEEP)
+      state.mark_atom(j, sleeping.is_slow(i) ? BlockState::DISTURBED : BlockState::WAKE);
+    else if (bin < state.coarsest)
+      state.mark_atom(j, BlockState::WAKE);
   }
-  return share;
-}
-
-void BlockImpulses::disturb_sleeping(int i, int j)
-{
-  if (!state.options.waking || !state.fluid->inside_support(i, j)) return;
-  state.mark_atom(j, sleeping.is_slow(i) ? BlockState::FEELS_IMPULSE : BlockState::WAKE);
 }
 
 void BlockImpulses::wake_marked()
 {
   const double now = physical_time(update);
   for (const int i : state.marked) {
-    const bool asleep = StepKey::before(state.key[i]) == StepKey::SLEEPING;
-    if (!asleep) slots.push_back(state.fluid->order().slot(i));
+    const bool asleep = state.is_asleep(i);
     if (state.mark[i] & BlockState::WAKE || (asleep && sleeping.has_slept_long(i, now)))
       sleeping.wake(i);
     state.mark[i] = BlockState::NOT_MARKED;
   }
 }
 
-double BlockImpulses::bytes() const { return bytes_of(pair_forces, total, slots); }
+double BlockImpulses::bytes() const { return bytes_of(pair_forces, forces, total, pushed); }

@@ -42,7 +42,6 @@ double BlockState::half_step(int i) const
 void BlockState::add_particle(int i)
 {
   columns[Columns::BIN][i] = clock.deepest;
-  columns[Columns::BIN_BEFORE][i] = StepKey::FIRST;
   columns[Columns::EVENT][i] = Columns::NEW;
   columns[Columns::SLOW_SINCE][i] = physical_time(update);
   if (clock.chosen) begin_own_step(i);
@@ -51,14 +50,18 @@ void BlockState::add_particle(int i)
 // Its impulses reach to the middle of the step that begins; before its first step, to its begin
 // less a half, as if steps of the same length came before.
 
+double BlockState::ahead(int i) const
+{
+  if (is_new(i)) return -half_step(i);
+  return columns[Columns::REACH][i] - static_cast<double>(clock.line.now);
+}
+
 void BlockState::begin_own_step(int i)
 {
-  const double now = static_cast<double>(clock.line.now), half = half_step(i);
-  const bool is_new = columns[Columns::EVENT][i] == Columns::NEW;
-  const double ahead = is_new ? -half : columns[Columns::REACH][i] - now;
-  columns[Columns::AHEAD][i] = ahead;
-  columns[Columns::TAKEN_BACK][i] = columns[Columns::P_OVER_RHO2][i] * std::max(0.0, ahead);
-  columns[Columns::REACH][i] = now + half;
+  const double reaches = ahead(i);
+  columns[Columns::AHEAD][i] = reaches;
+  columns[Columns::TAKEN_BACK][i] = columns[Columns::P_OVER_RHO2][i] * std::max(0.0, reaches);
+  columns[Columns::REACH][i] = static_cast<double>(clock.line.now) + half_step(i);
   columns[Columns::EVENT][i] = Columns::NONE;
 }
 
@@ -69,9 +72,11 @@ void BlockState::begin_own_step(int i)
 void BlockState::make_room()
 {
   const std::size_t n = atom->nmax;
-  for (std::vector<int> *list : {&bin, &key, &mark}) list->resize(n, 0);
+  for (std::vector<int> *list : {&bin, &mark}) list->resize(n, 0);
   for (std::vector<double> *list : {&span, &impulse}) list->resize(n, 0.0);
+  given.resize(Impulses::STRIDE * n, 0.0);
   kicks.resize(3 * n, 0.0);
+  ranges_known = false;
   if (neighbor->ago == 0) inactive_known = false;
 }
 
@@ -80,36 +85,60 @@ void BlockState::refresh_inactive()
   if (inactive_known) return;
   inactive_known = true;
   boundaries.clear();
-  impelled.clear();
   for (int i = 0; i < atom->nlocal; i++) {
     mark[i] = NOT_MARKED;
     if (fluid->is_fluid(atom->type[i]))
       bin[i] = columns.bin(i);
     else
       boundaries.push_back(i);
-    set_inactive(i);
   }
 }
 
-void BlockState::select_impelled()
+void BlockState::select_giving()
 {
-  refresh_inactive();
-  for (const int i : impelled) set_inactive(i);
-  for (const int i : boundaries) set_inactive(i);
-  impelled = fluid->active_particles();
+  giving.clear();
+  for (const int i : fluid->active_particles())
+    if (asleep.empty() || !asleep[i]) giving.push_back(i);
 }
 
-// An inactive particle has no impulse, but the pressure of a boundary, or of a sleeping particle,
-// acts as long as its partner's.
-
-void BlockState::set_inactive(int i)
+void BlockState::begin_giving()
 {
-  const bool is_fluid = fluid->is_fluid(atom->type[i]), asleep = is_fluid && is_asleep(i);
-  span[i] = asleep ? -1.0 : 0.0;
-  impulse[i] = is_fluid && !asleep ? 0.0 : fluid->p_over_rho2_of_all()[i];
-  key[i] = asleep ? StepKey::of(0, StepKey::SLEEPING)
-      : is_fluid  ? StepKey::of(columns.bin(i), StepKey::INACTIVE)
-                  : StepKey::BOUNDARY;
+  const std::vector<int> *few = fluid->touched_particles();
+  all_touched = few == nullptr;
+  touched.clear();
+  touched_ghosts.clear();
+  if (all_touched) return;
+  is_touched.resize(atom->nmax, 0);
+  for (const int i : *few) touch(i);
+}
+
+// Ghosts get impulses from ghosts of theirs.
+
+void BlockState::touch(int i)
+{
+  if (is_touched[i]) return;
+  is_touched[i] = 1;
+  (i < atom->nlocal ? touched : touched_ghosts).push_back(i);
+}
+
+void BlockState::end_giving()
+{
+  if (all_touched) {
+    const std::size_t n = static_cast<std::size_t>(atom->nlocal) + atom->nghost;
+    std::fill_n(given.begin(), Impulses::STRIDE * n, 0.0);
+    return;
+  }
+  for (const std::vector<int> *list : {&touched, &touched_ghosts})
+    for (const int i : *list) {
+      std::fill_n(&given[Impulses::STRIDE * i], 3, 0.0);
+      is_touched[i] = 0;
+    }
+}
+
+Impulses BlockState::impulses(const std::vector<int> &of, bool with_forces)
+{
+  return {&of,          impulse.data(), span.data(), asleep.empty() ? nullptr : asleep.data(),
+          given.data(), with_forces};
 }
 
 void BlockState::mark_atom(int i, int how)
@@ -125,8 +154,8 @@ void BlockState::clear_ghost_marks()
 
 double BlockState::bytes() const
 {
-  return columns.bytes() + bytes_of(bin, key, mark, marked, boundaries, impelled) +
-      bytes_of(span, impulse, kicks);
+  return columns.bytes() + bytes_of(bin, mark, asleep, marked, boundaries, giving) +
+      bytes_of(touched, touched_ghosts, is_touched) + bytes_of(span, impulse, given, kicks);
 }
 
 /* ----------------------------------------------------------------------
@@ -139,10 +168,14 @@ void BlockState::forward_bins()
   comm->forward_comm(fix, 1);
 }
 
-void BlockState::forward_impulses()
+void BlockState::find_sleeping()
 {
-  stage = IMPULSES;
-  comm->forward_comm(fix, 3);
+  refresh_inactive();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (fluid->is_fluid(atom->type[i])) bin[i] = columns.bin(i);
+  forward_bins();
+  asleep.resize(atom->nmax);
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) asleep[i] = bin[i] == Columns::ASLEEP;
 }
 
 void BlockState::forward_kicks()
@@ -151,7 +184,7 @@ void BlockState::forward_kicks()
   comm->forward_comm(fix, 3);
 }
 
-void BlockState::reverse_marks() { comm->reverse_comm(fix, 1); }
+void BlockState::reverse_given() { comm->reverse_comm(fix, 4); }
 
 int BlockState::pack_forward(int n, const int *list, double *buf) const
 {
@@ -160,11 +193,6 @@ int BlockState::pack_forward(int n, const int *list, double *buf) const
     const int i = list[k];
     switch (stage) {
       case BINS: buf[m++] = bin[i]; break;
-      case IMPULSES:
-        buf[m++] = key[i];
-        buf[m++] = span[i];
-        buf[m++] = impulse[i];
-        break;
       case KICKS:
         for (int d = 0; d < 3; d++) buf[m++] = kicks[3 * i + d];
     }
@@ -176,11 +204,6 @@ void BlockState::unpack_forward(int n, int first, const double *buf)
 {
   for (int i = first; i < first + n; i++) switch (stage) {
       case BINS: bin[i] = static_cast<int>(*buf++); break;
-      case IMPULSES:
-        key[i] = static_cast<int>(*buf++);
-        span[i] = *buf++;
-        impulse[i] = *buf++;
-        break;
       case KICKS:    // kept, since a ghost may be the source of another
         for (int d = 0; d < 3; d++) atom->v[i][d] += kicks[3 * i + d] = *buf++;
     }
@@ -188,12 +211,21 @@ void BlockState::unpack_forward(int n, int first, const double *buf)
 
 int BlockState::pack_reverse(int n, int first, double *buf) const
 {
-  for (int k = 0; k < n; k++) buf[k] = mark[first + k];
-  return n;
+  int m = 0;
+  for (int i = first; i < first + n; i++) {
+    buf[m++] = mark[i];
+    for (int d = 0; d < 3; d++) buf[m++] = given_to(i)[d];
+  }
+  return m;
 }
 
 void BlockState::unpack_reverse(int n, const int *list, const double *buf)
 {
-  for (int k = 0; k < n; k++)
-    if (const int how = static_cast<int>(buf[k]); how != NOT_MARKED) mark_atom(list[k], how);
+  for (int k = 0; k < n; k++) {
+    const int i = list[k];
+    if (const int how = static_cast<int>(*buf++); how != NOT_MARKED) mark_atom(i, how);
+    const bool none = buf[0] == 0.0 && buf[1] == 0.0 && buf[2] == 0.0;
+    if (!none && !all_touched) touch(i);
+    for (int d = 0; d < 3; d++) given[Impulses::STRIDE * i + d] += *buf++;
+  }
 }

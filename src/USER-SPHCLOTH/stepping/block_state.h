@@ -7,12 +7,15 @@
 
 #include "pointers.h"
 
+#include "atom.h"
+#include "core/sph/fluid.h"
 #include "core/timestep/step_limits.h"
 #include "core/timestep/time_bins.h"
 #include "fix.h"
 #include "lammps_util/particle_columns.h"
 #include "stepping/step_options.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -48,7 +51,6 @@ class BlockColumns : public ParticleColumns {
  public:
   enum Column {
     BIN,             // time bin, or ASLEEP
-    BIN_BEFORE,      // of the step before, or one of the special values of StepKey
     REACH,           // time up to which its impulses act, in ticks
     P_OVER_RHO2,     // its pressure in the last of them
     AHEAD,           // how far the impulse before reached beyond now, in ticks
@@ -57,6 +59,8 @@ class BlockColumns : public ParticleColumns {
     BY = FORCE + 3,  // the limit of its step
     EVENT,           // why its step ends now
     SLOW_SINCE,      // when it was fast for the last time, or fell asleep
+    ACCEL_SQ,        // square of its acceleration, and rate of its density, in its last update
+    DENSITY_RATE,
     N_COLUMNS
   };
   static constexpr int ASLEEP = -1;
@@ -71,17 +75,6 @@ class BlockColumns : public ParticleColumns {
   bool is_asleep(int i) const { return (*this)[BIN][i] == ASLEEP; }
 };
 
-// Time bin, and that of the step before: fluid particles with the same key begin the same step and
-// have impulses for the same time.  No other particle has the key of one of these.
-
-struct StepKey {
-  static constexpr int N = 64, SLEEPING = 60, FIRST = 61, BROKEN = 62, INACTIVE = 63;
-  static constexpr int BOUNDARY = -1;
-  static int of(int bin, int before) { return N * bin + before; }
-  static int bin(int key) { return key / N; }
-  static int before(int key) { return key % N; }
-};
-
 class BlockState : protected Pointers {
  public:
   Fix *const fix;    // whose group is integrated, and which communicates
@@ -91,22 +84,32 @@ class BlockState : protected Pointers {
   BlockClock clock;
   int coarsest;    // time bin of the longest step that may begin now
 
-  // By atom, owned and ghost.  Of owned atoms that are not updated they stay as they are while the
-  // order of the atoms does.
-  std::vector<int> bin, key, mark;
-  std::vector<double> span, impulse;    // in smallest steps: time, and p/rho^2 times time
+  // By atom, owned and ghost.  Time bins of owned atoms that are not updated stay as they are while
+  // the order of the atoms does.
+  std::vector<int> bin, mark;
+  // are the ranges of bins of whole blocks of space known, before some of them were raised?
+  bool ranges_known = false;
+  std::vector<int> asleep;    // 1 or 0; with sleeping water only
+  std::vector<double> given;    // impulses by source, see Impulses, force times ticks
   std::vector<double> kicks;    // changes of velocities [n][3]
+  // owned active fluid that is not asleep; of it, by atom, in ticks: for how long it gives
+  // impulses, and p/rho^2 times time
+  std::vector<int> giving;
+  std::vector<double> span, impulse;
   std::vector<int> boundaries;    // owned
   std::vector<int> marked;    // owned
 
   // what active particles tell inactive ones, across ranks
-  enum Mark { NOT_MARKED = 0, FEELS_IMPULSE = 1, WAKE = 2 };
+  enum Mark { NOT_MARKED = 0, DISTURBED = 1, WAKE = 2 };
 
   BlockState(LAMMPS *, Fix *, const BlockOptions &);
 
   void init(FluidState *);
   bool is_asleep(int i) const { return columns.is_asleep(i); }
   double half_step(int i) const;    // in ticks
+  bool is_new(int i) const { return columns[BlockColumns::EVENT][i] == BlockColumns::NEW; }
+  // how far the last impulse reaches beyond now, in ticks, for the step that begins
+  double ahead(int i) const;
 
   // enters time bins with the smallest step, until it chooses its own
   void add_particle(int i);
@@ -116,16 +119,27 @@ class BlockState : protected Pointers {
   void forget_inactive() { inactive_known = false; }
   // arrays of atoms that are not updated, if they are not known any more
   void refresh_inactive();
-  // active particles are to be given impulses, and no others
-  void select_impelled();
-  void set_inactive(int i);
+  void select_giving();
+  // Between these two `given` counts; else it is 0.  act(i) for owned atoms that may have got some
+  void begin_giving();
+  template <class Act> void for_touched(Act act) const
+  {
+    if (all_touched)
+      for (int i = 0; i < atom->nlocal; i++) act(i);
+    else
+      for (const int i : touched) act(i);
+  }
+  void end_giving();
+  // the impulses of those that give
+  sphcloth::Impulses impulses(const std::vector<int> &of, bool with_forces);
+  const double *given_to(int i) const { return &given[sphcloth::Impulses::STRIDE * i]; }
   void mark_atom(int i, int how);
   void clear_ghost_marks();
 
   void forward_bins();
-  void forward_impulses();
+  void find_sleeping();    // of all atoms, from the bins of owned ones
   void forward_kicks();    // adds them to the velocities of ghosts
-  void reverse_marks();
+  void reverse_given();    // and marks
   int pack_forward(int n, const int *list, double *buf) const;
   void unpack_forward(int n, int first, const double *buf);
   int pack_reverse(int n, int first, double *buf) const;
@@ -133,11 +147,15 @@ class BlockState : protected Pointers {
   double bytes() const;
 
  private:
-  enum Stage { BINS, IMPULSES, KICKS };
+  enum Stage { BINS, KICKS };
 
   Stage stage;
   bool inactive_known;
-  std::vector<int> impelled;    // owned, in the last evaluation
+  bool all_touched = true;
+  std::vector<int> touched, touched_ghosts;    // otherwise
+  std::vector<std::uint8_t> is_touched;
+
+  void touch(int i);
 };
 
 }    // namespace LAMMPS_NS

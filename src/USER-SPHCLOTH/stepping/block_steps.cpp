@@ -20,7 +20,7 @@ using Columns = BlockColumns;
 
 BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClock &clock) :
     Stepper(lmp_, parts_), state(lmp_, parts.fix, parts.options.block), bins(lmp_, parts, state),
-    sleeping(lmp_, state, parts.limits), impulses(lmp_, state, sleeping),
+    sleeping(lmp_, state, parts.limits), impulses(lmp_, state, sleeping, parts.limits),
     half_kick(lmp_, state, parts.limits)
 {
   state.clock = clock;
@@ -92,19 +92,29 @@ void BlockSteps::select_active()
   tell_active(state.coarsest == 0 && n_active == n && !sleeping.enabled());
 }
 
-void BlockSteps::note_pair_forces()
+// Unequal steps are chosen before forces are known, so that each particle gives its impulses in the
+// pass that finds its force; equal ones after that.
+
+const Impulses *BlockSteps::begin_impulses()
 {
   state.make_room();
-  impulses.note_pair_forces();
+  if (state.clock.begun() && !state.clock.uniform) choose_bins();
+  return impulses.begin();
 }
 
-void BlockSteps::apply_impulses()
+void BlockSteps::choose_bins()
 {
   if (!state.clock.chosen) {
     bins.choose();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;
-  }
+  } else if (!state.clock.uniform)
+    state.forward_bins();
+}
+
+void BlockSteps::apply_impulses()
+{
+  if (!state.clock.chosen) choose_bins();
   impulses.apply();
   half_kick.apply_deferred_impulses();
   impulses.note_total();

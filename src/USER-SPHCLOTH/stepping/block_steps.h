@@ -46,7 +46,8 @@ class BlockSteps : public Stepper, public StepHooks {
   // what the pair style calls
   void find_intervals(std::vector<double> &of_type) const override;
   bool correct_velocities() override { return half_kick.correct_velocities(); }
-  void note_pair_forces() override;
+  const sphcloth::Impulses *begin_impulses() override;
+  void note_pair_forces() override { impulses.note_pair_forces(); }
   void apply_impulses() override;
 
   // ghosts
@@ -64,6 +65,7 @@ class BlockSteps : public Stepper, public StepHooks {
   HalfKick half_kick;
 
   void advance_clock();
+  void choose_bins();
   void select_active();
 };
 

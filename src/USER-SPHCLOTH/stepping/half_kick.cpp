@@ -4,7 +4,6 @@
 #include "stepping/half_kick.h"
 
 #include "atom.h"
-#include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
 #include "fluid/fluid_state.h"
 
@@ -20,15 +19,18 @@ bool HalfKick::correct_velocities()
   const BlockClock &clock = state.clock;
   if (clock.chosen || !clock.reaches_output || !clock.line.ended() || clock.uniform) return false;
   state.make_room();
+  state.refresh_inactive();
+  if (state.options.sleep > 0.0) state.find_sleeping();
+  state.select_giving();
+  state.begin_giving();
   find_spans();
-  state.forward_impulses();
   const std::size_t n = 3 * static_cast<std::size_t>(atom->nlocal);
   forces.resize(n);
   if (n > 0) {
     std::copy_n(atom->f[0], n, forces.begin());
     std::fill_n(atom->f[0], n, 0.0);
   }
-  sum_impulses();
+  give_impulses();
   kick();
   if (n > 0) std::copy_n(forces.begin(), n, atom->f[0]);
   state.forward_kicks();
@@ -39,31 +41,36 @@ bool HalfKick::correct_velocities()
 
 void HalfKick::find_spans()
 {
-  const double smallest = state.clock.smallest_ticks();
-  const double until = static_cast<double>(state.clock.line.now) - 0.5 * smallest;
+  const double until =
+      static_cast<double>(state.clock.line.now) - 0.5 * state.clock.smallest_ticks();
   double *reach = state.columns[Columns::REACH];
-  state.select_impelled();
-  for (const int i : state.fluid->active_particles()) {
+  for (const int i : state.giving) {
     const bool integrated = atom->mask[i] & state.fix->groupbit;
-    const bool is_new = state.columns[Columns::EVENT][i] == Columns::NEW;
-    const double behind = integrated && !is_new ? until - reach[i] : 0.0;
-    state.span[i] = std::max(0.0, behind) / smallest;
+    const double behind = integrated && !state.is_new(i) ? until - reach[i] : 0.0;
+    state.span[i] = std::max(0.0, behind);
     state.impulse[i] = state.span[i] * state.fluid->p_over_rho2_of_all()[i];
     if (behind > 0.0) reach[i] = until;
   }
 }
 
-void HalfKick::sum_impulses()
+// as forces for one smallest step
+
+void HalfKick::give_impulses()
 {
-  FluidState *fluid = state.fluid;
-  slots.clear();
-  for (const int i : fluid->active_particles()) {
-    if (state.span[i] > 0.0) fluid->push_walls_more(i, state.impulse[i], state.span[i]);
-    slots.push_back(fluid->order().slot(i));
+  const double per_step = 1.0 / state.clock.smallest_ticks();
+  late.clear();
+  for (const int i : state.giving) {
+    if (!(state.span[i] > 0.0)) continue;
+    late.push_back(i);
+    state.fluid->push_walls_more(i, per_step * state.impulse[i], per_step * state.span[i]);
   }
-  for (const int i : state.boundaries)
-    if (fluid->is_boundary(atom->type[i])) slots.push_back(fluid->order().slot(i));
-  fluid->give_impulses(slots, state.impulse.data(), state.span.data());
+  state.fluid->give_impulses(state.impulses(late, false));
+  state.clear_ghost_marks();
+  state.reverse_given();
+  state.for_touched([&](int i) {
+    for (int d = 0; d < 3; d++) atom->f[i][d] += per_step * state.given_to(i)[d];
+  });
+  state.end_giving();
 }
 
 void HalfKick::kick()
@@ -96,4 +103,4 @@ void HalfKick::apply_deferred_impulses()
     for (int d = 0; d < 3; d++) atom->f[i][d] += state.columns.deferred_impulse(d)[i] / step;
 }
 
-double HalfKick::bytes() const { return bytes_of(forces) + bytes_of(slots); }
+double HalfKick::bytes() const { return bytes_of(forces) + bytes_of(late); }

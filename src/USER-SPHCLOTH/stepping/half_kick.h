@@ -32,10 +32,10 @@ class HalfKick : protected Pointers {
   BlockState &state;
   const ParticleLimits &limits;
   std::vector<double> forces;    // [n][3]
-  std::vector<int> slots;
+  std::vector<int> late;    // owned, whose impulses end before those of others
 
   void find_spans();
-  void sum_impulses();
+  void give_impulses();
   void kick();
 };
 

@@ -93,7 +93,7 @@ StepLimit IndividualSteps::tightest_limit()
     else
       take(i, {row[UpdateRows::OWN_STEP], limit_of(kept[IndividualColumns::LIMITED_BY][i])});
   }
-  parts.limits.for_particles(updated, nullptr, [&](int i, const StepLimit &limit) {
+  parts.limits.for_particles(updated, {}, [&](int i, const StepLimit &limit) {
     keep(i, limit, now);
     take(i, limit);
   });

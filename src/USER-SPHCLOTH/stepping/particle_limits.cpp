@@ -102,18 +102,10 @@ double ParticleLimits::acceleration(int i, double by_force) const
    fluid particles
 ------------------------------------------------------------------------- */
 
-void ParticleLimits::find(const int *particles, int n, const double *const *external,
-                          StepLimits &limits) const
+void ParticleLimits::find(const int *particles, int n, const Rates &rates, StepLimits &limits) const
 {
   StepStates states;
-  for (int k = 0; k < n; k++) {
-    const int i = particles[k];
-    double f[3];
-    std::copy_n(atom->f[i], 3, f);
-    if (external)
-      for (int d = 0; d < 3; d++) f[d] += external[d][i];
-    states.set(k, particle_state(i, f));
-  }
+  for (int k = 0; k < n; k++) states.set(k, particle_state(particles[k], rates));
   particle_limits(lambda, states, n, limits);
 }
 
@@ -138,10 +130,16 @@ static double beyond_rest(double rate, double free, double tolerated)
   return rate > 0.0 ? rate * tolerated / (tolerated + free) : 0.0;
 }
 
-inline StepState ParticleLimits::particle_state(int i, const double *f) const
+inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
 {
   StepState s{};
+  double f[3];
+  std::copy_n(atom->f[i], 3, f);
+  if (rates.external)
+    for (int d = 0; d < 3; d++) f[d] += rates.external[d][i];
   set_motion(i, f, s);
+  if (rates.accel_sq) s.accel_sq = rates.accel_sq[i];
+  s.drho = rates.density ? rates.density[i] : atom->drho[i];
   const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
   double by_sound = 0.0;    // the step under pressure
@@ -155,8 +153,7 @@ inline StepState ParticleLimits::particle_state(int i, const double *f) const
   if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
   const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
   if (in_flight && by_sound > 0.0 && s.of_vertices_sq == 0.0)
-    s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, by_sound);
-  s.drho = atom->drho[i];
+    s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.drho, by_sound);
   // what is thinner than at rest may change until it is pressed, but individual steps interpolate
   if (in_flight && !interpolates_density)
     s.drho = beyond_rest(s.drho, type.eos.rho0 - s.rho, lambda.density * s.rho);
@@ -184,7 +181,8 @@ StepLimit ParticleLimits::stable_limit(int i) const
   StepState s{};
   const double by_sound = set_frequencies(i, s);
   if (fluid->p_over_rho2_of_all()[i] == 0.0 && s.of_vertices_sq == 0.0)
-    s.until_pressed = until_pressed(i, types[atom->type[i]].eos.rho0 - atom->rho[i], by_sound) /
+    s.until_pressed =
+        until_pressed(i, types[atom->type[i]].eos.rho0 - atom->rho[i], atom->drho[i], by_sound) /
         StabilityWatch::LONGEST_WAIT;
   return particle_limit(alone, s);
 }
@@ -193,12 +191,12 @@ StepLimit ParticleLimits::stable_limit(int i) const
 // density grows ever faster, by p/h_s^2.  Neighbors are not asked either where the particle's own
 // sound, or the ceiling, allows less.
 
-double ParticleLimits::until_pressed(int i, double gap, double by_sound) const
+double ParticleLimits::until_pressed(int i, double gap, double density_rate, double by_sound) const
 {
-  const double alone = time_to_cross(gap, atom->drho[i], 0.0);
+  const double alone = time_to_cross(gap, density_rate, 0.0);
   if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
   const double ratio = atom->rho[i] / (0.5 * types[atom->type[i]].support);
-  return time_to_cross(gap, atom->drho[i], fluid->p_over_rho2_beside(i) * ratio * ratio);
+  return time_to_cross(gap, density_rate, fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 
 /* ----------------------------------------------------------------------

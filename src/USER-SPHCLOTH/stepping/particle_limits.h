@@ -38,17 +38,22 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   // press on them.  Where a step is no longer than that of these neighbors they need not be asked.
   void ask_neighbors(bool whether) { asks_neighbors = whether; }
 
-  // of fluid particles: take(i, limit).  external: three columns of forces beside atom->f, or null.
+  // What limits follow from: forces beside atom->f, three columns or null, and atom->drho; or,
+  // where forces are not known, acceleration, squared, and rate of the density of another update.
+  struct Rates {
+    const double *const *external = nullptr;
+    const double *accel_sq = nullptr, *density = nullptr;
+  };
+  // of fluid particles: take(i, limit)
   template <class Take>
-  void for_particles(const std::vector<int> &particles, const double *const *external,
-                     Take take) const
+  void for_particles(const std::vector<int> &particles, const Rates &rates, Take take) const
   {
     sphcloth::StepLimits limits;
     const int n = static_cast<int>(particles.size());
     for (int from = 0; from < n; from += sphcloth::StepStates::MAX) {
       const int *some = particles.data() + from;
       const int m = std::min(n - from, sphcloth::StepStates::MAX);
-      find(some, m, external, limits);
+      find(some, m, rates, limits);
       for (int k = 0; k < m; k++) take(some[k], limits[k]);
     }
   }
@@ -103,15 +108,14 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   bool interpolates_density = false;
   sphcloth::StepCoefficients lambda;    // of for_particles() and of vertices
 
-  void find(const int *particles, int n, const double *const *external,
-            sphcloth::StepLimits &) const;
+  void find(const int *particles, int n, const Rates &, sphcloth::StepLimits &) const;
   sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
   double set_motion(int i, const double *force, sphcloth::StepState &) const;
-  sphcloth::StepState particle_state(int i, const double *force) const;
+  sphcloth::StepState particle_state(int i, const Rates &) const;
   sphcloth::StepState vertex_state(int i) const;
   double scaled_acceleration(int i, double unscaled) const;
   double set_frequencies(int i, sphcloth::StepState &) const;
-  double until_pressed(int i, double gap, double by_sound) const;
+  double until_pressed(int i, double gap, double density_rate, double by_sound) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -93,7 +93,7 @@ void SleepingWater::mark_beside_moving_boundaries()
   for (const int i : state.boundaries)
     if (!is_slow(i))
       for_neighbors(i, [&](int j) {
-        if (StepKey::before(state.key[j]) == StepKey::SLEEPING && state.fluid->inside_support(i, j))
+        if (state.asleep[j] && state.fluid->inside_support(i, j))
           state.mark_atom(j, BlockState::WAKE);
       });
 }

@@ -71,7 +71,7 @@ StepLimit UniformSteps::tightest_limit()
     if (limit.dt < tightest.dt) limited = atom->tag[i];
     tightest.tighten(limit.dt, limit.by);
   };
-  parts.limits.for_particles(integrated, nullptr, [&](int i, const StepLimit &others) {
+  parts.limits.for_particles(integrated, {}, [&](int i, const StepLimit &others) {
     double *row = parts.rows[i];
     StepLimit limit = others;
     if (const double stable = row[UpdateRows::STABLE_STEP]; stable > 0.0)

@@ -30,12 +30,8 @@ class BlockMinMax {
 
   // the maximum of a type in a block and around; the smallest int where there is none
   int greatest(int b, int t) const { return ranges.around[blocks.row(b, t)].max; }
-  // have all of that type the same?
-  bool all_have(int same, int b, int t) const
-  {
-    const Range &range = ranges.around[blocks.row(b, t)];
-    return range.min >= same && range.max <= same;
-  }
+  // the minimum; the largest int where there is none
+  int smallest(int b, int t) const { return ranges.around[blocks.row(b, t)].min; }
 
   double bytes() const { return ranges.bytes(); }
 

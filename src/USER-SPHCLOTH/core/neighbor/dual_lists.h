@@ -119,9 +119,9 @@ class DualLists {
       if (of_block[other - 1].approach > inner_until[of(slot, other)]) prune(slot, t, other);
   }
 
-  // Of a value of each particle: is that of a neighbor of one type above a limit?  Whose is
-  // another? Ranges of the value may be measured for whole blocks of space before; `ranges_known`
-  // says that those are of this value.
+  // Of a value of each particle: is that of a neighbor of one type above a limit, or below one?
+  // Ranges of the value may be measured for whole blocks of space before; `ranges_known` says that
+  // those are of this value.
   void measure_block_ranges(const int *value) { ranges.take(value); }
   bool any_above(int limit_of_value, int slot, int other, const int *value, bool ranges_known)
   {
@@ -131,17 +131,13 @@ class DualLists {
     refresh(slot);
     return greatest((*this)(slot, other), value) > limit_of_value;
   }
-  // valid until the next call
-  NeighborSpan others(int same, int slot, int other, const int *value, bool ranges_known = false)
+  bool any_below(int limit_of_value, int slot, int other, const int *value, bool ranges_known)
   {
     const int column = number[other];
-    if (column == 0) return {nullptr, 0};
-    if (ranges_known && ranges.all_have(same, block[slot], column)) return {nullptr, 0};
+    if (column == 0) return false;
+    if (ranges_known && ranges.smallest(block[slot], column) >= limit_of_value) return false;
     refresh(slot);
-    const NeighborSpan near = (*this)(slot, other);
-    const int n = pick_others(value, same, near.of, near.n, spare.data());
-    if (n > 0) std::fill_n(spare.data() + n, LANES, spare[0]);    // what fills up a group is read
-    return {spare.data(), n};
+    return smallest((*this)(slot, other), value) < limit_of_value;
   }
 
   // owned particles by type and in space, see CellLists
@@ -412,12 +408,20 @@ class DualLists {
                                          static_cast<float>(near * near), spare.data());
   }
 
-  int greatest(const NeighborSpan &near, const int *value) const
+  static int greatest(const NeighborSpan &near, const int *value)
   {
     const int *of = near.of;
     int max_value = std::numeric_limits<int>::min();
     for (int k = 0; k < near.n; k++) max_value = std::max(max_value, value[of[k]]);
     return max_value;
+  }
+
+  static int smallest(const NeighborSpan &near, const int *value)
+  {
+    const int *of = near.of;
+    int min_value = std::numeric_limits<int>::max();
+    for (int k = 0; k < near.n; k++) min_value = std::min(min_value, value[of[k]]);
+    return min_value;
   }
 
   int type_of(int slot) const

@@ -38,6 +38,30 @@ bool Fluid::select(const Particles &p)
   return true;
 }
 
+void Fluid::find_read(const Particles &p)
+{
+  // reading them one by one costs more than all of them in their order
+  constexpr std::size_t MANY = 12;
+  few_read = MANY * selection.slots.size() < static_cast<std::size_t>(p.n_owned);
+  if (!few_read) return;
+  for (const int i : read_particles) is_read[i] = 0;
+  read_particles.clear();
+  is_read.resize(p.n_all);
+  const auto add = [this](int i) {
+    if (is_read[i]) return;
+    is_read[i] = 1;
+    read_particles.push_back(i);
+  };
+  for (const int slot : selection.slots) {
+    add(lists.at(slot));
+    lists.refresh(slot);
+    for (const int t : lists.present_types()) {
+      const NeighborSpan near = lists(slot, t);    // with what fills up its last group
+      for (int k = 0; k < whole_groups(near.n); k++) add(near.of[k]);
+    }
+  }
+}
+
 int Fluid::count_inside(const Particles &p, int owned, int type, int max)
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;

@@ -90,6 +90,21 @@ struct Particles {
   bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
 };
 
+// Impulses by source, of fluid particles that take steps of their own: of the terms of a pair each
+// partner gives that of its own pressure, and half of the friction, to both, with opposite signs.
+// What both get is one number in double precision: momentum is exact.  A neighbor that is asleep
+// gets nothing; its pressure, and the whole friction, act for the time of its partner.
+
+struct Impulses {
+  static constexpr int STRIDE = 4;
+  const std::vector<int> *of;    // owned active fluid
+  const double *pressure_time;    // p/rho^2 times the time for which it acts
+  const double *span;    // that time
+  const int *sleeping;    // of all particles, 1: it is asleep; null: none is
+  double *given;    // added to, [n_all][STRIDE], force times time
+  bool with_forces;    // beside them the forces on these particles, as of Fluid::forces()
+};
+
 // what the neighbors do to one particle, per mass of fluid or per volume of a boundary
 
 struct Acceleration {
@@ -137,8 +152,8 @@ class Fluid {
         for (const int slot : selection.of(t)) act(lists.at(slot), t);
   }
 
-  // Records the positions of all particles.  Mixed precision counts them from the corner lo -
-  // margin in parts of the box lengths, so that periodic images are exact.
+  // Records the positions of all particles that are read.  Mixed precision counts from the corner
+  // lo - margin in parts of the box lengths, so that periodic images are exact.
   struct Box {
     double lo[3], length[3], margin;
   };
@@ -165,19 +180,16 @@ class Fluid {
   // of the boundary particles of a type: the mean of the fluid around each, weighted with W
   virtual void boundary_pressures(const Particles &, int type, double *p_over_rho2) = 0;
 
-  // Records density, volume, velocity and pressure of all particles.
+  // Records density, volume, velocity and pressure of all that are read.
   virtual void record(const Particles &) = 0;
 
   // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
   virtual void forces(const Particles &, Target) = 0;
 
-  // Impulses of particles that take steps of their own, given to both partners of a pair: instead
-  // of its pressure, every particle has it times the time for which it acts, and `span` is that
-  // time, which friction takes as the mean of two.  Those with a span below 0 are asleep: they have
-  // their plain pressure, and the partner's time counts.  For all, owned and ghost.
-  virtual void record_impulses(const Particles &, const double *pressure_time,
-                               const double *span) = 0;
-  virtual void impulses(const Particles &, const std::vector<int> &slots) = 0;
+  // What active fluid particles give to their neighbors, and to themselves
+  virtual void impulses(const Particles &, const Impulses &) = 0;
+  // these and their neighbors; null: nearly all
+  const std::vector<int> *touched() const { return read(); }
 
   // For the limit of stability, of every active fluid particle, also without pressure.  Vertices
   // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
@@ -218,9 +230,19 @@ class Fluid {
     return {p.x, p.type, p.n_owned, p.n_all, model.n_types, p.sides, p.layers};
   }
 
+  // The particles that the loops over the selection read: null if they are most, which are then
+  // read in the order in which they lie
+  const std::vector<int> *read() const { return few_read ? &read_particles : nullptr; }
+  void find_read(const Particles &);
+
   DualLists lists;
   Selection selection;
   bool all_selected = false;    // is selected, of these lists
+
+ private:
+  std::vector<int> read_particles;
+  std::vector<std::uint8_t> is_read;    // of all, 1: it stands in read_particles
+  bool few_read = false;
 };
 
 }    // namespace sphcloth

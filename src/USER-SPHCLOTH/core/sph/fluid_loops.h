@@ -30,11 +30,12 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   void record_positions(const Particles &p, const Box &box) override
   {
+    find_read(p);
     double inv_support = 0.0;    // of the widest pair
     for (const PairTerms &t : model.terms)
       if (t.kernel.inv_support > 0.0 && !(inv_support > 0.0 && inv_support < t.kernel.inv_support))
         inv_support = t.kernel.inv_support;
-    records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0);
+    records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0, read());
     f_unit = std::pow(records.unit, -(model.dimension + 1));
   }
   void volumes(const Particles &, int type, double *volume) override { sum_volumes(type, volume); }
@@ -48,11 +49,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
   void record(const Particles &p) override
   {
-    records.record(p, model.role.data(), model.pressure_scale.data());
+    records.record(p, model.role.data(), model.pressure_scale.data(), read());
   }
   void forces(const Particles &, Target) override;
-  void record_impulses(const Particles &, const double *pressure_time, const double *span) override;
-  void impulses(const Particles &, const std::vector<int> &slots) override;
+  void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
   void stiffness(const Particles &p, Stiffness *of) override { all_stiffness(p, of); }
   void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
@@ -64,15 +64,23 @@ template <class K, class P> class FluidLoops : public Fluid {
                     VertexPairs &) override;
   double bytes() const override
   {
-    return lists.bytes() + records.bytes() + bytes_of(selection.slots, acts);
+    return lists.bytes() + records.bytes() + bytes_of(selection.slots);
   }
 
  private:
-  template <Outputs OUTPUTS, bool VIRIAL> struct Sums;    // of forces, force_loops.h
+  // of forces, force_loops.h
+  template <Outputs OUTPUTS, bool VIRIAL, bool SOURCE> struct Sums;
   struct DifferenceSums;    // rate_loops.h
   struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;
+  };
+  struct Gift {    // of Impulses, what one particle gives
+    Real pressure = 0, span = 0;
+    double scale = 0.0;    // of a force, from the loops' acceleration
+    const int *sleeping = nullptr;
+    double *given = nullptr;
+    double *to(int i) const { return given + Impulses::STRIDE * static_cast<std::size_t>(i); }
   };
 
   Records records;
@@ -80,7 +88,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   std::vector<Terms> terms;    // as the model's, for this evaluation
   AlignedVector<double> equal_mass;    // [n_types + 1][LANES]
   AlignedVector<double> unequal_mass;    // of the neighbors of one particle
-  std::vector<int> acts;    // 1: has an impulse of its own, or a pressure
 
   bool is_fluid(int t) const { return model.role[t] == Role::FLUID; }
   Terms in_loops(const PairTerms &t) const { return {t, records.quantum[0], records.unit, f_unit}; }
@@ -115,13 +122,36 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Friction F, Outputs OUTPUTS, bool VIRIAL>
   void all_forces(const Particles &, Target, Listener);
   template <Outputs OUTPUTS> void forces_and(const Particles &, Target);
-  template <Friction F> void all_impulses(const Particles &, const std::vector<int> &slots);
-  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE>
-  void forces_on(const Particles &, int slot, int t, Listener);
-  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE>
-  void fluid_on_fluid(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL> &) const;
-  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
-  void across_boundary(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL> &) const;
+  template <Outputs OUTPUTS> void impulses_and(const Particles &, const Impulses &);
+  template <Friction F, Outputs OUTPUTS> void all_impulses(const Particles &, const Impulses &);
+  SPHCLOTH_INLINE Gift gift_of(const Particles &p, int i, int t, const Impulses &of) const
+  {
+    return {static_cast<Real>(model.pressure_scale[t] * of.pressure_time[i]),
+            static_cast<Real>(of.span[i]), p.mass_or_volume[i] * p.force_unit * f_unit, of.sleeping,
+            of.given};
+  }
+  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE>
+  Acceleration forces_on(const Particles &, int slot, int t, const Gift &);
+  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE, bool SLEEPING>
+  void fluid_on_fluid(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL, SOURCE> &,
+                      const Gift &) const;
+  template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE, bool ON_BOUNDARY>
+  void across_boundary(const Neighborhood &, Columns &, Sums<OUTPUTS, VIRIAL, SOURCE> &,
+                       const Gift &) const;
+  // a push along the line of two particles, and friction along their velocity
+  template <Friction F>
+  static SPHCLOTH_INLINE std::array<Real, 3>
+  along_and_drag(Real push, const Separation &r, Real friction, const std::array<Real, 3> &velocity)
+  {
+    std::array<Real, 3> f{push * r.x, push * r.y, push * r.z};
+    if (F == Friction::ANY)
+      for (int d = 0; d < 3; d++) f[d] += friction * velocity[d];
+    return f;
+  }
+  static SPHCLOTH_INLINE void load_sleeping(Columns &c, const int *sleeping, const int *near)
+  {
+    for (int m = 0; m < LANES; m++) c.asleep[m] = static_cast<Real>(sleeping[near[m]]);
+  }
 
   // stiffness_loops.h
   struct Press {

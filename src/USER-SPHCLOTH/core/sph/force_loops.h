@@ -8,11 +8,16 @@
 
 namespace sphcloth {
 
-// what the neighbors of one particle add up to, lane by lane
+// What the neighbors of one particle add up to, lane by lane; what it gives to those of the last
+// group, and of all to itself
 
-template <class K, class P> template <Outputs OUTPUTS, bool VIRIAL> struct FluidLoops<K, P>::Sums {
+template <class K, class P>
+template <Outputs OUTPUTS, bool VIRIAL, bool SOURCE>
+struct FluidLoops<K, P>::Sums {
   LaneSum<LANES> x, y, z, drho, virial[VIRIAL ? 6 : 0];
+  LaneSum<LANES> to_self[SOURCE ? 3 : 0];
   alignas(64) Real approach_sq[LANES] = {};
+  alignas(64) double to[SOURCE ? 3 : 0][LANES];
 
   // One pair, in lane m: its force and rate per mass or volume of the neighbor
   SPHCLOTH_INLINE void add(int m, double mass_or_volume, const std::array<Real, 3> &f, Real rate,
@@ -30,6 +35,30 @@ template <class K, class P> template <Outputs OUTPUTS, bool VIRIAL> struct Fluid
       virial[3].of[m] += r.x * fy;
       virial[4].of[m] += r.x * fz;
       virial[5].of[m] += r.y * fz;
+    }
+  }
+
+  // Of one pair, in lane m, the part that the particle gives; a sleeping neighbor gets nothing
+  SPHCLOTH_INLINE void give(int m, double mass_or_volume, double awake,
+                            const std::array<Real, 3> &f)
+  {
+    for (int d = 0; d < 3; d++) {
+      const double part = mass_or_volume * f[d];
+      to_self[d].of[m] += part;
+      to[d][m] = awake * part;
+    }
+  }
+
+  // to the neighbors of a group, which are different particles; what fills one up gets 0
+  SPHCLOTH_INLINE void hand_over(const int *near, const Gift &gift) const
+  {
+    if (!SOURCE) return;
+    constexpr int N_ROWS = 4;
+    for (int m = 0; m < LANES; m += N_ROWS) {
+      Row rows[N_ROWS];
+      to_rows(to[0] + m, to[1] + m, to[2] + m, rows);
+      for (int k = 0; k < N_ROWS; k++)
+        *reinterpret_cast<Row *>(gift.to(near[m + k])) -= gift.scale * rows[k];
     }
   }
 
@@ -57,23 +86,27 @@ template <class K, class P> template <Outputs OUTPUTS, bool VIRIAL> struct Fluid
 // Laminar viscosity: Morris, Fox & Zhu, J. Comput. Phys. 136 (1997) 214.
 // Artificial viscosity: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; it adds to the
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
+//
+// SOURCE: of these terms the particle gives the one of its own pressure, and half of the friction,
+// each times the time for which it acts.
 
 template <class K, class P>
-template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE>
+template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE, bool SLEEPING>
 SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Columns &c,
-                                                      Sums<OUTPUTS, VIRIAL> &sums) const
+                                                      Sums<OUTPUTS, VIRIAL, SOURCE> &sums,
+                                                      const Gift &gift) const
 {
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
-  const Real span_i = IMPULSE ? records.spans[of.i] : Real(1);
+  const Real half_span = Real(0.5) * gift.span, pressure = t.stiffness * gift.pressure;
   const double *mass = nullptr;
   records.for_neighbors(
       of, c,
       [&](int from) SPHCLOTH_LAMBDA {
         records.load(c, of.near.of + from);
         mass = of.masses.group(from);
-        if (IMPULSE) records.load_spans(c, of.near.of + from);
+        if (SLEEPING) load_sleeping(c, gift.sleeping, of.near.of + from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
@@ -82,50 +115,56 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
         const Real v_dot_r = du * r.x + dv * r.y + dw * r.z;
         const Real rho_j = c.density_or_volume[k];
 
-        const bool asleep = IMPULSE && c.span[k] < Real(0);
-        const Real mean = IMPULSE ? (asleep ? span_i : Real(0.5) * (span_i + c.span[k])) : Real(1);
-        Real along =
-            t.stiffness * (motion.p_over_rho2 + (asleep ? span_i : Real(1)) * c.p_over_rho2[k]);
+        Real along = t.stiffness * (motion.p_over_rho2 + c.p_over_rho2[k]), damping = 0;
         if (F != Friction::NONE) {
           const Real both = rho_i + rho_j;
-          along -=
-              mean * Real(2) * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+          damping = t.monaghan * Real(2) * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+          along -= damping;
         }
         const Real push = -slope * along;
-        Real fx = push * r.x, fy = push * r.y, fz = push * r.z;
+        Real fx = push * r.x, fy = push * r.y, fz = push * r.z, friction = 0;
         if (F == Friction::ANY) {
-          const Real friction = mean * slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j);
+          friction = slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j);
           fx += friction * du;
           fy += friction * dv;
           fz += friction * dw;
         }
         sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
         sums.add(k, mass[k], {fx, fy, fz}, t.rho0_ratio * slope * v_dot_r, r);
-      });
+        if (SOURCE) {
+          const Real asleep = SLEEPING ? c.asleep[k] : Real(0);
+          const Real span = SLEEPING ? half_span + asleep * half_span : half_span;
+          const Real of_sleeper =
+              SLEEPING ? asleep * t.stiffness * gift.span * c.p_over_rho2[k] : Real(0);
+          sums.give(k, mass[k], 1.0 - asleep,
+                    along_and_drag<F>(-slope * (pressure + of_sleeper - span * damping), r,
+                                  span * friction, {du, dv, dw}));
+        }
+      },
+      [&](int from) SPHCLOTH_LAMBDA { sums.hand_over(of.near.of + from, gift); });
 }
 
 // One fluid particle f and one boundary particle b: the force between them over m_f V_b.
 // The pressure of the boundary particle is 0 unless it was given one.  Without it the term is the
 // gradient of the fluid's energy with the density sum that the boundary takes part in.
-// ON_BOUNDARY = false: i is fluid, the result is an acceleration.  ON_BOUNDARY = true: i is
-// boundary, its neighbors are fluid, the result is a force per volume.
+// ON_BOUNDARY = false: i is fluid, the result is an acceleration, and i gives all of it.
+// ON_BOUNDARY = true: i is boundary, its neighbors are fluid, the result is a force per volume.
 
 template <class K, class P>
-template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE, bool ON_BOUNDARY>
+template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE, bool ON_BOUNDARY>
 SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, Columns &c,
-                                                       Sums<OUTPUTS, VIRIAL> &sums) const
+                                                       Sums<OUTPUTS, VIRIAL, SOURCE> &sums,
+                                                       const Gift &gift) const
 {
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
-  const Real span_i = IMPULSE && !ON_BOUNDARY ? records.spans[of.i] : Real(1);
   const double *mass = nullptr;
   records.for_neighbors(
       of, c,
       [&](int from) SPHCLOTH_LAMBDA {
         records.load(c, of.near.of + from);
         if (ON_BOUNDARY) mass = of.masses.group(from);
-        if (IMPULSE && ON_BOUNDARY) records.load_spans(c, of.near.of + from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
@@ -134,20 +173,15 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
         const Real v_dot_r = du * r.x + dv * r.y + dw * r.z;
         const Real rho = ON_BOUNDARY ? c.density_or_volume[k] : rho_i;
 
-        // the time of the fluid, whose pressure comes with it; that of the boundary does not
-        const Real span = !IMPULSE ? Real(1)
-            : !ON_BOUNDARY         ? span_i
-            : c.span[k] < Real(0)  ? Real(1)
-                                   : c.span[k];
-        Real along = t.stiffness *
-            (ON_BOUNDARY ? span * motion.p_over_rho2 + c.p_over_rho2[k]
-                         : motion.p_over_rho2 + span * c.p_over_rho2[k]);
-        if (F != Friction::NONE)
-          along -= span * t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+        Real along = t.stiffness * (motion.p_over_rho2 + c.p_over_rho2[k]), damping = 0;
+        if (F != Friction::NONE) {
+          damping = t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+          along -= damping;
+        }
         const Real push = -slope * along;
-        Real fx = push * r.x, fy = push * r.y, fz = push * r.z;
+        Real fx = push * r.x, fy = push * r.y, fz = push * r.z, friction = 0;
         if (F == Friction::ANY) {
-          const Real friction = span * slope * t.nu * Real(2) / rho;
+          friction = slope * t.nu * Real(2) / rho;
           fx += friction * du;
           fy += friction * dv;
           fz += friction * dw;
@@ -156,47 +190,49 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
         const double mass_or_volume = ON_BOUNDARY ? mass[k]
                                                   : static_cast<double>(c.density_or_volume[k]);
         sums.add(k, mass_or_volume, {fx, fy, fz}, slope * v_dot_r, r);
-      });
+        if (SOURCE) {
+          const Real pressure = t.stiffness * (gift.pressure + gift.span * c.p_over_rho2[k]);
+          sums.give(k, mass_or_volume, 1.0,
+                    along_and_drag<F>(-slope * (pressure - gift.span * damping), r,
+                                  gift.span * friction, {du, dv, dw}));
+        }
+      },
+      [&](int from) SPHCLOTH_LAMBDA { sums.hand_over(of.near.of + from, gift); });
 }
 
 // all forces on one particle
 
 template <class K, class P>
-template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool IMPULSE>
-SPHCLOTH_INLINE void FluidLoops<K, P>::forces_on(const Particles &p, int slot, int t,
-                                                 Listener listener)
+template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE>
+SPHCLOTH_INLINE Acceleration FluidLoops<K, P>::forces_on(const Particles &p, int slot, int t,
+                                                         const Gift &gift)
 {
   Columns c;
   const int i = lists.at(slot);
   const bool fluid = is_fluid(t);
-  // a particle without an impulse of its own gets those of others only
-  const bool gives = !IMPULSE || (fluid && acts[i]);
   if (!VIRIAL) lists.refresh(slot);
-  Sums<OUTPUTS, VIRIAL> sums;
-  int n_found = 0;
+  Sums<OUTPUTS, VIRIAL, SOURCE> sums;
   for (const int other : lists.present_types()) {
-    const NeighborSpan found = VIRIAL ? lists.without_pruning(slot, other)
-        : gives                       ? lists(slot, other)
-                                      : lists.others(0, slot, other, acts.data());
+    const NeighborSpan found =
+        VIRIAL ? lists.without_pruning(slot, other) : lists(slot, other);
     if (found.n == 0 || !(fluid || is_fluid(other))) continue;
-    n_found += found.n;
     const Terms &terms_of_pair = pair(t, other);
-    if (fluid && is_fluid(other))
-      fluid_on_fluid<F, OUTPUTS, VIRIAL, IMPULSE>(
-          {i, found, terms_of_pair, masses(p, found, other)}, c, sums);
+    if (SOURCE && gift.sleeping && is_fluid(other))
+      fluid_on_fluid<F, OUTPUTS, VIRIAL, SOURCE, SOURCE>(
+          {i, found, terms_of_pair, masses(p, found, other)}, c, sums, gift);
+    else if (fluid && is_fluid(other))
+      fluid_on_fluid<F, OUTPUTS, VIRIAL, SOURCE, false>(
+          {i, found, terms_of_pair, masses(p, found, other)}, c, sums, gift);
     else if (fluid)
-      across_boundary<F, OUTPUTS, VIRIAL, IMPULSE, false>({i, found, terms_of_pair, {}}, c, sums);
-    else
-      across_boundary<F, OUTPUTS, VIRIAL, IMPULSE, true>(
-          {i, found, terms_of_pair, masses(p, found, other)}, c, sums);
+      across_boundary<F, OUTPUTS, VIRIAL, SOURCE, false>({i, found, terms_of_pair, {}}, c, sums,
+                                                         gift);
+    else if (!SOURCE)
+      across_boundary<F, OUTPUTS, VIRIAL, SOURCE, true>(
+          {i, found, terms_of_pair, masses(p, found, other)}, c, sums, gift);
   }
-  const Acceleration a = sums.total(f_unit, records.unit);
-  if (OUTPUTS == Outputs::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
-  if (!n_found) return;
-  if (VIRIAL)
-    listener.receive(listener.context, i, a);
-  else
-    apply(p, i, fluid, a);
+  if (SOURCE)
+    for (int d = 0; d < 3; d++) gift.to(i)[d] += gift.scale * sums.to_self[d].total();
+  return sums.total(f_unit, records.unit);
 }
 
 template <class K, class P>
@@ -205,42 +241,52 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_forces(const Particles &p, Targ
                                                         Listener listener)
 {
   for (int t = 1; t <= model.n_types; t++) {
-    if (target == (is_fluid(t) ? Target::BOUNDARIES : Target::FLUID)) continue;
-    for (const int slot : selection.of(t))
-      forces_on<F, OUTPUTS, VIRIAL, false>(p, slot, t, listener);
+    const bool fluid = is_fluid(t);
+    if (target == (fluid ? Target::BOUNDARIES : Target::FLUID)) continue;
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      const Acceleration a = forces_on<F, OUTPUTS, VIRIAL, false>(p, slot, t, {});
+      if (VIRIAL)
+        listener.receive(listener.context, i, a);
+      else
+        apply(p, i, fluid, a);
+      if (OUTPUTS == Outputs::RATE_AND_APPROACH && fluid) p.approach[i] = a.approach;
+    }
   }
 }
 
 template <class K, class P>
-template <Friction F>
+template <Friction F, Outputs OUTPUTS>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_impulses(const Particles &p,
-                                                          const std::vector<int> &slots)
+                                                          const Impulses &impulses)
 {
-  for (const int slot : slots)
-    forces_on<F, Outputs::NOTHING, false, true>(p, slot, p.type[lists.at(slot)], {});
+  for (const int i : *impulses.of) {
+    const int t = p.type[i];
+    const Acceleration a =
+        forces_on<F, OUTPUTS, false, true>(p, lists.slot(i), t, gift_of(p, i, t, impulses));
+    if (!impulses.with_forces) continue;
+    apply(p, i, true, a);
+    if (OUTPUTS == Outputs::RATE_AND_APPROACH) p.approach[i] = a.approach;
+  }
 }
 
 template <class K, class P>
-void FluidLoops<K, P>::impulses(const Particles &p, const std::vector<int> &slots)
+void FluidLoops<K, P>::impulses(const Particles &p, const Impulses &of)
+{
+  if (model.outputs == Outputs::RATE_AND_APPROACH)
+    impulses_and<Outputs::RATE_AND_APPROACH>(p, of);
+  else
+    impulses_and<Outputs::RATE>(p, of);
+}
+
+template <class K, class P>
+template <Outputs OUTPUTS>
+void FluidLoops<K, P>::impulses_and(const Particles &p, const Impulses &of)
 {
   switch (model.friction) {
-    case Friction::NONE: return all_impulses<Friction::NONE>(p, slots);
-    case Friction::ARTIFICIAL: return all_impulses<Friction::ARTIFICIAL>(p, slots);
-    case Friction::ANY: return all_impulses<Friction::ANY>(p, slots);
-  }
-}
-
-template <class K, class P>
-void FluidLoops<K, P>::record_impulses(const Particles &p, const double *pressure_time,
-                                       const double *span)
-{
-  records.spans.resize(p.n_all);
-  acts.resize(p.n_all);
-  for (int i = 0; i < p.n_all; i++) {
-    records.motions[i].p_over_rho2 =
-        static_cast<Real>(model.pressure_scale[p.type[i]] * pressure_time[i]);
-    records.spans[i] = static_cast<Real>(span[i]);
-    acts[i] = span[i] != 0.0 || pressure_time[i] != 0.0;
+    case Friction::NONE: return all_impulses<Friction::NONE, OUTPUTS>(p, of);
+    case Friction::ARTIFICIAL: return all_impulses<Friction::ARTIFICIAL, OUTPUTS>(p, of);
+    case Friction::ANY: return all_impulses<Friction::ANY, OUTPUTS>(p, of);
   }
 }
 

@@ -47,9 +47,8 @@ template <class P> struct LoopTerms {
   // f_unit: of a force, 1/unit^(d+1)
   LoopTerms(const PairTerms &t, Real quantum, double unit, double f_unit) :
       inv_support(Real(t.kernel.inv_support * unit)),
-      support_sq(Real(t.kernel.support_sq / (unit * unit))),
-      f(Real(t.kernel.f * unit / f_unit)), nu(Real(t.nu / unit)),
-      monaghan(Real(t.monaghan / unit)), soft(Real(t.soft / (unit * unit))),
+      support_sq(Real(t.kernel.support_sq / (unit * unit))), f(Real(t.kernel.f * unit / f_unit)),
+      nu(Real(t.nu / unit)), monaghan(Real(t.monaghan / unit)), soft(Real(t.soft / (unit * unit))),
       rho0(Real(t.rho0)), rho0_ratio(Real(t.rho0_ratio)), stiffness(Real(t.stiffness)),
       diffusion(Real(t.diffusion / unit)),
       outside(inv_support > 0 ? static_cast<Coordinate>(Real(2) / (inv_support * quantum)) : 0)
@@ -85,7 +84,7 @@ template <class P> class PairColumns {
   struct Columns {
     alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
     alignas(64) Real density_or_volume[LANES], u[LANES], v[LANES], w[LANES], p_over_rho2[LANES];
-    alignas(64) Real span[LANES];    // of impulses
+    alignas(64) Real asleep[LANES];    // 1 or 0, where it is asked
   };
   // x_i - x_j
   struct Separation {
@@ -105,9 +104,10 @@ template <class P> class PairColumns {
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
-  std::vector<Real> spans;              // of impulses, empty without them
 
-  void record_positions(const Particles &p, const Fluid::Box &box, double support)
+  // Of some particles, null: of all
+  void record_positions(const Particles &p, const Fluid::Box &box, double support,
+                        const std::vector<int> *some)
   {
     unit = P::COUNTED ? std::exp2(std::floor(std::log2(support))) : 1.0;
     sites.resize(p.n_all + LANES);
@@ -121,18 +121,16 @@ template <class P> class PairColumns {
         quantum[d] = static_cast<Real>(1.0 / per_quantum[d] / unit);
       }
     }
-    record_positions(p, origin, per_quantum);
+    record_positions(p, origin, per_quantum, some);
   }
 
-  SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role, const double *scale)
+  SPHCLOTH_MULTIVERSION void record(const Particles &p, const Role *role, const double *scale,
+                                    const std::vector<int> *some)
   {
-    for (int i = 0; i < p.n_all; i++) {
-      const bool fluid = role[p.type[i]] == Role::FLUID;
-      sites[i].density_or_volume = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
-      motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
-                    static_cast<Real>(p.v[3 * i + 2]),
-                    static_cast<Real>(scale[p.type[i]] * p.p_over_rho2[i])};
-    }
+    if (some)
+      for (const int i : *some) record_one(p, role, scale, i);
+    else
+      for (int i = 0; i < p.n_all; i++) record_one(p, role, scale, i);
   }
 
   void record_gradients(const double *gradient, int n)
@@ -146,9 +144,16 @@ template <class P> class PairColumns {
   }
 
   // The one loop over the neighbors of a particle: for each group load(first neighbor), which fills
-  // columns with their positions, then term(lane, separation) in every lane.
+  // columns with their positions, then term(lane, separation) in every lane, then done(first
+  // neighbor).
   template <class Load, class Term>
   SPHCLOTH_INLINE void for_neighbors(const Neighborhood &of, Columns &c, Load load, Term term) const
+  {
+    for_neighbors(of, c, load, term, [](int) SPHCLOTH_LAMBDA {});
+  }
+  template <class Load, class Term, class Done>
+  SPHCLOTH_INLINE void for_neighbors(const Neighborhood &of, Columns &c, Load load, Term term,
+                                     Done done) const
   {
     const Site site = sites[of.i];
     const Coordinate outside = site.x + of.terms.outside;
@@ -162,6 +167,7 @@ template <class P> class PairColumns {
                    dz = P::difference(site.z, c.z[k], qz);
         term(k, Separation{dx, dy, dz});
       }
+      done(from);
     }
   }
 
@@ -180,25 +186,35 @@ template <class P> class PairColumns {
     columns(&motions[0].u, near, c.u, c.v, c.w, c.p_over_rho2);
     load_sites(c, near);
   }
-  SPHCLOTH_INLINE void load_spans(Columns &c, const int *near) const
-  {
-    for (int m = 0; m < LANES; m++) c.span[m] = spans[near[m]];
-  }
 
-  double bytes() const { return bytes_of(sites, motions, gradients, spans); }
+  double bytes() const { return bytes_of(sites, motions, gradients); }
 
  private:
   SPHCLOTH_MULTIVERSION void record_positions(const Particles &p,
                                               const std::array<double, 3> &origin,
-                                              const std::array<double, 3> &per_quantum)
+                                              const std::array<double, 3> &per_quantum,
+                                              const std::vector<int> *some)
   {
     const double ox = origin[0], oy = origin[1], oz = origin[2];
     const double qx = per_quantum[0], qy = per_quantum[1], qz = per_quantum[2];
-    for (int i = 0; i < p.n_all; i++) {
+    const auto record_one = [&](int i) SPHCLOTH_LAMBDA {
       sites[i].x = static_cast<Coordinate>((p.x[3 * i] - ox) * qx);
       sites[i].y = static_cast<Coordinate>((p.x[3 * i + 1] - oy) * qy);
       sites[i].z = static_cast<Coordinate>((p.x[3 * i + 2] - oz) * qz);
-    }
+    };
+    if (some)
+      for (const int i : *some) record_one(i);
+    else
+      for (int i = 0; i < p.n_all; i++) record_one(i);
+  }
+
+  SPHCLOTH_INLINE void record_one(const Particles &p, const Role *role, const double *scale, int i)
+  {
+    const bool fluid = role[p.type[i]] == Role::FLUID;
+    sites[i].density_or_volume = static_cast<Real>(fluid ? p.rho[i] : p.mass_or_volume[i]);
+    motions[i] = {static_cast<Real>(p.v[3 * i]), static_cast<Real>(p.v[3 * i + 1]),
+                  static_cast<Real>(p.v[3 * i + 2]),
+                  static_cast<Real>(scale[p.type[i]] * p.p_over_rho2[i])};
   }
 
   // What fills up the last group, of n, lies outside the support.

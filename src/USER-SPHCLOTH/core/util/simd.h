@@ -235,20 +235,6 @@ inline int compact_plain(const float *key, const int *index, int n, float limit,
   return m;
 }
 
-// Of n indices those whose value is another, in order; returns how many.  Up to 16 places past the
-// end are written.
-
-inline int pick_others_plain(const int *value, int same, const int *index, int n, int *out)
-{
-  int m = 0;
-  for (int k = 0; k < n; k++) {
-    const int j = index[k];
-    out[m] = j;
-    m += value[j] != same;
-  }
-  return m;
-}
-
 // Partition: the same as compaction, but the indices stay in place, those kept in front and the
 // others, for which `spare` has room, behind them.  Nothing behind index[n - 1] is written.
 
@@ -326,22 +312,6 @@ __attribute__((target("avx512f,avx512vl"))) inline int compact_avx512(const floa
   return m;
 }
 
-__attribute__((target("avx512f,avx512vl"))) inline int
-pick_others_avx512(const int *value, int same, const int *index, int n, int *out)
-{
-  const __m512i usual = _mm512_set1_epi32(same);
-  int m = 0;
-  for (int k = 0; k < n; k += 16) {
-    const __mmask16 here = first_lanes(n - k);
-    const __m512i j = _mm512_maskz_loadu_epi32(here, index + k);
-    const __m512i its = _mm512_mask_i32gather_epi32(usual, here, j, value, sizeof(int));
-    const __mmask16 keep = _mm512_cmpneq_epi32_mask(its, usual);
-    _mm512_storeu_si512(out + m, _mm512_maskz_compress_epi32(keep, j));
-    m += __builtin_popcount(keep);
-  }
-  return m;
-}
-
 // Without AVX-512 eight at a time, from a table: for each set of eight lanes
 // those that are in it, in order.
 
@@ -395,22 +365,6 @@ __attribute__((target("avx2,popcnt"))) inline int partition_avx2(float *key, int
   return partition_rest(key, index, k, n, limit, spare, m);
 }
 
-__attribute__((target("avx2,popcnt"))) inline int
-pick_others_avx2(const int *value, int same, const int *index, int n, int *out)
-{
-  const __m256i usual = _mm256_set1_epi32(same);
-  int m = 0, k = 0;
-  for (; k + 8 <= n; k += 8) {
-    const __m256i j = _mm256_loadu_si256(reinterpret_cast<const __m256i *>(index + k));
-    const __m256i its = _mm256_i32gather_epi32(value, j, sizeof(int));
-    const int keep = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(its, usual))) ^ 0xff;
-    const __m256i kept = _mm256_load_si256(reinterpret_cast<const __m256i *>(LANE_SETS.of[keep]));
-    _mm256_storeu_si256(reinterpret_cast<__m256i *>(out + m), _mm256_permutevar8x32_epi32(j, kept));
-    m += __builtin_popcount(keep);
-  }
-  return m + pick_others_plain(value, same, index + k, n - k, out + m);
-}
-
 inline const bool HAVE_AVX512 =
     __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
 inline const bool HAVE_AVX2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
@@ -421,13 +375,6 @@ inline int compact(const float *key, const int *index, int n, float limit, float
   if (HAVE_AVX512) return compact_avx512(key, index, n, limit, key_out, index_out);
   if (HAVE_AVX2) return compact_avx2(key, index, n, limit, key_out, index_out);
   return compact_plain(key, index, n, limit, key_out, index_out);
-}
-
-inline int pick_others(const int *value, int same, const int *index, int n, int *out)
-{
-  if (HAVE_AVX512) return pick_others_avx512(value, same, index, n, out);
-  if (HAVE_AVX2) return pick_others_avx2(value, same, index, n, out);
-  return pick_others_plain(value, same, index, n, out);
 }
 
 inline int partition(float *key, int *index, int n, float limit, int *spare)
@@ -448,11 +395,6 @@ inline int compact(const float *key, const int *index, int n, float limit, float
                    int *index_out)
 {
   return compact_plain(key, index, n, limit, key_out, index_out);
-}
-
-inline int pick_others(const int *value, int same, const int *index, int n, int *out)
-{
-  return pick_others_plain(value, same, index, n, out);
 }
 
 #endif

@@ -38,19 +38,19 @@ bool Fluid::select(const Particles &p)
   return true;
 }
 
-void Fluid::find_read(const Particles &p)
+void Fluid::find_touched(const Particles &p)
 {
   // reading them one by one costs more than all of them in their order
   constexpr std::size_t MANY = 12;
-  few_read = MANY * selection.slots.size() < static_cast<std::size_t>(p.n_owned);
-  if (!few_read) return;
-  for (const int i : read_particles) is_read[i] = 0;
-  read_particles.clear();
-  is_read.resize(p.n_all);
+  few_touched = MANY * selection.slots.size() < static_cast<std::size_t>(p.n_owned);
+  if (!few_touched) return;
+  for (const int i : touched_particles) is_touched[i] = 0;
+  touched_particles.clear();
+  is_touched.resize(p.n_all);
   const auto add = [this](int i) {
-    if (is_read[i]) return;
-    is_read[i] = 1;
-    read_particles.push_back(i);
+    if (is_touched[i]) return;
+    is_touched[i] = 1;
+    touched_particles.push_back(i);
   };
   for (const int slot : selection.slots) {
     add(lists.at(slot));

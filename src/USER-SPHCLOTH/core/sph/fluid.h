@@ -188,8 +188,9 @@ class Fluid {
 
   // What active fluid particles give to their neighbors, and to themselves
   virtual void impulses(const Particles &, const Impulses &) = 0;
-  // these and their neighbors; null: nearly all
-  const std::vector<int> *touched() const { return read(); }
+  // The selection and its neighbors, which the loops read and to which impulses go: null if they
+  // are most particles, which are then read in the order in which they lie
+  const std::vector<int> *touched() const { return few_touched ? &touched_particles : nullptr; }
 
   // For the limit of stability, of every active fluid particle, also without pressure.  Vertices
   // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
@@ -230,19 +231,14 @@ class Fluid {
     return {p.x, p.type, p.n_owned, p.n_all, model.n_types, p.sides, p.layers};
   }
 
-  // The particles that the loops over the selection read: null if they are most, which are then
-  // read in the order in which they lie
-  const std::vector<int> *read() const { return few_read ? &read_particles : nullptr; }
-  void find_read(const Particles &);
+  void find_touched(const Particles &);
 
   DualLists lists;
   Selection selection;
   bool all_selected = false;    // is selected, of these lists
-
- private:
-  std::vector<int> read_particles;
-  std::vector<std::uint8_t> is_read;    // of all, 1: it stands in read_particles
-  bool few_read = false;
+  std::vector<int> touched_particles;
+  std::vector<std::uint8_t> is_touched;    // of all, 1: it stands in touched_particles
+  bool few_touched = false;
 };
 
 }    // namespace sphcloth

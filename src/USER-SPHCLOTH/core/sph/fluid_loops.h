@@ -30,12 +30,12 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   void record_positions(const Particles &p, const Box &box) override
   {
-    find_read(p);
+    find_touched(p);
     double inv_support = 0.0;    // of the widest pair
     for (const PairTerms &t : model.terms)
       if (t.kernel.inv_support > 0.0 && !(inv_support > 0.0 && inv_support < t.kernel.inv_support))
         inv_support = t.kernel.inv_support;
-    records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0, read());
+    records.record_positions(p, box, inv_support > 0.0 ? 1.0 / inv_support : 1.0, touched());
     f_unit = std::pow(records.unit, -(model.dimension + 1));
   }
   void volumes(const Particles &, int type, double *volume) override { sum_volumes(type, volume); }
@@ -49,7 +49,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
   void record(const Particles &p) override
   {
-    records.record(p, model.role.data(), model.pressure_scale.data(), read());
+    records.record(p, model.role.data(), model.pressure_scale.data(), touched());
   }
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
@@ -64,7 +64,8 @@ template <class K, class P> class FluidLoops : public Fluid {
                     VertexPairs &) override;
   double bytes() const override
   {
-    return lists.bytes() + records.bytes() + bytes_of(selection.slots);
+    return lists.bytes() + records.bytes() +
+        bytes_of(selection.slots, touched_particles, is_touched);
   }
 
  private:

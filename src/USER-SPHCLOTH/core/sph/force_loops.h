@@ -122,15 +122,11 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
           along -= damping;
         }
         const Real push = -slope * along;
-        Real fx = push * r.x, fy = push * r.y, fz = push * r.z, friction = 0;
-        if (F == Friction::ANY) {
-          friction = slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j);
-          fx += friction * du;
-          fy += friction * dv;
-          fz += friction * dw;
-        }
+        const Real friction =
+            F == Friction::ANY ? slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j) : Real(0);
         sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
-        sums.add(k, mass[k], {fx, fy, fz}, t.rho0_ratio * slope * v_dot_r, r);
+        sums.add(k, mass[k], along_and_drag<F>(push, r, friction, {du, dv, dw}),
+                 t.rho0_ratio * slope * v_dot_r, r);
         if (SOURCE) {
           const Real asleep = SLEEPING ? c.asleep[k] : Real(0);
           const Real span = SLEEPING ? half_span + asleep * half_span : half_span;
@@ -179,17 +175,12 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
           along -= damping;
         }
         const Real push = -slope * along;
-        Real fx = push * r.x, fy = push * r.y, fz = push * r.z, friction = 0;
-        if (F == Friction::ANY) {
-          friction = slope * t.nu * Real(2) / rho;
-          fx += friction * du;
-          fy += friction * dv;
-          fz += friction * dw;
-        }
+        const Real friction = F == Friction::ANY ? slope * t.nu * Real(2) / rho : Real(0);
         if (!ON_BOUNDARY) sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
         const double mass_or_volume = ON_BOUNDARY ? mass[k]
                                                   : static_cast<double>(c.density_or_volume[k]);
-        sums.add(k, mass_or_volume, {fx, fy, fz}, slope * v_dot_r, r);
+        sums.add(k, mass_or_volume, along_and_drag<F>(push, r, friction, {du, dv, dw}),
+                 slope * v_dot_r, r);
         if (SOURCE) {
           const Real pressure = t.stiffness * (gift.pressure + gift.span * c.p_over_rho2[k]);
           sums.give(k, mass_or_volume, 1.0,

@@ -65,7 +65,6 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
   extscalar = extvector = 1;
   energy_global_flag = virial_global_flag = virial_peratom_flag = 1;
   dynamic_group_allow = 1;
-  near.resize(walls.size());
   mine.assign(size_vector + 1, 0.0);
   all = mine;
 }
@@ -207,7 +206,7 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
   if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
 }
 
-// false if no wall is in reach of particle i; otherwise `near` has the table's values of each wall
+// false if no wall is in reach of particle i; otherwise `near` has them all
 
 bool FixWallSPH::query(int i)
 {
@@ -217,11 +216,11 @@ bool FixWallSPH::query(int i)
     at = OUT_OF_REACH;
     if (!measure(i)) return false;
     at = static_cast<int>(found.size());
-    found.insert(found.end(), near.begin(), near.end());
+    found.insert(found.end(), measured.begin(), measured.end());
     return true;
   }
   if (at == OUT_OF_REACH) return false;
-  std::copy_n(found.begin() + at, near.size(), near.begin());
+  near = {&found[at], walls.size(), profiles[atom->type[i]]};
   return true;
 }
 
@@ -236,7 +235,9 @@ bool FixWallSPH::measure(int i, double back)
   if (open) return false;
 
   const double support = fluid->support(atom->type[i]);
+  const WallProfile &profile = profiles[atom->type[i]];
   bool any = false;
+  measured.clear();
   for (std::size_t k = 0; k < walls.size(); k++) {
     double distance = walls[k].distance(x);
     if (back != 0.0) distance -= back * departure(i, k);
@@ -246,24 +247,22 @@ bool FixWallSPH::measure(int i, double back)
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
                  "start it in front, or lower the time step",
                  label, atom->tag[i], FACES[walls[k].face]);
-    near[k] = table(delta);
+    measured.emplace_back(table(delta), profile);
     any = any || delta < 1.0;
   }
+  near = {measured.data(), walls.size(), profile};
   return any;
 }
 
 double FixWallSPH::density(int i, double of_particles)
 {
   if (!query(i)) return of_particles;
-  const int type = atom->type[i];
-  added.set(near, profiles[type]);
-  return of_particles + fluid->equation_of_state(type).rho0 * added.lambda();
+  return of_particles + fluid->equation_of_state(atom->type[i]).rho0 * near.lambda();
 }
 
 double FixWallSPH::density_rate(int i, double of_particles, double back)
 {
   if (!measure(i, back)) return of_particles;
-  added.set(near, profiles[atom->type[i]]);
   double rate = 0.0;
   for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
   return of_particles + rate;
@@ -274,7 +273,7 @@ double FixWallSPH::density_rate(int i, double of_particles, double back)
 double FixWallSPH::slope(int i, std::size_t k) const
 {
   const int type = atom->type[i];
-  return fluid->equation_of_state(type).rho0 * added.slope(k) / fluid->support(type);
+  return fluid->equation_of_state(type).rho0 * near.slope(k) / fluid->support(type);
 }
 
 // velocity of particle i away from wall k
@@ -295,7 +294,7 @@ static double impact_rate(const SPHMaterials &fluid, int type, double rho, doubl
 }
 
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
-// in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
+// in, as for boundary particles; behind a wall a spring as stiff as the fluid is near.
 
 void FixWallSPH::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
 
@@ -317,19 +316,18 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
   const double support = fluid->support(type), nu = slip ? 0.0 : fluid->type(type).nu;
   const double mass = atom_mass(atom, i), to_force = mass / force->ftm2v;
   const double *x = atom->x[i], *v = atom->v[i];
-  added.set(near, profiles[type]);
 
   for (std::size_t k = 0; k < walls.size(); k++) {
     const Wall &wall = walls[k];
     const int axis = wall.axis();
     const double delta = wall.distance(x) / support;
     if (delta >= 1.0) continue;
-    const double share = joint_share(near, k), denser = slope(i, k);
+    const double share = near.half_space_share(k), denser = slope(i, k);
     const double strain = stop_strain(delta);
     const double stop = eos.k * strain / (STOPPING_DEPTH * support);
-    const double friction = nu > 0.0
-        ? nu * share * 2.0 * eos.rho0 / atom->rho[i] * wall_friction(near[k], delta, support)
-        : 0.0;
+    const double friction = nu > 0.0 ? nu * share * 2.0 * eos.rho0 / atom->rho[i] *
+            wall_friction(near.half_space(k), delta, support)
+                                     : 0.0;
 
     // per mass, away from the wall
     const double speed = departure(i, k);
@@ -376,15 +374,14 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
   const Tait &eos = fluid->equation_of_state(type);
   const double support = fluid->support(type), rho = atom->rho[i];
   const double nu = slip ? 0.0 : fluid->type(type).nu;
-  added.set(near, profiles[type]);
   for (std::size_t k = 0; k < walls.size(); k++) {
     const double delta = walls[k].distance(atom->x[i]) / support;
     if (delta >= 1.0) continue;
-    const double share = joint_share(near, k);
+    const double share = near.half_space_share(k);
     s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k);
     if (profiles[type].changes()) {
       // what pressure on a curved function adds, in the units of the others
-      const double sound = eos.sound_speed(rho), bend = added.curvature(k) / (support * support);
+      const double sound = eos.sound_speed(rho), bend = near.curvature(k) / (support * support);
       s.spring[walls[k].axis()] +=
           std::max(0.0, reflection * fluid->acting_pressure(eos, rho) * eos.rho0 * bend) /
           (atom_mass(atom, i) * sound * sound * fluid->lattices.slope_of(type, rho));
@@ -393,7 +390,8 @@ void FixWallSPH::add_stiffness(int i, Stiffness &s)
       const double of_spring = rho / (STOPPING_DEPTH * support);
       s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);
     }
-    s.friction += nu * share * 2.0 * eos.rho0 / rho * wall_friction(near[k], delta, support) +
+    s.friction +=
+        nu * share * 2.0 * eos.rho0 / rho * wall_friction(near.half_space(k), delta, support) +
         share * impact_rate(*fluid, type, rho, impact(delta));
   }
 }
@@ -403,12 +401,13 @@ void FixWallSPH::add_to(ConcentrationGradient &concentration, int i)
   if (!query(i)) return;
   const double support = fluid->support(atom->type[i]);
   const int dim = domain->dimension;
-  concentration.cover += joint_lambda(near);
+  concentration.cover += near.half_spaces_lambda();
   for (std::size_t k = 0; k < walls.size(); k++) {
     const int axis = walls[k].axis();
-    const double share = joint_share(near, k), delta = walls[k].distance(atom->x[i]) / support;
-    concentration.gradient[axis] += walls[k].inwards() * share * near[k].slope / support;
-    concentration.cover += share * (wall_cover(near[k], delta, dim) - near[k].lambda);
+    const double share = near.half_space_share(k), delta = walls[k].distance(atom->x[i]) / support;
+    concentration.gradient[axis] += walls[k].inwards() * share * near.half_space(k).slope / support;
+    concentration.cover +=
+        share * (wall_cover(near.half_space(k), delta, dim) - near.half_space(k).lambda);
   }
 }
 

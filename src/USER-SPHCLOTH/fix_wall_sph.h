@@ -90,12 +90,10 @@ class FixWallSPH : public Fix, public FluidBoundary {
   sphcloth::WallImpact impact;
   std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
 
-  std::vector<sphcloth::WallTable::Value> near;    // of one particle, per wall: the half-space
-  sphcloth::JointWalls added;    // to its density over rho0
-  // `near`, one after another, of those that were found in reach in this evaluation, and where by
-  // particle
+  sphcloth::JointWalls near;    // of the particle that was asked for last
+  // All walls of each particle that was found in reach in this evaluation, and where by particle
   enum { UNKNOWN = -1, OUT_OF_REACH = -2 };
-  std::vector<sphcloth::WallTable::Value> found;
+  std::vector<sphcloth::NearWall> found, measured;
   std::vector<int> found_at;
   std::vector<Press> presses;    // kept only for fix_modify virial yes
   std::vector<double> mine, all;    // force on each wall, x, y, z, then the energy; of all ranks

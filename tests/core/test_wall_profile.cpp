@@ -128,8 +128,8 @@ BOOST_AUTO_TEST_CASE(edges_of_two_walls)
         inside += norm * WendlandC2::shape(q);
         if (x >= 0 && y >= 0) here += norm * WendlandC2::shape(q);
       }
-    JointWalls walls;
-    walls.set({table(0.5 / support), table(0.5 / support)}, profile);
+    const std::vector<NearWall> both(2, {table(0.5 / support), profile});
+    const JointWalls walls(both.data(), 2, profile);
     std::printf("  edge, support %.0f: density %.4f\n", support, (here + walls.lambda()) / inside);
     BOOST_CHECK_SMALL((here + walls.lambda()) / inside - 1.0, 0.02);
   }
@@ -139,14 +139,17 @@ BOOST_AUTO_TEST_CASE(edges_of_two_walls)
     for (double a : {-0.5, -0.1, 0.05, 0.2, 0.6})
       for (double b : {-0.3, 0.1, 0.8, 2.0}) {
         const double h = 1e-6;
-        const auto at = [&](double delta) {
-          JointWalls walls;
-          walls.set({table(delta), table(b), table(0.3)}, profile);
-          return walls;
+        const auto at = [&](double delta, auto asked) {
+          const std::array<NearWall, 3> near{
+              {{table(delta), profile}, {table(b), profile}, {table(0.3), profile}}};
+          return asked(JointWalls(near.data(), near.size(), profile));
         };
-        const double slope = at(a).slope(0);
-        BOOST_CHECK_SMALL(slope - (at(a + h).lambda() - at(a - h).lambda()) / (2.0 * h), 1e-6);
-        BOOST_CHECK(at(a).share(0) > 0.0);
+        const auto lambda = [&](double delta) {
+          return at(delta, [](const JointWalls &walls) { return walls.lambda(); });
+        };
+        const double slope = at(a, [](const JointWalls &walls) { return walls.slope(0); });
+        BOOST_CHECK_SMALL(slope - (lambda(a + h) - lambda(a - h)) / (2.0 * h), 1e-6);
+        BOOST_CHECK(at(a, [](const JointWalls &walls) { return walls.share(0); }) > 0.0);
       }
 }
 

@@ -78,17 +78,15 @@ struct NeighborSpan {
   int n = 0;
 };
 
-// For each slot and type a segment, all in one long array.  Those that are replaced by longer ones
-// lie in others behind it: nothing else moves.
+// For each slot and type a segment.  They lie one behind the other in a few long arrays, which stay
+// from one build to the next; one that is replaced by a longer one moves behind the last.
 
 class NeighborSpans {
  public:
   void start(std::size_t slots, int n_types)
   {
     types = n_types;
-    end = 0;
-    free = nullptr;
-    later.clear();
+    current = used = 0;
     pieces.clear();
     pieces.reserve(slots * n_types);
   }
@@ -101,84 +99,65 @@ class NeighborSpans {
   // room for at most n more entries and the slack behind them
   int *room(int n)
   {
-    if (free) return later_room(n);
-    const std::size_t need = end + n + SLACK;
-    // lists are most of the memory: grow by little
-    if (entries.size() < need) {
-      entries.reserve(need + need / 16);
-      entries.resize(need + need / 16);
+    while (current < arrays.size() && left() < n + SLACK) {
+      end_with_slack();
+      current++;
+      used = 0;
     }
-    return entries.data() + end;
+    if (current == arrays.size()) arrays.emplace_back(std::max(ENTRIES, n + SLACK));
+    return arrays[current].data() + used;
   }
   void close(int n)
   {
-    pieces.push_back({nullptr, n, n});
-    end += n;
+    pieces.push_back({room(0), n, n});
+    used += n;
   }
-  // all are closed: what loops over whole groups read behind the last segment
+  // all are closed
   void finish()
   {
-    int *last = room(0);
-    std::fill(last, last + SLACK, 0);
-    const std::size_t need = end + SLACK;
-    if (entries.capacity() > need + need / 32) {
-      std::vector<int> trimmed;
-      trimmed.reserve(need + need / 128);
-      trimmed.assign(entries.begin(), entries.begin() + need);
-      entries.swap(trimmed);
-    }
-    int *of = entries.data();
-    for (Piece &piece : pieces) {
-      piece.of = of;
-      of += piece.n;
-    }
-    free = of_later = of;    // nothing is left
+    room(0);
+    end_with_slack();
+    arrays.resize(current + 1);
   }
   // by n in the room that was given last
   int *replace(int slot, int type, int n)
   {
     Piece &piece = pieces[number(slot, type)];
     piece.n = n;
-    if (n <= piece.room) return std::copy_n(free, n, piece.of) - n;
-    piece.of = free;
-    piece.room = std::min(n + n / 8, static_cast<int>(of_later - free) - SLACK);
-    free += piece.room;
-    return piece.of;
+    int *const given = room(0);
+    if (n <= piece.room) return std::copy_n(given, n, piece.of) - n;
+    piece.of = given;
+    piece.room = std::min(n + n / 8, left() - SLACK);
+    used += piece.room;
+    end_with_slack();
+    return given;
   }
   double bytes() const
   {
-    double sum = bytes_of(entries, pieces);
-    for (const std::vector<int> &more : later) sum += bytes_of(more);
+    double sum = bytes_of(pieces);
+    for (const std::vector<int> &array : arrays) sum += bytes_of(array);
     return sum;
   }
 
  private:
-  static constexpr int SLACK = 2 * LANES;
+  static constexpr int SLACK = 2 * LANES, ENTRIES = 1 << 17;
   struct Piece {
     int *of;
     int n, room;
   };
   int types = 0;
-  std::int64_t end = 0;
   std::vector<Piece> pieces;
-  std::vector<int> entries;
-  std::vector<std::vector<int>> later;
-  int *free = nullptr, *of_later = nullptr;    // in the last of these: what is free, and its end
+  std::vector<std::vector<int>> arrays;
+  std::size_t current = 0;    // the array that is being filled
+  int used = 0;    // of it
 
   std::size_t number(int slot, int type) const
   {
     return static_cast<std::size_t>(slot) * types + type - 1;
   }
-  int *later_room(int n)
-  {
-    constexpr int ENTRIES = 1 << 16;
-    if (of_later - free < n + SLACK) {
-      later.emplace_back(std::max(ENTRIES, n + SLACK));
-      free = later.back().data();
-      of_later = free + later.back().size();
-    }
-    return free;
-  }
+  int left() const { return static_cast<int>(arrays[current].size()) - used; }
+  // what loops over whole groups read behind the last segment
+  void end_with_slack() { std::fill_n(arrays[current].begin() + used, SLACK, 0); }
 };
 
 class CellLists {

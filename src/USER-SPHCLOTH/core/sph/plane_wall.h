@@ -129,7 +129,7 @@ template <class Kernel> WallTable wall_table(int dim)
 template <class Values> double joint_lambda(const Values &walls)
 {
   double open = 1.0;
-  for (const auto &wall : walls) open *= 1.0 - wall.lambda;
+  for (std::size_t l = 0; l < walls.size(); l++) open *= 1.0 - walls[l].lambda;
   return 1.0 - open;
 }
 

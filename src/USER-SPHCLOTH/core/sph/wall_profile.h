@@ -85,51 +85,78 @@ inline WallTable::Value WallProfile::operator()(const WallTable::Value &of) cons
       f * ((slope * (slope - 1.0) + curvature) * fall * fall + slope * of.curvature / of.lambda)};
 }
 
-// What several walls add together.  Half-spaces add the part of the kernel that they miss together;
-// with a profile, whose values may exceed 1, only a bounded part g = f/(1 + f^2) of each overlaps
-// with that of the others, so that each keeps a share of its force above 0.
+// A wall beside a particle: the half-space, and what it adds if it is the only one
+
+struct NearWall {
+  WallTable::Value half_space, alone;
+
+  NearWall(const WallTable::Value &half_space_, const WallProfile &profile) :
+      half_space(half_space_), alone(profile(half_space_))
+  {
+  }
+};
+
+// What several walls, an array, add together.  Half-spaces add the part of the kernel that they
+// miss together; with a profile, whose values may exceed 1, only a bounded part g = f/(1 + f^2) of
+// each overlaps with that of the others, so that each keeps a share of its force above 0.
 
 class JointWalls {
  public:
-  void set(const std::vector<WallTable::Value> &half_spaces, const WallProfile &profile)
+  JointWalls() = default;
+  // with the profile of these
+  JointWalls(const NearWall *walls_, std::size_t n_, const WallProfile &profile) :
+      overlap(profile.changes()), walls(walls_), n(n_)
   {
-    overlap = profile.changes();
-    walls = half_spaces;
-    for (WallTable::Value &wall : walls) wall = profile(wall);
   }
+
+  const WallTable::Value &half_space(std::size_t k) const { return walls[k].half_space; }
+  // of the half-spaces together
+  double half_spaces_lambda() const { return joint_lambda(half_spaces()); }
+  double half_space_share(std::size_t k) const { return joint_share(half_spaces(), k); }
 
   double lambda() const;
   // its derivative with respect to that of wall k
   double share(std::size_t k) const;
   // its derivatives with respect to delta of wall k; the second without that of the share
-  double slope(std::size_t k) const { return share(k) * walls[k].slope; }
-  double curvature(std::size_t k) const { return share(k) * walls[k].curvature; }
+  double slope(std::size_t k) const { return share(k) * walls[k].alone.slope; }
+  double curvature(std::size_t k) const { return share(k) * walls[k].alone.curvature; }
 
  private:
+  struct Values {    // one of each wall
+    const NearWall *of;
+    std::size_t n;
+    WallTable::Value NearWall::*value;
+    std::size_t size() const { return n; }
+    const WallTable::Value &operator[](std::size_t k) const { return of[k].*value; }
+  };
   bool overlap = false;
-  std::vector<WallTable::Value> walls;
+  const NearWall *walls = nullptr;
+  std::size_t n = 0;
 
+  Values half_spaces() const { return {walls, n, &NearWall::half_space}; }
+  Values alone() const { return {walls, n, &NearWall::alone}; }
   static double common(double f) { return f / (1.0 + f * f); }
 };
 
 inline double JointWalls::lambda() const
 {
-  if (!overlap) return joint_lambda(walls);
+  if (!overlap) return joint_lambda(alone());
   double open = 1.0, sum = 0.0;
-  for (const WallTable::Value &wall : walls) {
-    open *= 1.0 - common(wall.lambda);
-    sum += wall.lambda - common(wall.lambda);
+  for (std::size_t k = 0; k < n; k++) {
+    const double f = walls[k].alone.lambda, g = common(f);
+    open *= 1.0 - g;
+    sum += f - g;
   }
   return 1.0 - open + sum;
 }
 
 inline double JointWalls::share(std::size_t k) const
 {
-  if (!overlap) return joint_share(walls, k);
+  if (!overlap) return joint_share(alone(), k);
   double open = 1.0;
-  for (std::size_t l = 0; l < walls.size(); l++)
-    if (l != k) open *= 1.0 - common(walls[l].lambda);
-  const double sq = walls[k].lambda * walls[k].lambda;
+  for (std::size_t l = 0; l < n; l++)
+    if (l != k) open *= 1.0 - common(walls[l].alone.lambda);
+  const double sq = walls[k].alone.lambda * walls[k].alone.lambda;
   return 1.0 - (1.0 - sq) / ((1.0 + sq) * (1.0 + sq)) * (1.0 - open);
 }
 

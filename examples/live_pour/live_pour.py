@@ -50,7 +50,7 @@ neigh_modify    every 1 delay 0 check yes
 timestep        0.002
 fix             gravity all gravity 9.81 vector 0 0 -1
 fix             drain water sph/drain
-fix             step water sph/integrate global gain 1
+fix             step water sph/integrate global gain 1 mass_scaling no
 run_style       sph/adaptive block
 fix             sheet cloth pbd/cloth solver gs pin pins damping 5.0
 fix             contact water cloth/contact 0.01

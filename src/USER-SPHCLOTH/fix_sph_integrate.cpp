@@ -178,7 +178,7 @@ void FixSPHIntegrate::initial_integrate(int)
   if (stepper->updates_all_next() && sound.update()) {
     limits.take_materials();
     control.set_sound_time(limits.shortest_sound_time());
-    control.watch.demand();
+    stepper->forget_stability();
   }
   control.begin_step();
   fluid->advance(update->dt);

@@ -24,7 +24,7 @@ class Scaled {
     std::vector<DirectionSums> gradients(n);
     std::vector<double> strength(n, 0.0);
     std::vector<Stiffness> stiff(n);
-    of.fluid->stiffness(of.p, stiff.data());
+    of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
     of.fluid->vertex_gradients(of.p, is_vertex.data(), gradients.data());
     const double factor = lattice_factor(s);
     for (std::size_t i = 0; i < n; i++) {

@@ -35,7 +35,7 @@ Frequency frequency(const Scene &s)
   std::vector<VertexStiffness> vertices(n);
   std::vector<VertexRow> rows(n);
   const std::vector<int> is_vertex{0, 0, 1};
-  of.fluid->stiffness(of.p, stiff.data());
+  of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
   const double factor = lattice_factor(s);
   of.fluid->vertex_stiffness(of.p, is_vertex.data(), of.sound.data(), vertices.data());
   for (std::size_t i = 0; i < n; i++)

@@ -63,6 +63,20 @@ def soaked_sheet(areal, step, fluid=f"c0 {SOUND}"):
     )
 
 
+def beside_stiff_water(areal, limits):
+    """Let some of that water, out of reach of the sheet, take shorter steps than the rest."""
+    scene = soaked_sheet(areal, f"global {limits} gain 1").replace("box 2", "box 3")
+    return (
+        scene.replace("mass 1", f"mass 3 {1000 * SPACING**3 / LATTICE_SUM}\nmass 1")
+        .replace(
+            "group fluid type 1",
+            "region stiff block INF INF INF INF 0.12 INF units box\nset region stiff type 3\n"
+            "group fluid type 1 3",
+        )
+        .replace("pair_coeff 2 2", "pair_coeff 3 3 fluid 1000 c0 160\npair_coeff 2 2")
+    ) + "run_style sph/adaptive block\nrun 1 post no\n"
+
+
 def soaked(areal, step, fluid=f"c0 {SOUND}"):
     lmp = instance()
     lmp.commands_string(soaked_sheet(areal, step, fluid) + "run 0 post no")
@@ -105,8 +119,9 @@ def stir(lmp, speed=1e-2):
 
 
 def growth_in(lmp, run, speed=1e-2):
-    """By how much the energy of small velocities grows."""
-    stir(lmp, speed)
+    """By how much the energy of small velocities grows; None: of those that there are."""
+    if speed is not None:
+        stir(lmp, speed)
     mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
     before = mass @ (by_id(lmp, "v") ** 2).sum(axis=1)
     lmp.commands_string(run)

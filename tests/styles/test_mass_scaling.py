@@ -16,6 +16,7 @@ from scenes import (
 from step_scenes import (
     LATTICE_SUM,
     SPACING,
+    beside_stiff_water,
     dt_and_limit,
     growth_in,
     momentum_with_sheet,
@@ -36,6 +37,8 @@ def test_the_step_is_that_of_water_whatever_the_mass():
     for areal in (200.0, 4.0, 0.1, 0.002):
         with soaked(areal, f"global {ALONE}") as lmp:
             step, by = dt_and_limit(lmp)
+            lmp.commands_string("run_style sph/adaptive block\nrun 0 post no")
+            assert dt_and_limit(lmp)[0] == pytest.approx(step, rel=1e-12)
         assert by == ACOUSTIC
         assert growth(areal, step, 200, "yes") < 3
         if areal in EXPLODES:
@@ -48,6 +51,22 @@ def growth(areal, step, n, scaled, *, scene=soaked, speed=1e-2):
     """By how much the energy of small velocities grows in constant steps."""
     with scene(areal, f"constant mass_scaling {scaled}") as lmp:
         return growth_in(lmp, f"timestep {step}\nrun {n} post no", speed)
+
+
+@pytest.mark.parametrize("areal", [4.0, 0.1, 0.002])
+def test_water_beside_a_light_sheet_takes_the_smallest_steps(areal):
+    """The mass of the vertices is scaled for these: in longer ones the water would explode."""
+    with instance() as lmp:
+        lmp.commands_string(beside_stiff_water(areal, ALONE))
+        growth = growth_in(lmp, "run 1 post no")
+        (start, scale), active = momentum_with_sheet(lmp), []
+        for _ in range(40):
+            growth *= growth_in(lmp, "run 16 post no", None)
+            active.append(lmp.extract_fix("step", 0, 1, 1))
+        end = momentum_with_sheet(lmp)[0]
+    assert min(active) < 0.6
+    assert growth < 3
+    assert np.abs(end - start).max() < 1e-13 * scale
 
 
 def at_wall(areal, step):
@@ -157,18 +176,20 @@ def test_slow_motions_do_not_change():
     assert 3.3 < change[1] / change[2] < 4.8
 
 
+@pytest.mark.parametrize("style", ["", "run_style sph/adaptive block\n"])
 @pytest.mark.parametrize(("scene", "by"), [(soaked_sheet, 4e-3), (wall_sheet, 2e-4)])
-def test_ranks_and_restart(scene, by, tmp_path):
+def test_ranks_and_restart(scene, by, style, tmp_path):
     """Water and vertices are on other ranks, and images of each other."""
     with instance() as lmp:
-        lmp.commands_string(scene(0.5, f"global {ALONE}"))
+        lmp.commands_string(scene(0.5, f"global {ALONE}") + style)
         lmp.command(f"displace_atoms all random {by} {by} {by} 7 units box")
         lmp.commands_string(f"run 20\nwrite_restart {tmp_path}/half\nrun 20")
         whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
     for ranks in (1, 2, 4):
         folder = tmp_path / str(ranks)
         folder.mkdir()
-        run(write(folder, AGAIN + (CONTACT if scene is wall_sheet else "") + GO_ON), ranks=ranks)
+        contact = CONTACT if scene is wall_sheet else ""
+        run(write(folder, AGAIN + contact + style + GO_ON), ranks=ranks)
         apart = last_frame(folder / "end.txt")[:, 1:] - whole
         apart[:, :3] -= BOX * np.round(apart[:, :3] / BOX)
         assert np.abs(apart).max() < 1e-11
@@ -209,7 +230,6 @@ def test_nothing_is_added_where_it_is_not_asked_for(step, same):
 @pytest.mark.parametrize(
     ("words", "scheme"),
     [
-        ("", "block"),
         ("", "individual"),
         ("acoustic 0.5", "global"),
         ("stability 0", "global"),
@@ -217,5 +237,5 @@ def test_nothing_is_added_where_it_is_not_asked_for(step, same):
 )
 def test_bad_input_is_named(words, scheme):
     script = soaked_sheet(4.0, f"global {words} mass_scaling yes")
-    with instance() as lmp, pytest.raises(Exception, match="yes is for one step of all"):
+    with instance() as lmp, pytest.raises(Exception, match="yes is for steps that follow from"):
         lmp.commands_string(f"{script}run_style sph/adaptive {scheme}\nrun 0")

@@ -390,15 +390,14 @@ void FluidEvaluation::check_densities() const
 void FluidEvaluation::find_frequencies()
 {
   const Particles p = particles();
-  stability.find_fluid(*core, p, boundaries);
-  stability.find_vertices(*core, p, boundaries);
-  if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
+  stability.find_fluid(*core, p, boundaries, hooks ? hooks->frequency_waits() : nullptr);
+  if (stability.need_vertices(*core, boundaries)) {
+    stability.find_vertices(*core, p, boundaries);
+    if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
+  }
   stability.find_rows(*core, p, boundaries, scaled.on());
-  if (!scaled.on()) return;
-  core->for_active_fluid([this](int i, int) {
-    if (scaled.is_beside_vertices(i))
-      stability.set_fluid_sq(i, scaled.frequency_sq(i, stability[i].fluid_sq));
-  });
+  if (scaled.on()) scaled.bound_frequencies(*core, stability);
+  if (hooks) hooks->note_frequencies();
 }
 
 // Inactive particles keep their pressure until lists are built: then it follows from the density.

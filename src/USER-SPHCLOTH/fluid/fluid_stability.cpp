@@ -66,16 +66,14 @@ double FluidStability::find_sound(int i) const
 }
 
 void FluidStability::find_fluid(Fluid &core, const Particles &p,
-                                const std::vector<FluidBoundary *> &boundaries)
+                                const std::vector<FluidBoundary *> &boundaries, const double *waits)
 {
   if (new_lists) begin_lists();
-  if (has_vertices || !boundaries.empty()) {    // inactive fluid presses on vertices, too
-    for (int i = 0; i < p.n_all; i++)
-      if (materials.is_fluid(atom->type[i])) sounds[i] = find_sound(i);
-  } else
-    core.for_active_fluid([this](int i, int) { sounds[i] = find_sound(i); });
-  core.stiffness(p, stiffness.data());
-  core.for_active_fluid([&](int i, int t) {
+  any_waits = waits != nullptr;
+  core.select_fluid([waits](int i) { return !waits || !(waits[i] > 0.0); }, due);
+  core.for_fluid(due, [this](int i, int) { sounds[i] = find_sound(i); });
+  core.stiffness(p, due, stiffness.data());
+  core.for_fluid(due, [&](int i, int t) {
     Stiffness &s = stiffness[i];
     for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
     const double mass = atom_mass(atom, i), sound = sounds[i];
@@ -85,13 +83,30 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
   });
 }
 
-// T_j is complete, and that of a pinned vertex 0.
+bool FluidStability::need_vertices(const Fluid &core,
+                                   const std::vector<FluidBoundary *> &boundaries)
+{
+  const bool any_boundary =
+      std::any_of(boundaries.begin(), boundaries.end(),
+                  [](const FluidBoundary *boundary) { return boundary->has_vertices(); });
+  with_vertices = has_vertices || any_boundary;
+  if (!with_vertices || !any_waits) return with_vertices;
+  int here = 0, anywhere = 0;
+  core.for_fluid(due, [&](int i, int) { here = here || is_near_vertices(core, boundaries, i); });
+  MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+  with_vertices = anywhere != 0;
+  return with_vertices;
+}
+
+// T_j is complete, and that of a pinned vertex 0.  Inactive fluid presses on them, too.
 
 void FluidStability::find_vertices(Fluid &core, const Particles &p,
                                    const std::vector<FluidBoundary *> &boundaries)
 {
   for (FluidBoundary *boundary : boundaries) boundary->find_vertex_stiffness(*this);
   if (!has_vertices) return;
+  for (int i = 0; i < p.n_all; i++)
+    if (materials.is_fluid(atom->type[i])) sounds[i] = find_sound(i);
   core.vertex_stiffness(p, is_vertex.data(), sounds.data(), vertices.data());
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_vertex[atom->type[i]]) continue;
@@ -105,13 +120,28 @@ void FluidStability::find_vertices(Fluid &core, const Particles &p,
 void FluidStability::find_rows(Fluid &core, const Particles &p,
                                const std::vector<FluidBoundary *> &boundaries, bool scaled)
 {
-  if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), scaled, rows.data());
-  core.for_active_fluid([&](int i, int) {
-    VertexRow row = has_vertices ? rows[i] : VertexRow();
-    for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
+  const bool listed = with_vertices && has_vertices;
+  if (listed) core.vertex_rows(p, is_vertex.data(), vertices.data(), scaled, rows.data());
+  core.for_fluid(due, [&](int i, int) {
+    VertexRow row = listed ? rows[i] : VertexRow();
+    if (with_vertices)
+      for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
     found[i].vertices_sq = scaled ? 0.0 : sounds[i] * row.sum;
     found[i].friction += row.friction;
   });
+}
+
+bool FluidStability::is_near_vertices(const Fluid &core,
+                                      const std::vector<FluidBoundary *> &boundaries, int i) const
+{
+  for (FluidBoundary *boundary : boundaries)
+    if (boundary->has_vertices_beside(i)) return true;
+  if (!has_vertices) return false;
+  const DualLists &lists = core.order();
+  const int slot = lists.slot(i);
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_vertex[t] && lists(slot, t).n > 0) return true;
+  return false;
 }
 
 double *FluidStability::pack(int i, double *end) const
@@ -128,4 +158,7 @@ const double *FluidStability::unpack(int i, const double *from)
   return from;
 }
 
-double FluidStability::bytes() const { return bytes_of(sounds, stiffness, vertices, rows, found); }
+double FluidStability::bytes() const
+{
+  return bytes_of(sounds, stiffness, vertices, rows, found, due.slots);
+}

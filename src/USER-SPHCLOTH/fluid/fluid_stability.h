@@ -59,20 +59,27 @@ class FluidStability : protected Pointers {
   }
 
   void lists_have_changed() { new_lists = true; }
-  // Of the active fluid; then of vertices, collective
+  // Of the active fluid but for those that wait: a number above 0, by atom; null: none does.  Then,
+  // collective, of vertices, and whether there are any near those, on any rank
   void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
-                  const std::vector<FluidBoundary *> &);
+                  const std::vector<FluidBoundary *> &, const double *waits);
+  bool need_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
-  // ghosts of vertices have their numbers; of those that are scaled friction alone counts
+  // Ghosts of vertices have their numbers; of those that are scaled friction alone counts.  Without
+  // numbers of vertices where none are needed.
   void find_rows(sphcloth::Fluid &, const sphcloth::Particles &,
                  const std::vector<FluidBoundary *> &, bool scaled);
+  const sphcloth::Selection &found_now() const { return due; }
   void set_fluid_sq(int i, double frequency_sq) { found[i].fluid_sq = frequency_sq; }
+  // of one that waits, as it was found before
+  void set(int i, const Frequencies &before) { found[i] = before; }
+  // Does a vertex, as a boundary particle, stand in the list of an active one, or is a mesh within
+  // reach of it?
+  bool is_near_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &, int i) const;
 
   const Frequencies &operator[](int i) const { return found[i]; }
-  // s_k of fluid
-  double sound_over_density(int i) const { return sounds[i]; }
-  double find_sound(int i) const;
+  double find_sound(int i) const;    // s_k of fluid
   double *pack(int i, double *end) const;
   const double *unpack(int i, const double *from);
 
@@ -82,9 +89,11 @@ class FluidStability : protected Pointers {
   const SPHMaterials &materials;
   const FluidLattices &of_fluids;
   const VertexMobility *mobility = nullptr;
-  bool now = true, new_lists = true, has_vertices = false;
+  bool now = true, new_lists = true, has_vertices = false, with_vertices = false;
+  bool any_waits = false;
+  sphcloth::Selection due;    // those that do not wait
   std::vector<int> is_vertex;    // [ntypes + 1]
-  std::vector<double> sounds;    // s_k, of all atoms
+  std::vector<double> sounds;    // s_k, of all atoms where vertices are particles
   std::vector<sphcloth::Stiffness> stiffness;
   std::vector<sphcloth::VertexStiffness> vertices;    // of all atoms
   std::vector<sphcloth::VertexRow> rows;

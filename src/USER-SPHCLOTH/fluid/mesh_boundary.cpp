@@ -231,7 +231,7 @@ void MeshBoundary::find_vertex_stiffness(const FluidStability &stability)
   for (BoundaryMesh &sheet : sheets) sheet.forget_stiffness();
   for (const ClosestPoint &closest : closest_points) {
     const int i = closest.particle;
-    sheets[closest.sheet].press(closest, stability.sound_over_density(i) * rise(closest).norm(),
+    sheets[closest.sheet].press(closest, stability.find_sound(i) * rise(closest).norm(),
                                 atom_mass(atom, i) * friction(closest));
   }
   for (BoundaryMesh &sheet : sheets) sheet.complete_stiffness();

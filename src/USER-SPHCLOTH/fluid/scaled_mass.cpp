@@ -67,9 +67,14 @@ int ScaledMass::row_of(int vertex)
   return rows[vertex];
 }
 
-double ScaledMass::frequency_sq(int i, double alone_sq) const
+void ScaledMass::bound_frequencies(const Fluid &core, FluidStability &stability) const
 {
-  return MassScaling::frequency_sq(alone_sq, strength[i], gradients[i], atom_mass(atom, i));
+  core.for_fluid(stability.found_now(), [&](int i, int) {
+    if (!is_beside_vertices(i)) return;
+    const double alone_sq = stability[i].fluid_sq;
+    stability.set_fluid_sq(
+        i, MassScaling::frequency_sq(alone_sq, strength[i], gradients[i], atom_mass(atom, i)));
+  });
 }
 
 void ScaledMass::find_kicks(double dt)

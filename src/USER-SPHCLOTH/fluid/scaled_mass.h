@@ -35,8 +35,8 @@ class ScaledMass : protected Pointers {
   // in an evaluation, collective
   void find(sphcloth::Fluid &, const sphcloth::Particles &, FluidStability &,
             const std::vector<FluidBoundary *> &);
-  // square of the frequency that bounds the step of a fluid particle beside vertices
-  double frequency_sq(int i, double alone_sq) const;
+  // those of fluid beside vertices that have been found now
+  void bound_frequencies(const sphcloth::Fluid &, FluidStability &) const;
   bool is_beside_vertices(int i) const { return strength[i] > 0.0; }
 
   const Eigen::Matrix3d &stiffness(int n) const { return stiffnesses[n]; }

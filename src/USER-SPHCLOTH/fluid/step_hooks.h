@@ -24,6 +24,11 @@ class StepHooks {
   // that time (half-kick correction); true if any velocity has changed.
   virtual bool correct_velocities() = 0;
 
+  // For how many updates each particle goes on with the frequencies of before, by atom; then they
+  // are found for the others.
+  virtual const double *frequency_waits() const = 0;
+  virtual void note_frequencies() = 0;
+
   // Forces between particles come next.  Where steps are unequal the next ones are chosen now, and
   // these impulses are to be found with the forces; null if all particles take the same step.
   virtual const sphcloth::Impulses *begin_impulses() = 0;

@@ -264,24 +264,31 @@ void BinChoice::find_bins()
 
 // Time step limiter of Saitoh and Makino: no step is longer than `ratio` times a neighbor's, or
 // than that of a vertex that the particle wets; beside a mesh the vertex with the shortest step
-// counts for all.
+// counts for all.  What gets a part of the impulses of vertices moves with them, in every smallest
+// step.
 
 void BinChoice::limit_differences()
 {
   state.refresh_inactive();
   std::vector<int> &bin = state.bin;
   double *its_bin = state.columns[Columns::BIN];
+  const std::vector<int> &active = fluid->active_particles();
+  const ScaledMass &scaled = fluid->scaled_mass();
   for (const int i : state.boundaries) bin[i] = vertex_bin(i);
-  for (const int i : fluid->active_particles()) {
+  for (const int i : active) {
     bin[i] = static_cast<int>(its_bin[i]);
     if (fluid->is_beside_mesh(i)) its_bin[i] = bin[i] = std::max(bin[i], finest_vertex);
+    if (scaled.on() && scaled.is_beside_vertices(i)) its_bin[i] = bin[i] = state.clock.deepest;
   }
   state.forward_bins();
-  state.ranges_known = state.clock.all_synchronized();
+  // those of few are not worth a pass over all
+  constexpr std::size_t MANY = 8;
+  state.ranges_known = MANY * active.size() > static_cast<std::size_t>(atom->nlocal);
   if (state.ranges_known) fluid->order().measure_block_ranges(bin.data());
-  for (const int i : fluid->active_particles())
+  for (const int i : active)
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
-  for (const int i : fluid->active_particles()) bin[i] = static_cast<int>(its_bin[i]);
+  for (const int i : active) bin[i] = static_cast<int>(its_bin[i]);
+  state.forward_bins();
 }
 
 // for a neighbor?  Particles a little outside the support count as well
@@ -290,10 +297,12 @@ bool BinChoice::is_too_coarse(int i) const
 {
   DualLists &lists = fluid->order();
   const int slot = lists.slot(i), type_i = atom->type[i];
-  for (const int t : lists.present_types())
-    if (lists.any_above(state.bin[i] + allowed_difference(type_i, t), slot, t, state.bin.data(),
-                        state.ranges_known))
+  for (const int t : lists.present_types()) {
+    const int finest = state.clock.deepest + (fluid->is_fluid(t) ? 0 : max_difference);
+    const int allowed = state.bin[i] + allowed_difference(type_i, t);
+    if (allowed < finest && lists.any_above(allowed, slot, t, state.bin.data(), state.ranges_known))
       return true;
+  }
   return false;
 }
 

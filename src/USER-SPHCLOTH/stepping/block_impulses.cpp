@@ -193,7 +193,7 @@ void BlockImpulses::mark_beside(int i)
   if (!state.options.waking) return;
   const int allowed = state.columns.bin(i) - state.options.max_bin_difference();
   const bool any_inactive = !state.clock.all_synchronized() && allowed > 0;
-  if (!any_inactive && !sleeping.enabled()) return;
+  if (!any_inactive && !state.any_asleep) return;
   const int finest_allowed = any_inactive ? allowed : 0;
   DualLists &lists = state.fluid->order();
   const int slot = lists.slot(i);

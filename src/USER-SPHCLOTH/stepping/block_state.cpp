@@ -44,6 +44,7 @@ void BlockState::add_particle(int i)
   columns[Columns::BIN][i] = clock.deepest;
   columns[Columns::EVENT][i] = Columns::NEW;
   columns[Columns::SLOW_SINCE][i] = physical_time(update);
+  forget_frequencies(i);
   if (clock.chosen) begin_own_step(i);
 }
 
@@ -54,6 +55,11 @@ double BlockState::ahead(int i) const
 {
   if (is_new(i)) return -half_step(i);
   return columns[Columns::REACH][i] - static_cast<double>(clock.line.now);
+}
+
+void BlockState::forget_frequencies(int i)
+{
+  columns[Columns::INTERVAL][i] = columns[Columns::WAIT][i] = 0.0;
 }
 
 void BlockState::begin_own_step(int i)
@@ -98,7 +104,7 @@ void BlockState::select_giving()
 {
   giving.clear();
   for (const int i : fluid->active_particles())
-    if (asleep.empty() || !asleep[i]) giving.push_back(i);
+    if (!any_asleep || !asleep[i]) giving.push_back(i);
 }
 
 void BlockState::begin_giving()
@@ -137,7 +143,7 @@ void BlockState::end_giving()
 
 Impulses BlockState::impulses(const std::vector<int> &of, bool with_forces)
 {
-  return {&of,          impulse.data(), span.data(), asleep.empty() ? nullptr : asleep.data(),
+  return {&of,          impulse.data(), span.data(), any_asleep ? asleep.data() : nullptr,
           given.data(), with_forces};
 }
 
@@ -175,7 +181,11 @@ void BlockState::find_sleeping()
     if (fluid->is_fluid(atom->type[i])) bin[i] = columns.bin(i);
   forward_bins();
   asleep.resize(atom->nmax);
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++) asleep[i] = bin[i] == Columns::ASLEEP;
+  any_asleep = false;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+    asleep[i] = bin[i] == Columns::ASLEEP;
+    any_asleep |= asleep[i];
+  }
 }
 
 void BlockState::forward_kicks()

@@ -61,6 +61,10 @@ class BlockColumns : public ParticleColumns {
     SLOW_SINCE,      // when it was fast for the last time, or fell asleep
     ACCEL_SQ,        // square of its acceleration, and rate of its density, in its last update
     DENSITY_RATE,
+    FLUID_SQ,        // of its Frequencies, when they were found last
+    FRICTION,
+    INTERVAL,        // in updates, from then until they are found again; 0: never found
+    WAIT,            // what is left of it
     N_COLUMNS
   };
   static constexpr int ASLEEP = -1;
@@ -90,6 +94,7 @@ class BlockState : protected Pointers {
   // are the ranges of bins of whole blocks of space known, before some of them were raised?
   bool ranges_known = false;
   std::vector<int> asleep;    // 1 or 0; with sleeping water only
+  bool any_asleep = false;    // here, ghosts too
   std::vector<double> given;    // impulses by source, see Impulses, force times ticks
   std::vector<double> kicks;    // changes of velocities [n][3]
   // owned active fluid that is not asleep; of it, by atom, in ticks: for how long it gives
@@ -114,6 +119,7 @@ class BlockState : protected Pointers {
   // enters time bins with the smallest step, until it chooses its own
   void add_particle(int i);
   void begin_own_step(int i);
+  void forget_frequencies(int i);
 
   void make_room();
   void forget_inactive() { inactive_known = false; }

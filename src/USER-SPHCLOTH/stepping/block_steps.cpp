@@ -21,7 +21,7 @@ using Columns = BlockColumns;
 BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClock &clock) :
     Stepper(lmp_, parts_), state(lmp_, parts.fix, parts.options.block), bins(lmp_, parts, state),
     sleeping(lmp_, state, parts.limits), impulses(lmp_, state, sleeping, parts.limits),
-    half_kick(lmp_, state, parts.limits)
+    half_kick(lmp_, state, parts.limits), frequencies(lmp_, state)
 {
   state.clock = clock;
   state.columns.create(Columns::N_COLUMNS, atom->nmax);
@@ -31,9 +31,18 @@ BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClo
 void BlockSteps::init(FluidState *style)
 {
   Stepper::init(style);
+  all_selected = false;
   state.init(style);
   bins.init(style);
   fluid->set_step_hooks(this);
+  if (parts.control.watch.begin_run(parts.limits.settings())) frequencies.forget();
+  parts.control.watch.demand();    // of uniform steps that come later
+}
+
+void BlockSteps::forget_stability()
+{
+  Stepper::forget_stability();
+  frequencies.forget();
 }
 
 /* ----------------------------------------------------------------------
@@ -78,6 +87,10 @@ bool BlockSteps::updates_all_next() const
 
 void BlockSteps::select_active()
 {
+  if (all_selected && state.clock.uniform) {
+    parts.report.updates += static_cast<double>(fluid->active_particles().size());
+    return tell_active(true);
+  }
   const double *bin = state.columns[Columns::BIN], *event = state.columns[Columns::EVENT];
   int n_active = 0, n = 0;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -89,7 +102,9 @@ void BlockSteps::select_active()
   }
   parts.report.updates += n_active;
   // not by the particles of this rank alone: an inactive one may come from another in this step
-  tell_active(state.coarsest == 0 && n_active == n && !sleeping.enabled());
+  const bool all = state.coarsest == 0 && n_active == n && !sleeping.enabled();
+  all_selected = all && state.clock.uniform;
+  tell_active(all);
 }
 
 // Unequal steps are chosen before forces are known, so that each particle gives its impulses in the
@@ -108,8 +123,10 @@ void BlockSteps::choose_bins()
     bins.choose();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;
-  } else if (!state.clock.uniform)
+  } else if (!state.clock.uniform) {
+    state.refresh_inactive();    // atoms may have been sorted since
     state.forward_bins();
+  }
 }
 
 void BlockSteps::apply_impulses()

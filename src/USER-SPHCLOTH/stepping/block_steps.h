@@ -19,6 +19,7 @@
 #include "stepping/block_impulses.h"
 #include "stepping/block_state.h"
 #include "stepping/half_kick.h"
+#include "stepping/kept_frequencies.h"
 #include "stepping/sleeping_water.h"
 #include "stepping/stepper.h"
 
@@ -36,7 +37,12 @@ class BlockSteps : public Stepper, public StepHooks {
   void move() override;
   void end_step() override;
   void choose_step() override;
-  void add_particle(int i) override { state.add_particle(i); }
+  void add_particle(int i) override
+  {
+    state.add_particle(i);
+    all_selected = false;
+  }
+  void forget_stability() override;
   void shift_times(double by) override;
   ParticleColumns &columns() override { return state.columns; }
   const BlockClock *clock() const override { return &state.clock; }
@@ -46,6 +52,8 @@ class BlockSteps : public Stepper, public StepHooks {
   // what the pair style calls
   void find_intervals(std::vector<double> &of_type) const override;
   bool correct_velocities() override { return half_kick.correct_velocities(); }
+  const double *frequency_waits() const override { return frequencies.waits(); }
+  void note_frequencies() override { frequencies.note(); }
   const sphcloth::Impulses *begin_impulses() override;
   void note_pair_forces() override { impulses.note_pair_forces(); }
   void apply_impulses() override;
@@ -63,6 +71,8 @@ class BlockSteps : public Stepper, public StepHooks {
   SleepingWater sleeping;
   BlockImpulses impulses;
   HalfKick half_kick;
+  KeptFrequencies frequencies;
+  bool all_selected = false;    // where all particles take the same step
 
   void advance_clock();
   void choose_bins();

@@ -59,6 +59,7 @@ void SleepingWater::fall_asleep()
     state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
     state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
     std::fill_n(atom->v[i], 3, 0.0);
+    state.ranges_known = false;
   }
 }
 
@@ -110,6 +111,7 @@ void SleepingWater::wake(int i)
     columns[Columns::BIN][i] = state.clock.deepest;
     columns[Columns::EVENT][i] = Columns::NEW;
     columns[Columns::SLOW_SINCE][i] = physical_time(update);
+    state.forget_frequencies(i);
   } else
     columns[Columns::EVENT][i] = Columns::WOKEN;
 }

@@ -27,11 +27,12 @@ class StabilityWatch {
 
   // A run begins: the limit is found in its first evaluation where anything that it follows from
   // has changed, so that several runs are one run.
-  void begin_run(std::uint64_t settings)
+  bool begin_run(std::uint64_t settings)
   {
-    if (settings == now.settings) return;
+    if (settings == now.settings) return false;
     now = State();
     now.settings = settings;
+    return true;
   }
   // is the limit to be found in the evaluation that comes next?
   bool due() const { return now.remaining == 0; }

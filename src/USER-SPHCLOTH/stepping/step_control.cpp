@@ -90,16 +90,6 @@ double StepControl::jump(double now) const
   return std::fabs(by) > OF_STEP * update->dt + ROUNDING * std::fabs(now) ? by : 0.0;
 }
 
-StepLimit StepControl::bounded(const StepLimit &wanted, double before) const
-{
-  return bounded_step(wanted, before, options.growth, options.floor(), options.ceiling);
-}
-
-bool StepControl::is_too_short(const StepLimit &step) const
-{
-  return step.by == Limit::FLOOR && !options.clamp_at_floor;
-}
-
 std::string StepControl::too_short(const StepLimit &wanted, tagint particle) const
 {
   const std::string of = particle ? fmt::format(" of particle {}", particle) : "";

@@ -53,8 +53,14 @@ class StepControl : protected Pointers {
 
   // `wanted`, held between floor and ceiling and to the growth from the step before; an error if it
   // is below a floor that ends the run
-  sphcloth::StepLimit bounded(const sphcloth::StepLimit &wanted, double before) const;
-  bool is_too_short(const sphcloth::StepLimit &bounded) const;
+  sphcloth::StepLimit bounded(const sphcloth::StepLimit &wanted, double before) const
+  {
+    return sphcloth::bounded_step(wanted, before, options.growth, options.floor(), options.ceiling);
+  }
+  bool is_too_short(const sphcloth::StepLimit &step) const
+  {
+    return step.by == sphcloth::Limit::FLOOR && !options.clamp_at_floor;
+  }
   // 0: it is no limit of a particle
   std::string too_short(const sphcloth::StepLimit &wanted, tagint particle) const;
 

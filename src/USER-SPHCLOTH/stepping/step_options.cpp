@@ -113,7 +113,9 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
 
 bool StepOptions::scales_mass(SteppingScheme scheme_in_force) const
 {
-  return mass_scaling.value_or(scheme_in_force == SteppingScheme::GLOBAL && lambda.stability > 0.0);
+  const bool adaptive = scheme_in_force == SteppingScheme::GLOBAL ||
+      scheme_in_force == SteppingScheme::BLOCK;
+  return mass_scaling.value_or(adaptive && lambda.stability > 0.0);
 }
 
 void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times,
@@ -126,10 +128,11 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                label, times.interval, times.interval);
   const bool individual = scheme_in_force == SteppingScheme::INDIVIDUAL;
   const bool unequal = individual || scheme_in_force == SteppingScheme::BLOCK;
-  if (mass_scaling.value_or(false) && (unequal || lambda.stability == 0.0))
+  if (mass_scaling.value_or(false) && (individual || lambda.stability == 0.0))
     error->all(FLERR,
-               "{}: mass_scaling yes is for one step of all that follows from stability: leave it "
-               "out, or use the scheme global without acoustic, viscous and wetted",
+               "{}: mass_scaling yes is for steps that follow from stability, and not for "
+               "individual: leave it out, or use the scheme constant, global or block without "
+               "acoustic, viscous and wetted",
                label);
   if (!unequal) return;
   if (fluid.sound_follows() && (individual || block.sleep > 0.0))

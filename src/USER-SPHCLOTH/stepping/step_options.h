@@ -38,8 +38,8 @@ struct StepOptions {
   double growth = 2.0;    // largest ratio of a step to the one before
   bool ceiling_given = false;
   bool clamp_at_floor = false;    // go on with the floor where a limit is below it
-  std::optional<bool>
-      mass_scaling;    // of vertices beside fluid; not given: with the scheme global
+  // of vertices beside fluid; not given: with the schemes global and block
+  std::optional<bool> mass_scaling;
   bool overdue = false;    // individual steps: are particles updated when their step has passed?
   BlockOptions block;
 

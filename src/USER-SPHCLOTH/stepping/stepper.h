@@ -58,6 +58,8 @@ class Stepper : protected Pointers {
   virtual void end_step() {}
   virtual void choose_step() = 0;
   virtual void add_particle(int) {}    // owned; its columns are zero
+  // what stability allows has changed by more than the motion
+  virtual void forget_stability() { parts.control.watch.demand(); }
   // the physical time has been reset, to one that is later by this: the times that are kept of
   // particles follow
   virtual void shift_times(double by);

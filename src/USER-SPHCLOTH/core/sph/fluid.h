@@ -145,11 +145,25 @@ class Fluid {
   bool select(const Particles &);
   const Selection &active() const { return selection; }
   // act(i, type) for the active fluid particles, in that order
-  template <class Act> void for_active_fluid(Act act) const
+  template <class Act> void for_active_fluid(Act act) const { for_fluid(selection, act); }
+  template <class Act> void for_fluid(const Selection &of, Act act) const
   {
     for (int t = 1; t <= model.n_types; t++)
       if (model.role[t] == Role::FLUID)
-        for (const int slot : selection.of(t)) act(lists.at(slot), t);
+        for (const int slot : of.of(t)) act(lists.at(slot), t);
+  }
+  // of the active fluid particles those for which is_one(i)
+  template <class Is> void select_fluid(Is is_one, Selection &some) const
+  {
+    some.slots.clear();
+    some.first.assign(model.n_types + 2, 0);
+    for (int t = 1; t <= model.n_types; t++) {
+      some.first[t] = some.slots.size();
+      if (model.role[t] != Role::FLUID) continue;
+      for (const int slot : selection.of(t))
+        if (is_one(lists.at(slot))) some.slots.push_back(slot);
+    }
+    some.first[model.n_types + 1] = some.slots.size();
   }
 
   // Records the positions of all particles that are read.  Mixed precision counts from the corner
@@ -192,11 +206,11 @@ class Fluid {
   // are most particles, which are then read in the order in which they lie
   const std::vector<int> *touched() const { return few_touched ? &touched_particles : nullptr; }
 
-  // For the limit of stability, of every active fluid particle, also without pressure.  Vertices
+  // For the limit of stability, of active fluid particles, also without pressure.  Vertices
   // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
   // weights, of all; then the rows, of vertices whose stiffness is complete, ghosts too; of
   // scaled ones friction alone
-  virtual void stiffness(const Particles &, Stiffness *) = 0;
+  virtual void stiffness(const Particles &, const Selection &of, Stiffness *) = 0;
   virtual void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                                 VertexStiffness *) = 0;
   virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,

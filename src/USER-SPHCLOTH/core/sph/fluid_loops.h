@@ -54,7 +54,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
-  void stiffness(const Particles &p, Stiffness *of) override { all_stiffness(p, of); }
+  void stiffness(const Particles &p, const Selection &of, Stiffness *found) override
+  {
+    all_stiffness(p, of, found);
+  }
   void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                         VertexStiffness *) override;
   void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *, bool scaled,
@@ -158,7 +161,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   struct Press {
     double x, y, z, size, slope;
   };
-  void all_stiffness(const Particles &, Stiffness *);
+  void all_stiffness(const Particles &, const Selection &, Stiffness *);
   template <bool BOUNDARY>
   void add_stiffness(const Neighborhood &, const PairTerms &, Columns &, Stiffness &) const;
   static Press press(const Particles &, int i, int j, const PairTerms &);

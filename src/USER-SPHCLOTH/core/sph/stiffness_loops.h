@@ -45,12 +45,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, con
 }
 
 template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, Stiffness *of)
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, const Selection &of,
+                                                           Stiffness *found)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
     if (!is_fluid(t)) continue;
-    for (const int slot : selection.of(t)) {
+    for (const int slot : of.of(t)) {
       const int i = lists.at(slot);
       Stiffness s;
       for (const int other : lists.present_types()) {
@@ -64,7 +65,7 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, S
           add_stiffness<true>(of_type, whole, c, s);
       }
       s.friction /= p.rho[i];
-      of[i] = s;
+      found[i] = s;
     }
   }
 }

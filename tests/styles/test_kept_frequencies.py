@@ -1,0 +1,67 @@
+"""Block steps keep what stability asks for some updates of each particle."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance, last_frame, run, write
+from step_scenes import SPACING, beside_stiff_water, dt_and_limit
+
+BLOCK = "run_style sph/adaptive block\n"
+ALONE = "velocity 0 force 0 density 0 max 1"
+WIDTH = 8 * SPACING
+GO_ON = """dump end all custom 80 end.txt id x y z vx vy vz
+dump_modify end sort id format float %.17g
+run 60
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_a_run_goes_on_with_them_after_a_restart(ranks, tmp_path):
+    scene = beside_stiff_water(4.0, ALONE)
+    fixes = "".join(line for line in scene.splitlines(True) if line.startswith("fix "))
+    with instance() as lmp:
+        lmp.commands_string(f"{scene}displace_atoms all random 1e-4 1e-4 1e-4 7 units box")
+        lmp.commands_string(f"run 19\nwrite_restart {tmp_path}/half")
+        before = lmp.extract_fix("step", 0, 1, 2)
+        lmp.command("run 60")
+        whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
+        assert lmp.extract_fix("step", 0, 1, 2) - before < 0.9 * 60 * 448
+    run(write(tmp_path, f"read_restart half\n{fixes}{BLOCK}{GO_ON}"), ranks=ranks)
+    apart = last_frame(tmp_path / "end.txt")[:, 1:] - whole
+    apart[:, :3] -= WIDTH * np.round(apart[:, :3] / WIDTH)
+    assert np.abs(apart).max() < 1e-11
+
+
+def out_of_reach_of_the_sheet():
+    """Let water that has no vertex near set the smallest step, and wait as long as it may."""
+    lmp = instance()
+    lmp.commands_string(beside_stiff_water(200.0, ALONE) + "run 15 post no")
+    return lmp
+
+
+def step_of_global(lmp):
+    lmp.commands_string("run_style sph/adaptive global\nrun 1 post no")
+    return dt_and_limit(lmp)[0]
+
+
+def test_they_are_found_anew_where_sound_is_faster_in_the_next_run():
+    with out_of_reach_of_the_sheet() as lmp:
+        before = dt_and_limit(lmp)[0]
+        lmp.commands_string("pair_coeff 3 3 fluid 1000 c0 1000\nrun 1 post no")
+        kept = dt_and_limit(lmp)[0]
+        assert kept < 0.5 * before
+        assert kept <= step_of_global(lmp) * (1 + 1e-9)
+
+
+def test_they_are_found_again_while_they_grow():
+    """Water is pressed together by two fifths within 22 steps."""
+    with out_of_reach_of_the_sheet() as lmp:
+        first = step_of_global(lmp)
+    with out_of_reach_of_the_sheet() as lmp:
+        end = 0.3 * WIDTH
+        lmp.command(f"fix press all deform 1 x final {-end} {end} remap x units box")
+        lmp.command("run 22 post no")
+        kept = dt_and_limit(lmp)[0]
+        lmp.command("unfix press")
+        found = step_of_global(lmp)
+    assert found < 0.6 * first
+    assert kept < 1.1 * found

@@ -294,7 +294,7 @@ static double impact_rate(const SPHMaterials &fluid, int type, double rho, doubl
 }
 
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
-// in, as for boundary particles; behind a wall a spring as stiff as the fluid is near.
+// in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
 
 void FixWallSPH::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
 

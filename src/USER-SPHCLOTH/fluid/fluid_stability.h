@@ -59,15 +59,15 @@ class FluidStability : protected Pointers {
   }
 
   void lists_have_changed() { new_lists = true; }
-  // Of the active fluid but for those that wait: a number above 0, by atom; null: none does.  Then,
-  // collective, of vertices, and whether there are any near those, on any rank
+  // Of the active fluid but for those that wait, by atom a number above 0; null: none does.  Then,
+  // collective: is a vertex near one of them, on any rank?  If so, of vertices.
   void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
                   const std::vector<FluidBoundary *> &, const double *waits);
   bool need_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
-  // Ghosts of vertices have their numbers; of those that are scaled friction alone counts.  Without
-  // numbers of vertices where none are needed.
+  // Ghosts of vertices have their numbers, unless there are none near; of those that are scaled
+  // friction alone counts.
   void find_rows(sphcloth::Fluid &, const sphcloth::Particles &,
                  const std::vector<FluidBoundary *> &, bool scaled);
   const sphcloth::Selection &found_now() const { return due; }

@@ -147,6 +147,17 @@ class Clock:
         return self.interval / steps, steps
 
 
+def clock_by_spacing(interval: float) -> Callable[[Mapping[str, float]], Clock]:
+    """Return the clock of a script whose ``spacing`` and ``support`` are of the finest particles.
+
+    Args:
+        interval: time between two rows of the log, s.
+    """
+    return lambda values: Clock(
+        0.5 * values["support"] * values["spacing"] / values["sound"], interval
+    )
+
+
 @dataclass(frozen=True)
 class Scene:
     """A scene to run with many settings.

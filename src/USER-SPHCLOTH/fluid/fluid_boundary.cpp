@@ -22,3 +22,15 @@ std::vector<FluidBoundary *> LAMMPS_NS::find_fluid_boundaries(Modify *modify)
                         [](const FluidBoundary *b) { return !b->renormalizes(); });
   return found;
 }
+
+bool LAMMPS_NS::have_vertices(const std::vector<FluidBoundary *> &boundaries)
+{
+  return std::any_of(boundaries.begin(), boundaries.end(),
+                     [](const FluidBoundary *boundary) { return boundary->has_vertices(); });
+}
+
+bool LAMMPS_NS::have_vertices_beside(const std::vector<FluidBoundary *> &boundaries, int i)
+{
+  return std::any_of(boundaries.begin(), boundaries.end(),
+                     [i](FluidBoundary *boundary) { return boundary->has_vertices_beside(i); });
+}

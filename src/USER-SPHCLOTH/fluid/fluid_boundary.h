@@ -90,6 +90,10 @@ class FluidBoundary {
 // all of a scene, in the order of evaluation
 std::vector<FluidBoundary *> find_fluid_boundaries(Modify *);
 
+// of all boundaries together
+bool have_vertices(const std::vector<FluidBoundary *> &);
+bool have_vertices_beside(const std::vector<FluidBoundary *> &, int i);
+
 }    // namespace LAMMPS_NS
 
 #endif

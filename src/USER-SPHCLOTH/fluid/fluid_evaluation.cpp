@@ -390,8 +390,9 @@ void FluidEvaluation::check_densities() const
 void FluidEvaluation::find_frequencies()
 {
   const Particles p = particles();
-  stability.find_fluid(*core, p, boundaries, hooks ? hooks->frequency_waits() : nullptr);
-  if (stability.need_vertices(*core, boundaries)) {
+  const double *waits = hooks ? hooks->frequency_waits() : nullptr;
+  stability.find_fluid(*core, p, boundaries, waits);
+  if (stability.need_vertices(*core, boundaries, waits)) {
     stability.find_vertices(*core, p, boundaries);
     if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
   }

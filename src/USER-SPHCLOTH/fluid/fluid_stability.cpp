@@ -69,7 +69,6 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
                                 const std::vector<FluidBoundary *> &boundaries, const double *waits)
 {
   if (new_lists) begin_lists();
-  any_waits = waits != nullptr;
   core.select_fluid([waits](int i) { return !waits || !(waits[i] > 0.0); }, due);
   core.for_fluid(due, [this](int i, int) { sounds[i] = find_sound(i); });
   core.stiffness(p, due, stiffness.data());
@@ -84,13 +83,11 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
 }
 
 bool FluidStability::need_vertices(const Fluid &core,
-                                   const std::vector<FluidBoundary *> &boundaries)
+                                   const std::vector<FluidBoundary *> &boundaries,
+                                   const double *waits)
 {
-  const bool any_boundary =
-      std::any_of(boundaries.begin(), boundaries.end(),
-                  [](const FluidBoundary *boundary) { return boundary->has_vertices(); });
-  with_vertices = has_vertices || any_boundary;
-  if (!with_vertices || !any_waits) return with_vertices;
+  with_vertices = has_vertices || have_vertices(boundaries);
+  if (!with_vertices || !waits) return with_vertices;
   int here = 0, anywhere = 0;
   core.for_fluid(due, [&](int i, int) { here = here || is_near_vertices(core, boundaries, i); });
   MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
@@ -134,8 +131,7 @@ void FluidStability::find_rows(Fluid &core, const Particles &p,
 bool FluidStability::is_near_vertices(const Fluid &core,
                                       const std::vector<FluidBoundary *> &boundaries, int i) const
 {
-  for (FluidBoundary *boundary : boundaries)
-    if (boundary->has_vertices_beside(i)) return true;
+  if (have_vertices_beside(boundaries, i)) return true;
   if (!has_vertices) return false;
   const DualLists &lists = core.order();
   const int slot = lists.slot(i);

@@ -63,7 +63,8 @@ class FluidStability : protected Pointers {
   // collective: is a vertex near one of them, on any rank?  If so, of vertices.
   void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
                   const std::vector<FluidBoundary *> &, const double *waits);
-  bool need_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &);
+  bool need_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &,
+                     const double *waits);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
   // Ghosts of vertices have their numbers, unless there are none near; of those that are scaled
@@ -90,7 +91,6 @@ class FluidStability : protected Pointers {
   const FluidLattices &of_fluids;
   const VertexMobility *mobility = nullptr;
   bool now = true, new_lists = true, has_vertices = false, with_vertices = false;
-  bool any_waits = false;
   sphcloth::Selection due;    // those that do not wait
   std::vector<int> is_vertex;    // [ntypes + 1]
   std::vector<double> sounds;    // s_k, of all atoms where vertices are particles

@@ -120,8 +120,7 @@ bool FluidState::feels_moving_wall(int i) const
 
 bool FluidState::is_beside_mesh(int i) const
 {
-  return std::any_of(boundaries.begin(), boundaries.end(),
-                     [&](FluidBoundary *boundary) { return boundary->has_vertices_beside(i); });
+  return have_vertices_beside(boundaries, i);
 }
 
 void FluidState::find_pair_forces(std::vector<double> &forces)

@@ -21,9 +21,7 @@ void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability
   kicks_known = false;
   const std::vector<int> &is_vertex = stability.vertex_types();
   any_pairs = stability.any_vertices();
-  any_vertices = any_pairs ||
-      std::any_of(boundaries.begin(), boundaries.end(),
-                  [](const FluidBoundary *boundary) { return boundary->has_vertices(); });
+  any_vertices = any_pairs || have_vertices(boundaries);
   if (!any_vertices) return;
   gradients.resize(atom->nmax);
   strength.assign(atom->nmax, 0.0);

@@ -288,7 +288,6 @@ void BinChoice::limit_differences()
   for (const int i : active)
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
   for (const int i : active) bin[i] = static_cast<int>(its_bin[i]);
-  state.forward_bins();
 }
 
 // for a neighbor?  Particles a little outside the support count as well

@@ -123,10 +123,10 @@ void BlockSteps::choose_bins()
     bins.choose();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;
-  } else if (!state.clock.uniform) {
-    state.refresh_inactive();    // atoms may have been sorted since
-    state.forward_bins();
   }
+  if (state.clock.uniform) return;
+  state.refresh_inactive();    // atoms may have been sorted since they were chosen
+  state.forward_bins();
 }
 
 void BlockSteps::apply_impulses()

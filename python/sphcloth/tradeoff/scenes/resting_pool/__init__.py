@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
-from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.scene import Quantity, Scene, clock_by_spacing, column
 from sphcloth.tradeoff.variations import ONE_RESOLUTION, SHARES
 
 # of the log, s; the settling time is a multiple
 INTERVAL = 0.02
-
-
-def clock(values: Mapping[str, float]) -> Clock:
-    """Return the times of the fall."""
-    return Clock(0.5 * values["support"] * values["spacing"] / values["sound"], INTERVAL)
-
 
 SCENE = Scene(
     name="resting-pool",
@@ -31,6 +24,6 @@ SCENE = Scene(
     reference={"scheme": "constant", "acoustic": "0.05"},
     variables={"calm": str(INTERVAL), "frames": "1"},
     quick={"spacing": "0.02", "width": "1.6"},
-    clock=clock,
+    clock=clock_by_spacing(INTERVAL),
     last_run=True,
 )

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
-from sphcloth.tradeoff.scene import Clock, Quantity, Scene, column
+from sphcloth.tradeoff.scene import Quantity, Scene, clock_by_spacing, column
 from sphcloth.tradeoff.variations import CEILINGS, SHARES
 
 # of the log, s; the settling time is a multiple
@@ -13,11 +12,6 @@ INTERVAL = 0.03
 COEFFICIENTS = ("0.2", "0.4", "0.6", "0.8", "1.0", "1.2", "1.4", "1.6", "1.8")
 # for schemes in which particles have steps of their own
 UNEQUAL = {"stability": SHARES[1:], "ceiling": CEILINGS}
-
-
-def clock(values: Mapping[str, float]) -> Clock:
-    """Return the times of the motion, by the fine water."""
-    return Clock(0.5 * values["support"] * values["spacing"] / values["sound"], INTERVAL)
 
 
 SCENE = Scene(
@@ -38,6 +32,6 @@ SCENE = Scene(
     reference={"scheme": "constant", "acoustic": "0.1"},
     variables={"calm": str(INTERVAL), "frames": "1"},
     quick={"across": "16", "layers": "18", "hole": "2", "below": "10"},
-    clock=clock,
+    clock=clock_by_spacing(INTERVAL),
     last_run=True,
 )

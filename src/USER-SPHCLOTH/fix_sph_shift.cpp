@@ -14,9 +14,11 @@
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
+#include "integrate.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
+#include "stepping/stepping_scheme.h"
 #include "update.h"
 
 #include <algorithm>
@@ -78,6 +80,13 @@ void FixSPHShift::init()
                label, force->pair_style ? force->pair_style : "none");
   if (modify->get_fix_by_style("^sph/shift$").size() > 1)
     error->all(FLERR, "{}: there is another fix sph/shift: keep one, with a group of all fluid",
+               label);
+  const auto *run_style = dynamic_cast<HasSteppingScheme *>(update->integrate);
+  if (fluid->integrates_density() && run_style &&
+      run_style->stepping_scheme() == SteppingScheme::BLOCK)
+    error->all(FLERR,
+               "{}: a shift is no motion of the fluid, but 'density continuity' with block follows "
+               "positions: use 'density summation', or another scheme than block",
                label);
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);

@@ -14,6 +14,7 @@ from scenes import (
     sph_tait,
 )
 from step_scenes import FLUCTUATION, dt_and_limit, steps_by_limit
+from test_stepping import own_steps
 
 
 def on_floor(options, run):
@@ -40,6 +41,7 @@ def run_column(options, run):
     return lmp
 
 
+BLOCK = "\nrun_style sph/adaptive block\n"
 OTHERS_OFF = "acoustic 0 velocity 0 force 0 density 0"
 
 
@@ -82,18 +84,59 @@ def test_the_controller_takes_small_paces_and_halves_in_a_shock():
     assert min(steps) == pytest.approx(0.05 * 0.05 / 25, rel=1e-12)
 
 
-def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(tmp_path):
+@pytest.mark.parametrize("scheme", ["", BLOCK])
+def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(scheme, tmp_path):
     options = f"{OTHERS_OFF} fluctuation 0.01 output 0.0101"
-    whole = run_column(options, f"run 320\nwrite_restart {tmp_path / 'stop'}")
+    whole = run_column(options, f"{scheme}run 320\nwrite_restart {tmp_path / 'stop'}")
     # what the controller knows of the past counts: no shock now, but one from rest
     assert whole.extract_fix("step", 0, 1, 3) > 2 * 0.01
     assert whole.extract_global("dt") > 2 * 0.05 * 0.05 / 25
     whole.command("run 60")
     again = instance()
     again.commands_string(
-        f"read_restart {tmp_path / 'stop'}\ncomm_modify vel yes\n" + on_floor(options, "run 60")
+        f"read_restart {tmp_path / 'stop'}\ncomm_modify vel yes\n"
+        + on_floor(options, f"{scheme}run 60")
     )
     for quantity in ("time", "dt"):
         assert again.get_thermo(quantity) == whole.get_thermo(quantity)
     assert steps_by_limit(again) == steps_by_limit(whole)
     np.testing.assert_array_equal(by_id(again, "x"), by_id(whole, "x"))
+
+
+def test_with_block_where_all_steps_are_equal_they_are_those_of_global():
+    steps = {}
+    for scheme, gain in (("global", ""), ("block", "gain 100")):
+        lmp = run_column(f"{OTHERS_OFF} fluctuation 0.01 {gain}", "")
+        if scheme == "block":
+            lmp.command(BLOCK)
+        lmp.command("run 0 post no")
+        steps[scheme] = []
+        for _ in range(200):
+            lmp.command("run 1 post no")
+            steps[scheme].append(lmp.extract_global("dt"))
+            assert dt_and_limit(lmp)[1] == FLUCTUATION
+        lmp.close()
+    np.testing.assert_allclose(steps["block"], steps["global"], rtol=1e-6)
+    assert max(steps["global"]) > 1.1 * min(steps["global"])
+
+
+def test_with_block_no_particle_takes_a_longer_step():
+    """A fast part of the water has a limit below the controller's, the other would have none."""
+    others = OTHERS_OFF.replace("velocity 0", "velocity 0.2")
+    lmp = run_column(f"gain 1 fluctuation 0.05 {others}", "")
+    lmp.commands_string(
+        "region top block INF INF INF INF 0.35 INF units box\ngroup top region top\n"
+        "displace_atoms top move 0 0 0.2 units box\nvelocity top set 100 0 0 units box"
+    )
+    lmp.commands_string(BLOCK + "run 0 post no")
+    shares, steps = [], []
+    for _ in range(200):
+        lmp.command("run 1 pre no post no")
+        shares.append(lmp.extract_fix("step", 0, 1, 1))
+        steps.append(own_steps(lmp).max() / 0.05 * 25)
+    assert min(shares) < 0.5
+    assert max(steps) < 0.25 * 1.002**200
+    lmp.commands_string(
+        f"fix step all sph/integrate global gain 1 max 0.01 {others}\nrun 100 post no"
+    )
+    assert own_steps(lmp).max() / 0.05 * 25 > 2 * 0.25

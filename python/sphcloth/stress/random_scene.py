@@ -157,6 +157,8 @@ def draw(seed: int) -> RandomScene:
         s |= {"gravity": False, "walls": False, "plate": False, "pins": "none"}
         s["water"] = "block" if s["water"] == "jet" else s["water"]
     _draw_steps(r, s)
+    if s["scheme"] == "block" and not s["shift"] and r.random() < 0.3:
+        s["density"] = "continuity"
     return RandomScene(**s)
 
 

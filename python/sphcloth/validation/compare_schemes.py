@@ -68,7 +68,7 @@ def compare_schemes(
 ) -> Comparison:
     """Run a case by every scheme, each in a folder of its own, and write ``schemes.json``.
 
-    Individual and block steps need summed densities: all schemes take them here where the case
+    Individual steps need summed densities: all schemes take them here where the case
     takes continuity.
 
     Raises:

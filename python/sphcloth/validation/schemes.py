@@ -32,10 +32,16 @@ def check(values: Mapping[str, Value]) -> None:
         UserError: names the setting, its value and the remedy.
     """
     scheme = values.get("scheme")
-    if scheme in UNEQUAL and values.get("density") == "continuity":
+    if scheme == "individual" and values.get("density") == "continuity":
         raise UserError(
-            f"--set scheme={scheme}: steps of individual particles need densities by summation, "
-            "not density=continuity: add --set density=summation, or take scheme constant or global"
+            f"--set scheme={scheme}: individual steps need densities by summation, not "
+            "density=continuity: add --set density=summation, or take another scheme"
+        )
+    if scheme == "block" and values.get("density") == "continuity" and values.get("shift"):
+        raise UserError(
+            "--set scheme=block: density=continuity follows positions and does not know what is a "
+            "shift of particles: add --set density=summation or --set shift=0, or take another "
+            "scheme"
         )
 
 

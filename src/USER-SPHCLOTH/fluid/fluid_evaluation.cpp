@@ -190,7 +190,7 @@ void FluidEvaluation::begin_lists()
 {
   mass_or_volume.resize(atom->nmax);
   p_over_rho2.assign(atom->nmax, 0.0);
-  if (diffuses()) gradient.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
+  if (integrates_density()) integrated.begin_lists(hooks);
   if (core->model.outputs == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
@@ -332,42 +332,7 @@ void FluidEvaluation::find_densities(const Particles &p)
     return core->for_active_fluid(
         [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });
   }
-  check_densities();
-  core->record(p);
-  core->gather(p, false);
-  integrate_density(p);
-}
-
-// The velocities are those with which the particles came here, so the rate is that at the middle of
-// the displacement.  At its end it would be wrong by the divergence that the forces have made
-// since, which is a diffusion of -dt c0^2 / 2.
-
-void FluidEvaluation::integrate_density(const Particles &p)
-{
-  rate.resize(atom->nmax);
-  const double dt = elapsed, back = 0.5 * dt;
-  if (!(dt > 0.0)) return;
-  find_density_rates(p, back);
-  for (FluidBoundary *boundary : boundaries)
-    core->for_active_fluid([&](int i, int) { rate[i] = boundary->density_rate(i, rate[i], back); });
-  core->for_active_fluid([&](int i, int) { p.rho[i] += dt * rate[i]; });
-  elapsed = 0.0;
-  if (const int every = options.reinit; every && update->ntimestep % every == 0) {
-    ghosts.send_to_ghosts(GhostData::DENSITY);
-    core->smooth_densities(p, rate.data());
-    core->for_active_fluid([&](int i, int) { p.rho[i] = rate[i]; });
-  }
-}
-
-// Inactive particles keep their gradient.
-
-void FluidEvaluation::find_density_rates(const Particles &p, double back)
-{
-  if (diffuses()) {
-    core->density_gradients(p, gradient.data());
-    ghosts.send_to_ghosts(GhostData::GRADIENT);
-  }
-  core->density_rates(p, diffuses() ? gradient.data() : nullptr, back, rate.data());
+  integrated.integrate(*core, p, boundaries, hooks, new_lists);
 }
 
 void FluidEvaluation::find_boundary_pressures(const Particles &p)
@@ -375,16 +340,6 @@ void FluidEvaluation::find_boundary_pressures(const Particles &p)
   for (int t = 1; t <= atom->ntypes; t++)
     if (extrapolates(t)) core->boundary_pressures(p, t, p_over_rho2.data());
   ghosts.send_to_ghosts(GhostData::DENSITY);
-}
-
-void FluidEvaluation::check_densities() const
-{
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is_fluid(atom->type[i]) && !(atom->rho[i] > 0.0))
-      rank_error(lmp, FLERR,
-                 "{}: particle {} has density {}: give every fluid particle one, 'set group all "
-                 "sph/rho RHO0', or use 'density summation'",
-                 STYLE, atom->tag[i], atom->rho[i]);
 }
 
 void FluidEvaluation::find_frequencies()
@@ -434,6 +389,8 @@ int FluidEvaluation::ghost_size(GhostData what)
   switch (what) {
     case GhostData::MASS_OR_VOLUME: return 1;
     case GhostData::DENSITY: return 2;
+    case GhostData::SINCE:
+    case GhostData::CHANGE: return 1;
     case GhostData::GRADIENT: return 3;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
     case GhostData::STRENGTH: return 1;
@@ -454,7 +411,8 @@ int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) c
         *end++ = atom->rho[i];
         *end++ = p_over_rho2[i];
         break;
-      case GhostData::GRADIENT: end = std::copy_n(&gradient[3 * i], 3, end); break;
+      case GhostData::SINCE:
+      case GhostData::GRADIENT: end = integrated.pack(what, i, end); break;
       case GhostData::STIFFNESS: end = stability.pack(i, end); break;
       default: end += scaled.pack(what, i, end);
     }
@@ -471,10 +429,8 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
         atom->rho[i] = *buf++;
         p_over_rho2[i] = *buf++;
         break;
-      case GhostData::GRADIENT:
-        std::copy_n(buf, 3, &gradient[3 * i]);
-        buf += 3;
-        break;
+      case GhostData::SINCE:
+      case GhostData::GRADIENT: buf = integrated.unpack(what, i, buf); break;
       case GhostData::STIFFNESS: buf = stability.unpack(i, buf); break;
       default: buf += scaled.unpack(what, i, buf);
     }
@@ -483,18 +439,28 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
 
 int FluidEvaluation::pack_reverse(GhostData what, int n, int first, double *buf) const
 {
-  int size = 0;
-  for (int i = first; i < first + n; i++) size += scaled.pack(what, i, buf + size);
-  return size;
+  double *end = buf;
+  for (int i = first; i < first + n; i++) {
+    if (what == GhostData::CHANGE)
+      end = integrated.pack(what, i, end);
+    else
+      end += scaled.pack(what, i, end);
+  }
+  return static_cast<int>(end - buf);
 }
 
-void FluidEvaluation::add(GhostData, int n, const int *list, const double *buf)
+void FluidEvaluation::add(GhostData what, int n, const int *list, const double *buf)
 {
-  for (int k = 0; k < n; k++) scaled.add(list[k], buf + 3 * k);
+  for (int k = 0; k < n; k++) {
+    if (what == GhostData::CHANGE)
+      integrated.add(list[k], buf[k]);
+    else
+      scaled.add(list[k], buf + 3 * k);
+  }
 }
 
 double FluidEvaluation::bytes() const
 {
-  return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() +
-      bytes_of(mass_or_volume, p_over_rho2, rate, gradient, approach, active_fluid);
+  return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
+      bytes_of(mass_or_volume, p_over_rho2, approach, active_fluid);
 }

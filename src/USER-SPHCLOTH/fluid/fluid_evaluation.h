@@ -51,7 +51,6 @@ class FluidEvaluation : public FluidState {
   // pressure is the fluid's, fluid
   bool measure_volume = false, extrapolate = false, any_fluid = true;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
-  std::vector<double> rate;
 
   void find_sides();
   void begin_lists();    // new atoms: masses, and arrays as large
@@ -62,9 +61,6 @@ class FluidEvaluation : public FluidState {
   void measure_volumes(const sphcloth::Particles &);
   void find_equal_masses(const sphcloth::Particles &);
   void find_densities(const sphcloth::Particles &);
-  void check_densities() const;
-  void integrate_density(const sphcloth::Particles &);
-  void find_density_rates(const sphcloth::Particles &, double back);
   void find_pressures(const sphcloth::Particles &);
   void push(FluidBoundary &);
   void find_boundary_pressures(const sphcloth::Particles &);

@@ -9,6 +9,7 @@
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_lattices.h"
 #include "fluid/fluid_stability.h"
+#include "fluid/integrated_density.h"
 #include "fluid/scaled_mass.h"
 #include "fluid/sph_materials.h"
 
@@ -31,7 +32,7 @@ class FluidState : public SPHMaterials {
 
   FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
       SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_), stability(lmp_, *this, lattices),
-      scaled(lmp_, ghosts_), pair(pair_)
+      scaled(lmp_, ghosts_), integrated(lmp_, *this, ghosts_), pair(pair_)
   {
   }
   FluidLattices lattices;
@@ -100,7 +101,7 @@ class FluidState : public SPHMaterials {
   // owned fluid particles that are updated in this evaluation, with step hooks only
   const std::vector<int> &active_particles() const { return active_fluid; }
   // time that has passed since the last evaluation, for a density that follows its rate
-  void advance(double dt) { elapsed += dt; }
+  void advance(double dt) { integrated.advance(dt); }
 
   // The square of the speed of sound of a fluid, from the next evaluation on
   void change_stiffness(int type, double k);
@@ -124,6 +125,7 @@ class FluidState : public SPHMaterials {
   GhostExchange &ghosts;
   FluidStability stability;
   ScaledMass scaled;
+  IntegratedDensity integrated;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;
@@ -135,12 +137,10 @@ class FluidState : public SPHMaterials {
   double **active = nullptr;
   int active_column = 0;
   bool pressures_follow = false;
-  double elapsed = 0.0;
   std::vector<int> active_fluid;    // in the order of the lists
 
   std::vector<double> mass_or_volume, p_over_rho2;    // of all atoms
   std::vector<double> approach;    // empty unless wanted
-  std::vector<double> gradient;    // of the density, [n][3], empty unless it diffuses
 
   sphcloth::Particles particles();
   // of a pair of types in the loops

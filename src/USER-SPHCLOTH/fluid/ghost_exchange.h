@@ -6,9 +6,20 @@
 
 namespace LAMMPS_NS {
 
-// one number, density and pressure, three, what a vertex has; for mass scaling one, three and three
+// One number, density and pressure; for a density that is integrated three, one and one; what a
+// vertex has; for mass scaling one, three and three
 
-enum class GhostData { MASS_OR_VOLUME, DENSITY, GRADIENT, STIFFNESS, STRENGTH, KICK, IMPULSE };
+enum class GhostData {
+  MASS_OR_VOLUME,
+  DENSITY,
+  GRADIENT,
+  SINCE,
+  CHANGE,
+  STIFFNESS,
+  STRENGTH,
+  KICK,
+  IMPULSE
+};
 
 class GhostExchange {
  public:

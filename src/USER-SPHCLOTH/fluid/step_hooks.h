@@ -14,11 +14,27 @@ struct Impulses;
 
 namespace LAMMPS_NS {
 
+// Of a density that is integrated, by atom: its sum (1) and its gradient in the last update, and
+// what other particles have added since
+
+struct KeptDensity {
+  // for a sum: there has been no update; its sum now would be another
+  static constexpr double NONE = 0.0, UNKNOWN = -1.0;
+  double *sum;
+  double *gradient[3];
+  double *change;
+};
+
 class StepHooks {
  public:
   // The mean time between updates of a particle of each type, in smallest steps; at least 1, and
   // left as it is where no particle of the type is updated.
   virtual void find_intervals(std::vector<double> &of_type) const = 0;
+
+  // For a density that is integrated: the time since the last update of each owned particle before
+  // this one, negative where none comes now
+  virtual void find_times_since_update(double *since) const = 0;
+  virtual KeptDensity kept_density() = 0;
 
   // Densities and pressures are known.  At an output time this is where velocities are brought to
   // that time (half-kick correction); true if any velocity has changed.

@@ -93,12 +93,14 @@ StepLimit BinChoice::want_steps(const std::vector<int> &of, bool ask_neighbors)
   for (const int i : of) wanted[i] = state.clock.line.step(static_cast<int>(its_bin[i]));
 
   const StepControl &control = parts.control;
+  const double controlled = state.clock.controlled;
   StepLimit tightest;
   parts.limits.ask_neighbors(ask_neighbors);
   parts.limits.for_particles(of, rates, [&](int i, const StepLimit &limit) {
     // what this fix does not move limits no step, as where all take the same
     const bool moves = atom->mask[i] & parts.fix->groupbit;
-    const StepLimit allowed = moves ? limit : StepLimit{parts.options.ceiling, Limit::CEILING};
+    StepLimit allowed = moves ? limit : StepLimit{parts.options.ceiling, Limit::CEILING};
+    if (controlled > 0.0) allowed.tighten(controlled, Limit::FLUCTUATION);
     const StepLimit step = control.bounded(allowed, wanted[i]);
     if (control.is_too_short(step))
       rank_error(lmp, FLERR, control.too_short(allowed, atom->tag[i]));
@@ -145,6 +147,7 @@ void BinChoice::begin_base_step()
 {
   BlockClock &clock = state.clock;
   const std::vector<int> &active = fluid->active_particles();
+  control_step();
   StepLimit tightest = want_steps(active, false);
   BaseStep base = find_base_step(tightest);
   if (!base.uniform) {
@@ -155,6 +158,7 @@ void BinChoice::begin_base_step()
     tightest.tighten(among_neighbors.dt, among_neighbors.by);
     base = find_base_step(tightest);
   }
+  if (clock.controlled > 0.0) clock.longest = longest_wanted();
   const bool continues = clock.begun() && clock.uniform && clock.deepest == 0 && base.uniform;
   const double end = static_cast<double>(TimeBins::ticks(0));
   const double ratio = clock.line.base / base.length;
@@ -169,6 +173,25 @@ void BinChoice::begin_base_step()
   clock.output_time = base.output_time;
   if (!continues) find_bins();
   if (base.uniform) clock.limit = base.by;
+}
+
+void BinChoice::control_step()
+{
+  BlockClock &clock = state.clock;
+  clock.controlled = 0.0;
+  if (!parts.control.controls()) return;
+  clock.controlled = parts.control.controlled_step(clock.longest, clock.largest_compression);
+  clock.largest_compression = parts.control.compression_found();
+}
+
+// Where other limits are tighter the controller goes on from them.  0: there is no fluid
+
+double BinChoice::longest_wanted() const
+{
+  double mine = 0.0, all;
+  for (const int i : fluid->active_particles()) mine = std::max(mine, wanted[i]);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
 }
 
 BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)

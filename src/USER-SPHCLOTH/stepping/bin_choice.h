@@ -58,6 +58,8 @@ class BinChoice : protected Pointers {
   sphcloth::StepLimit want_steps(const std::vector<int> &of, bool ask_neighbors);
   void begin_base_step();
   BaseStep find_base_step(sphcloth::StepLimit tightest);
+  void control_step();
+  double longest_wanted() const;
   bool may_gain(double shortest, double gain);
   void find_bins();
   void limit_differences();

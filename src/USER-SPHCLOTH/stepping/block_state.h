@@ -34,6 +34,9 @@ struct BlockClock {
   bool reaches_output = false;    // the base step ends at an output time
   bool defers = false;    // vertices get deferred impulses in the coming step
   double output_time = 0.0;
+  // what the controller of compression allows in this base step, 0: it is off; the longest step
+  // that a particle has been allowed, and the compression when that was
+  double controlled = 0.0, longest = 0.0, largest_compression = 0.0;
 
   bool begun() const { return line.base > 0.0; }
   bool all_synchronized() const { return line.now == 0; }    // but for sleeping particles
@@ -65,6 +68,9 @@ class BlockColumns : public ParticleColumns {
     FRICTION,
     INTERVAL,        // in updates, from then until they are found again; 0: never found
     WAIT,            // what is left of it
+    SUM,             // of KeptDensity
+    GRADIENT,        // three
+    CHANGE = GRADIENT + 3,
     N_COLUMNS
   };
   static constexpr int ASLEEP = -1;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -35,8 +36,18 @@ void BlockSteps::init(FluidState *style)
   state.init(style);
   bins.init(style);
   fluid->set_step_hooks(this);
-  if (parts.control.watch.begin_run(parts.limits.settings())) frequencies.forget();
+  if (parts.control.watch.begin_run(parts.limits.settings())) forget_settings();
   parts.control.watch.demand();    // of uniform steps that come later
+}
+
+// Frequencies and sums are of other atoms, kernels or materials.
+
+void BlockSteps::forget_settings()
+{
+  frequencies.forget();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (double &sum = state.columns[Columns::SUM][i]; sum != KeptDensity::NONE)
+      sum = KeptDensity::UNKNOWN;
 }
 
 void BlockSteps::forget_stability()
@@ -184,6 +195,28 @@ void BlockSteps::find_intervals(std::vector<double> &of_type) const
   }
   for (std::size_t t = 0; t < of_type.size(); t++)
     if (updates[t] > 0.0) of_type[t] = std::max(1.0, particles[t] / updates[t]);
+}
+
+// Particles that enter have no step behind them, and sleeping ones keep their density.
+
+void BlockSteps::find_times_since_update(double *since) const
+{
+  const double now = physical_time(update);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *row = parts.rows[i];
+    const double time = state.is_new(i) ? 0.0 : now - row[UpdateRows::LAST_UPDATE];
+    since[i] = row[UpdateRows::ACTIVE] != 0.0 ? time : -time;
+    if (state.is_asleep(i)) since[i] = std::numeric_limits<double>::infinity();
+  }
+}
+
+KeptDensity BlockSteps::kept_density()
+{
+  BlockColumns &columns = state.columns;
+  constexpr int X = Columns::GRADIENT;
+  return {columns[Columns::SUM],
+          {columns[X], columns[X + 1], columns[X + 2]},
+          columns[Columns::CHANGE]};
 }
 
 int BlockSteps::count_sleeping() const

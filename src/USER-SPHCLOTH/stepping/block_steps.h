@@ -52,6 +52,8 @@ class BlockSteps : public Stepper, public StepHooks {
   // what the pair style calls
   void find_intervals(std::vector<double> &of_type) const override;
   bool correct_velocities() override { return half_kick.correct_velocities(); }
+  void find_times_since_update(double *since) const override;
+  KeptDensity kept_density() override;
   const double *frequency_waits() const override { return frequencies.waits(); }
   void note_frequencies() override { frequencies.note(); }
   const sphcloth::Impulses *begin_impulses() override;
@@ -74,6 +76,7 @@ class BlockSteps : public Stepper, public StepHooks {
   KeptFrequencies frequencies;
   bool all_selected = false;    // where all particles take the same step
 
+  void forget_settings();
   void advance_clock();
   void choose_bins();
   void select_active();

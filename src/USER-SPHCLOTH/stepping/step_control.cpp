@@ -54,10 +54,7 @@ void StepControl::restore(const State &before)
 void StepControl::choose(const StepLimit &mine, tagint particle)
 {
   StepLimit wanted = tightest_of_ranks(mine);
-  if (control.eta > 0.0) {
-    compression = compression_of_ranks();
-    wanted.tighten(control.step(previous, compression, largest_before), Limit::FLUCTUATION);
-  }
+  if (controls()) wanted.tighten(controlled_step(previous, largest_before), Limit::FLUCTUATION);
   StepLimit step = bounded(wanted, previous);
   if (is_too_short(step)) {
     error->all(FLERR, too_short(wanted, owner_of(wanted, mine, particle)));
@@ -66,6 +63,12 @@ void StepControl::choose(const StepLimit &mine, tagint particle)
   limit = step.by;
   if (step.dt != update->dt) set_timestep(step.dt);
   if (times.arrives()) times.announce_thermo();
+}
+
+double StepControl::controlled_step(double before, double largest_compression_before)
+{
+  compression = compression_of_ranks();
+  return control.step(before, compression, largest_compression_before);
 }
 
 void StepControl::take(double dt, Limit by, bool ends_at_output_time)

@@ -38,6 +38,11 @@ class StepControl : protected Pointers {
   void choose(const sphcloth::StepLimit &mine, tagint particle);
   // the next step, as a scheme has chosen it
   void take(double dt, sphcloth::Limit by, bool ends_at_output_time);
+  // is the step controlled by compression?  Then, collective: the step that the controller allows
+  // behind one of this length, which was chosen at this compression
+  bool controls() const { return control.eta > 0.0; }
+  double controlled_step(double before, double largest_compression_before);
+  double compression_found() const { return compression.largest; }    // by that
   void end_step();
 
   // By how much the physical time is later than at the end of the last step: 0, unless it has been

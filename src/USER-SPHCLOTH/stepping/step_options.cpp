@@ -140,16 +140,10 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                "{}: a speed of sound that follows the flow changes where all particles are updated "
                "together, with {} they never are: use another scheme, or a constant 'c0 C'",
                label, individual ? "individual" : "sleep");
-  if (fluid.integrates_density())
+  if (fluid.integrates_density() && individual)
     error->all(
         FLERR,
-        "{}: steps of individual particles need densities by summation, 'density continuity' "
-        "integrates them: use 'density summation', or another scheme than {}",
-        label, individual ? "individual" : "block");
-  if (!individual && eta > 0.0)
-    error->all(
-        FLERR,
-        "{}: fluctuation {} is for one step of all: leave it out, or use another scheme than "
-        "block",
-        label, eta);
+        "{}: individual steps need densities by summation, 'density continuity' integrates them: "
+        "use 'density summation', or another scheme than individual",
+        label);
 }

@@ -99,7 +99,7 @@ void FluidLoops<K, P>::smooth_densities(const Particles &p, double *smooth)
         const PairTerms &of_pair = model.pair(t, other);
         for (int k = 0; k < found.n; k++) {
           const int j = found.of[k];
-          const double w = p.mass_or_volume[j] * weight(p, i, j, of_pair.kernel);
+          const double w = p.mass_or_volume[j] * weight<K>(p, i, j, of_pair.kernel);
           mass += (is_fluid(other) ? of_pair.rho0_ratio : of_pair.rho0) * w;
           volume += is_fluid(other) ? w / p.rho[j] : w;
         }
@@ -121,23 +121,13 @@ void FluidLoops<K, P>::boundary_pressures(const Particles &p, int type, double *
       if (!is_fluid(other)) continue;
       const NeighborSpan found = lists(slot, other);
       for (int k = 0; k < found.n; k++) {
-        const double w = weight(p, i, found.of[k], model.pair(type, other).kernel);
+        const double w = weight<K>(p, i, found.of[k], model.pair(type, other).kernel);
         sum += w * model.pressure_scale[other] * p.p_over_rho2[found.of[k]];
         weights += w;
       }
     }
     p_over_rho2[i] = weights > 0.0 ? sum / weights : 0.0;
   }
-}
-
-// W of a pair, for loops that do not run at every step or over every particle
-
-template <class K, class P>
-double FluidLoops<K, P>::weight(const Particles &p, int i, int j, const KernelScale &s)
-{
-  const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
-               dz = p.x[3 * i + 2] - p.x[3 * j + 2];
-  return s.w * K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * s.inv_support);
 }
 
 }    // namespace sphcloth

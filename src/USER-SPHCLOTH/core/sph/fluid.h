@@ -13,6 +13,7 @@
 #ifndef SPHCLOTH_CORE_SPH_FLUID_H
 #define SPHCLOTH_CORE_SPH_FLUID_H
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -52,6 +53,11 @@ struct PairTerms {
   // how much a boundary presses over the gradient of the fluid's energy, as a root: what it adds to
   // stiffness()
   double response = 1.0;
+
+  // Rate of a particle over (mass times slope)/rho.  Artificial viscosity acts along the line of
+  // two particles while they approach each other: of all directions not more than half is in one,
+  // and that half of the time.
+  double friction_rate() const { return 2.0 * nu + 0.25 * monaghan; }
 };
 
 struct FluidModel {
@@ -90,6 +96,15 @@ struct Particles {
   bool is_active(int i) const { return !active || active[i][active_column] != 0.0; }
 };
 
+// W of a pair, for loops that do not run at every step or over every particle
+
+template <class K> double weight(const Particles &p, int i, int j, const KernelScale &s)
+{
+  const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
+               dz = p.x[3 * i + 2] - p.x[3 * j + 2];
+  return s.w * K::shape(std::sqrt(dx * dx + dy * dy + dz * dz) * s.inv_support);
+}
+
 // Impulses by source, of fluid particles that take steps of their own: of the terms of a pair each
 // partner gives that of its own pressure, and half of the friction, to both, with opposite signs.
 // What both get is one number in double precision: momentum is exact.  A neighbor that is asleep
@@ -103,6 +118,15 @@ struct Impulses {
   const int *sleeping;    // of all particles, 1: it is asleep; null: none is
   double *given;    // added to, [n_all][STRIDE], force times time
   bool with_forces;    // beside them the forces on these particles, as of Fluid::forces()
+};
+
+// Diffusion of the density between particles that take steps of their own: what it has moved
+// between two of them since the last update of either is found in the next update of either.
+
+struct Diffusion {
+  const double *gradient;    // of the density, of all, [n][3]
+  const double *since;    // of all, the time since the last update; negative: none comes now
+  double *change;    // of the densities of all, added to
 };
 
 // what the neighbors do to one particle, per mass of fluid or per volume of a boundary
@@ -187,6 +211,9 @@ class Fluid {
   // ago; with diffusion if the gradients of all, ghosts too, are given
   virtual void density_rates(const Particles &, const double *gradient, double back,
                              double *rate) = 0;
+
+  // What active particles exchange with all
+  virtual void diffuse(const Particles &, const Diffusion &) = 0;
 
   // Density by kernel interpolation of the densities of all: sum m W / sum (m/rho) W
   virtual void smooth_densities(const Particles &, double *smooth) = 0;

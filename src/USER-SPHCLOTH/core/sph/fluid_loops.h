@@ -45,6 +45,7 @@ template <class K, class P> class FluidLoops : public Fluid {
     all_density_gradients(p, gradient);
   }
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
+  void diffuse(const Particles &, const Diffusion &) override;
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
   void record(const Particles &p) override
@@ -119,7 +120,6 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <bool WEIGHTED> double shape_sum(const Neighborhood &, Columns &) const;
   void sum_densities(const Particles &, bool sum);
   void sum_volumes(int type, double *volume);
-  static double weight(const Particles &, int i, int j, const KernelScale &);
 
   // force_loops.h
   void apply(const Particles &, int i, bool fluid, const Acceleration &) const;
@@ -152,23 +152,11 @@ template <class K, class P> class FluidLoops : public Fluid {
       for (int d = 0; d < 3; d++) f[d] += friction * velocity[d];
     return f;
   }
-  static SPHCLOTH_INLINE void load_sleeping(Columns &c, const int *sleeping, const int *near)
-  {
-    for (int m = 0; m < LANES; m++) c.asleep[m] = static_cast<Real>(sleeping[near[m]]);
-  }
 
   // stiffness_loops.h
-  struct Press {
-    double x, y, z, size, slope;
-  };
   void all_stiffness(const Particles &, const Selection &, Stiffness *);
   template <bool BOUNDARY>
   void add_stiffness(const Neighborhood &, const PairTerms &, Columns &, Stiffness &) const;
-  static Press press(const Particles &, int i, int j, const PairTerms &);
-  // Of a pair of types: rate of a particle over (mass times slope)/rho.  Artificial viscosity acts
-  // along the line of two particles while they approach each other: of all directions not more than
-  // half is in one, and that half of the time.
-  static double friction_of(const PairTerms &t) { return 2.0 * t.nu + 0.25 * t.monaghan; }
 
   // rate_loops.h
   void all_density_gradients(const Particles &, double *gradient);
@@ -176,6 +164,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   Differences density_differences(const Neighborhood &, Columns &) const;
   template <bool FROM_BOUNDARY, bool DIFFUSION>
   double density_rate(const Neighborhood &, double back, Columns &) const;
+  void diffuse_all(const Particles &, const Diffusion &);
 };
 
 template <class K> std::unique_ptr<Fluid> fluid_of_kernel(Precision precision)

@@ -106,7 +106,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
       [&](int from) SPHCLOTH_LAMBDA {
         records.load(c, of.near.of + from);
         mass = of.masses.group(from);
-        if (SLEEPING) load_sleeping(c, gift.sleeping, of.near.of + from);
+        if (SLEEPING) records.load_sleeping(c, gift.sleeping, of.near.of + from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];

@@ -78,7 +78,8 @@ template <class P> class PairColumns {
     Real u, v, w, p_over_rho2;
   };
   struct Gradient {
-    Real x, y, z, none;
+    Real x, y, z;
+    Real since;    // of Diffusion, or 0
   };
   // one group of neighbors
   struct Columns {
@@ -133,14 +134,21 @@ template <class P> class PairColumns {
       for (int i = 0; i < p.n_all; i++) record_one(p, role, scale, i);
   }
 
-  void record_gradients(const double *gradient, int n)
+  // since may be null.  Of some particles, null: of all n
+  void record_gradients(const double *gradient, const double *since, int n,
+                        const std::vector<int> *some)
   {
     gradients.resize(n + LANES);
-    for (int i = 0; i < n; i++) {
+    const auto record_one = [&](int i) {
       const double *of = gradient + 3 * i;
       gradients[i] = {static_cast<Real>(of[0] * unit), static_cast<Real>(of[1] * unit),
-                      static_cast<Real>(of[2] * unit), Real(0)};
-    }
+                      static_cast<Real>(of[2] * unit),
+                      since ? static_cast<Real>(since[i]) : Real(0)};
+    };
+    if (some)
+      for (const int i : *some) record_one(i);
+    else
+      for (int i = 0; i < n; i++) record_one(i);
   }
 
   // The one loop over the neighbors of a particle: for each group load(first neighbor), which fills
@@ -185,6 +193,11 @@ template <class P> class PairColumns {
   {
     columns(&motions[0].u, near, c.u, c.v, c.w, c.p_over_rho2);
     load_sites(c, near);
+  }
+
+  static SPHCLOTH_INLINE void load_sleeping(Columns &c, const int *sleeping, const int *near)
+  {
+    for (int m = 0; m < LANES; m++) c.asleep[m] = static_cast<Real>(sleeping[near[m]]);
   }
 
   double bytes() const { return bytes_of(sites, motions, gradients); }

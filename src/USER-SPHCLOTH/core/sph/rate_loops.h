@@ -126,7 +126,7 @@ void FluidLoops<K, P>::density_rates(const Particles &p, const double *gradient,
                                      double *rate)
 {
   if (!gradient) return all_density_rates<false>(p, back, rate);
-  records.record_gradients(gradient, p.n_all);
+  records.record_gradients(gradient, nullptr, p.n_all, touched());
   all_density_rates<true>(p, back, rate);
 }
 
@@ -154,6 +154,62 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
                                        : density_rate<false, false>(of, back, c);
       }
       rate[i] = sum;
+    }
+  }
+}
+
+template <class K, class P>
+void FluidLoops<K, P>::diffuse(const Particles &p, const Diffusion &diffusion)
+{
+  records.record_gradients(diffusion.gradient, diffusion.since, p.n_all, touched());
+  diffuse_all(p, diffusion);
+}
+
+// Each pair exchanges, in double precision, one volume.  It does so once: where both partners are
+// active each takes its own part.
+
+template <class K, class P>
+SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::diffuse_all(const Particles &p,
+                                                         const Diffusion &diffusion)
+{
+  Columns c;
+  alignas(64) Real gx[LANES], gy[LANES], gz[LANES], since[LANES];
+  alignas(64) double to[LANES];
+  for (int t = 1; t <= model.n_types; t++) {
+    if (!is_fluid(t)) continue;
+    const Terms &terms_of_pair = pair(t, t);
+    for (const int slot : selection.of(t)) {
+      const int i = lists.at(slot);
+      const NeighborSpan near = lists(slot, t);
+      const Neighborhood of{i, near, terms_of_pair, masses(p, near, t)};
+      const Real rho_i = records.sites[i].density_or_volume;
+      const typename Records::Gradient gradient = records.gradients[i];
+      const double *mass = nullptr;
+      LaneSum<LANES> change;
+      records.for_neighbors(
+          of, c,
+          [&](int from) SPHCLOTH_LAMBDA {
+            records.load_sites(c, near.of + from);
+            columns(&records.gradients[0].x, near.of + from, gx, gy, gz, since);
+            mass = of.masses.group(from);
+          },
+          [&](int k, Separation r) SPHCLOTH_LAMBDA {
+            const Real elapsed = std::min(gradient.since, std::fabs(since[k]));
+            const Real rho_j = c.density_or_volume[k];
+            const Real slope = elapsed * terms_of_pair.f *
+                K::slope_over_q(std::sqrt(r.sq()) * terms_of_pair.inv_support);
+            const Real linear = (gradient.x + gx[k]) * r.x + (gradient.y + gy[k]) * r.y +
+                (gradient.z + gz[k]) * r.z;
+            const Real less =
+                terms_of_pair.diffusion * slope * (rho_i - rho_j - Real(0.5) * linear);
+            change.of[k] += mass[k] * (less / rho_j);
+            to[k] = since[k] < Real(0) ? less / rho_i : Real(0);
+          },
+          [&](int from) SPHCLOTH_LAMBDA {
+            const double scale = f_unit * p.mass_or_volume[i];
+            for (int m = 0; m < LANES; m++) diffusion.change[near.of[from + m]] -= scale * to[m];
+          });
+      diffusion.change[i] += f_unit * change.total();
     }
   }
 }

@@ -41,7 +41,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, con
   s.gradient[1] += response * f_unit * y.total();
   s.gradient[2] += response * f_unit * z.total();
   s.fluid += f_unit * f_unit * squares.total();
-  s.friction += friction_of(whole) * f_unit / records.unit * weights.total();
+  s.friction += whole.friction_rate() * f_unit / records.unit * weights.total();
 }
 
 template <class K, class P>
@@ -72,9 +72,11 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, c
 
 // d rho/d x of a fluid particle i over the volume of the vertex j, as a length along a unit vector
 
-template <class K, class P>
-SPHCLOTH_INLINE typename FluidLoops<K, P>::Press FluidLoops<K, P>::press(const Particles &p, int i,
-                                                                         int j, const PairTerms &t)
+struct Press {
+  double x, y, z, size, slope;
+};
+
+template <class K> SPHCLOTH_INLINE Press press(const Particles &p, int i, int j, const PairTerms &t)
 {
   const double dx = p.x[3 * i] - p.x[3 * j], dy = p.x[3 * i + 1] - p.x[3 * j + 1],
                dz = p.x[3 * i + 2] - p.x[3 * j + 2];
@@ -131,8 +133,8 @@ void FluidLoops<K, P>::vertex_stiffness(const Particles &p, const int *is_vertex
   walk.for_vertices([&](int j, int type) SPHCLOTH_LAMBDA {
     VertexStiffness v;
     walk.for_fluid_beside(j, type, [&](int i, const PairTerms &t) SPHCLOTH_LAMBDA {
-      const Press s = press(p, i, j, t);
-      v.friction += friction_of(t) * p.mass_or_volume[i] * s.slope / p.rho[i];
+      const Press s = press<K>(p, i, j, t);
+      v.friction += t.friction_rate() * p.mass_or_volume[i] * s.slope / p.rho[i];
       v.add(weight[i] * s.size, s.x, s.y, s.z);
     });
     of[j] = v;
@@ -147,7 +149,7 @@ void FluidLoops<K, P>::vertex_rows(const Particles &p, const int *is_vertex,
   for_active_fluid([&](int i, int type) SPHCLOTH_LAMBDA {
     VertexRow row;
     walk.for_vertices_beside(i, type, [&](int j, const PairTerms &t) SPHCLOTH_LAMBDA {
-      const Press s = press(p, i, j, t);
+      const Press s = press<K>(p, i, j, t);
       if (s.slope == 0.0) return;
       const VertexStiffness &v = vertices[j];
       if (!scaled) row.sum += s.size * std::sqrt(v.trace() * v.along(s.x, s.y, s.z));
@@ -164,7 +166,7 @@ void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex
   for_active_fluid([&](int i, int type) SPHCLOTH_LAMBDA {
     DirectionSums sums;
     walk.for_vertices_beside(i, type, [&](int j, const PairTerms &t) SPHCLOTH_LAMBDA {
-      const Press s = press(p, i, j, t);
+      const Press s = press<K>(p, i, j, t);
       sums.add(p.mass_or_volume[j] * std::fabs(s.size), s.x, s.y, s.z);
     });
     of[i] = sums;
@@ -180,7 +182,7 @@ void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
   walk.for_vertices([&](int j, int type) SPHCLOTH_LAMBDA {
     walk.for_fluid_beside(j, type, [&](int i, const PairTerms &t) SPHCLOTH_LAMBDA {
       if (!(strength[i] > 0.0)) return;
-      const Press s = press(p, i, j, t);
+      const Press s = press<K>(p, i, j, t);
       const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
       if (stiffness > 0.0) pairs.add({i, s.x, s.y, s.z, stiffness});
     });

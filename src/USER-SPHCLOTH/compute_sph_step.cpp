@@ -29,6 +29,7 @@ static std::vector<NamedValue> values_of_step()
       {"wait/mean", TIMES + 6, INTENSIVE},
       {"sound", TIMES + 7, INTENSIVE},
       {"sound/work", TIMES + 8, EXTENSIVE},
+      {"pairs", TIMES + 9, EXTENSIVE},
   };
   for (int k = 1; k < N_LIMITS; k++)
     values.push_back({fmt::format("steps/{}", limit_name(Limit(k))), STEPS + k, INTENSIVE});

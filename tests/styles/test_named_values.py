@@ -11,7 +11,7 @@ LIMITS = "velocity force acoustic viscous density relative wetted cloth max"
 OF_STEPS = f"{LIMITS} min growth fluctuation output"
 STEP = (
     "dt limit active updates compression clamped {} {} output next/output sleeping updates/ideal "
-    "wait/max wait/mean sound sound/work"
+    "wait/max wait/mean sound sound/work pairs"
 )
 CLOTH = "force/x force/y force/z strain residual sweeps energy halfkick/x halfkick/y halfkick/z"
 CLOTH += " unconverged"
@@ -33,7 +33,7 @@ NAMES = {
     "cloth/contact": ("contact", False, CONTACT.split()),
 }
 EXTENSIVE = {
-    "sph/step": ["updates", "updates/ideal", "sleeping", "sound/work", *PARTICLES.split()],
+    "sph/step": ["updates", "updates/ideal", "sleeping", "sound/work", "pairs", *PARTICLES.split()],
     "pbd/cloth": [n for n in CLOTH.split() if n not in ("strain", "residual", "sweeps")],
     "cloth/contact": [n for n in CONTACT.split() if n not in ("overlap", "cpu", "cloth/gap")],
 }

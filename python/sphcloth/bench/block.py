@@ -7,8 +7,9 @@ update few particles. Times are processor times of one core, but for the single 
 
 from __future__ import annotations
 
+import re
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -55,7 +56,18 @@ COMPARED = {
     "drop_in_pool": Compared("drop-in-pool", {"sleep": "0.02"}),
     "light_cloth": Compared("pour", quick=True, saves=False),
 }
+SAVING = tuple(name for name, compared in COMPARED.items() if compared.saves)
 METRICS = (*COMPARED, UNIFORM, FEW_ACTIVE)
+PAIRS = "pair_evaluations_per_update"
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Processor time (s), particle updates, and pair evaluations per update."""
+
+    time: float
+    updates: float
+    pairs: float
 
 
 @dataclass(frozen=True)
@@ -65,10 +77,12 @@ class Ratios:
     Attributes:
         time: processor time.
         updates: how often a particle was updated; None where that says nothing.
+        pairs: pair evaluations per update; None where that was not counted.
     """
 
     time: float
     updates: float | None = None
+    pairs: float | None = None
 
     @property
     def saved(self) -> float:
@@ -109,6 +123,11 @@ def bench_block(
             for metric, value in figures_of(name, ratios).items()
         },
     }
+    if saving := [ratios for name, ratios in found.items() if name in SAVING]:
+        # of the scene with the most
+        result["figures"][PAIRS] = figure(
+            [max(r.pairs for r in each) for each in zip(*saving, strict=True)]
+        )
     show(result, console)
     return result
 
@@ -119,37 +138,53 @@ def _measure(name: str, across: int, steps: int) -> Ratios:
         usual = activity.usual_steps(seconds, active)
         return Ratios(usual.few / usual.whole)
     if name == UNIFORM:
-        return _over_global(lambda scheme, folder: time_rest(scheme, across, steps, folder))
-    return _over_global(lambda scheme, folder: time_scene(COMPARED[name], scheme, folder))
+        return _over_global(lambda scheme, folder: measure_rest(scheme, across, steps, folder))
+    return _over_global(lambda scheme, folder: measure_scene(COMPARED[name], scheme, folder))
 
 
-def _over_global(run: Callable[[str, Path], tuple[float, float]]) -> Ratios:
-    """Run both schemes, each in a folder of its own, and compare their times and updates."""
+def _over_global(run: Callable[[str, Path], Cost]) -> Ratios:
+    """Run both schemes, each in a folder of its own, and compare what they cost."""
     costs = []
     for scheme in SCHEMES:
         with tempfile.TemporaryDirectory() as folder:
             costs.append(run(scheme, Path(folder)))
-    (time, updates), (block_time, block_updates) = costs
-    return Ratios(block_time / time, block_updates / updates)
+    of_all, of_each = costs
+    return Ratios(
+        of_each.time / of_all.time, of_each.updates / of_all.updates, of_each.pairs / of_all.pairs
+    )
 
 
-def time_scene(compared: Compared, scheme: str, folder: Path) -> tuple[float, float]:
-    """Return processor time (s) and particle updates of the last run of a scene's script."""
+def measure_scene(compared: Compared, scheme: str, folder: Path) -> Cost:
+    """Measure a scene's script."""
     scene = all_scenes()[compared.scene]
     values = compared.both | (compared.block if scheme == "block" else {})
     variables = scene.script_variables(scheme, values, compared.quick)
-    said = Runner(scene.script, folder)(**variables)
+    said, pairs = _run_counting(Runner(scene.script, folder), variables)
     log = folder / "said"
     log.write_text(said, encoding="utf-8")
     updates = count_updates(ThermoTable.read(log, last_run=True), scene.text, scheme)
-    return read_timing(said).cpu, updates
+    return Cost(read_timing(said).cpu, updates, pairs)
 
 
-def time_rest(scheme: str, across: int, steps: int, folder: Path) -> tuple[float, float]:
-    """Return processor time (s) and particle updates of water at rest whose steps are equal."""
-    run = Runner(activity.SCRIPT, folder, across=across, steps=steps)
-    timing = read_timing(run(scheme=scheme, share=0))
-    return timing.cpu, timing.steps * timing.particles
+def measure_rest(scheme: str, across: int, steps: int, folder: Path) -> Cost:
+    """Measure water at rest whose steps are equal."""
+    runner = Runner(activity.SCRIPT, folder, across=across, steps=steps, share=0)
+    said, pairs = _run_counting(runner, {"scheme": scheme})
+    timing = read_timing(said)
+    return Cost(timing.cpu, timing.steps * timing.particles, pairs)
+
+
+def _run_counting(runner: Runner, variables: Mapping[str, object]) -> tuple[str, float]:
+    """Return the log of a script and its pair evaluations per update, over all of its runs."""
+    script = (runner.folder / runner.script).read_text(encoding="utf-8")
+    fix = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)[1]
+    counted = runner.folder / "in.counted"
+    counted.write_text(
+        f'include {runner.script}\nprint "pair evaluations per update: $(f_{fix}[36]/f_{fix}[3])"\n'
+    )
+    runner.script = counted.name
+    said = runner(**variables)
+    return said, float(re.findall(r"^pair evaluations per update: (.*)$", said, re.MULTILINE)[-1])
 
 
 def figures_of(name: str, ratios: list[Ratios]) -> dict:
@@ -158,6 +193,8 @@ def figures_of(name: str, ratios: list[Ratios]) -> dict:
     Without fewer updates there is nothing to save, and no such figure.
     """
     figures = {name: figure([each.time for each in ratios])}
+    if name != FEW_ACTIVE:
+        figures[f"{name}_pairs"] = figure([each.pairs for each in ratios])
     if name in COMPARED:
         figures[f"{name}_updates"] = figure([each.updates for each in ratios])
         if COMPARED[name].saves and all(each.updates < 1 for each in ratios):
@@ -173,7 +210,7 @@ def show(result: dict, console: Console) -> None:
         f"water at rest of {result['particles']} particles"
     )
     table.add_column("")
-    for head in ("processor\ntime", "updates", "saved of\nthe ideal"):
+    for head in ("processor\ntime", "updates", "saved of\nthe ideal", "pairs per\nupdate"):
         table.add_column(head, justify="right")
     labels = {name: COMPARED[name].scene for name in COMPARED} | {
         "light_cloth": "pour, light cloth",
@@ -182,6 +219,6 @@ def show(result: dict, console: Console) -> None:
     }
     for name in METRICS:
         if name in figures:
-            metrics = (name, f"{name}_updates", f"{name}_saved")
+            metrics = (name, f"{name}_updates", f"{name}_saved", f"{name}_pairs")
             table.add_row(labels[name], *(cell(figures.get(metric)) for metric in metrics))
     console.print(table)

@@ -89,6 +89,9 @@ class FluidState : public SPHMaterials {
   // the rates of a type of fluid, of this viscosity at the boundary
   Wetting wetting_by(int fluid_type, double nu) const;
 
+  // of this rank, since pair_style was given
+  double pair_evaluations() const { return core ? core->pair_evaluations() : 0.0; }
+
   bool feels_moving_wall(int i) const;
   bool is_beside_mesh(int i) const;
   // of a force on owned atom i; `from` points to i from where its partner is

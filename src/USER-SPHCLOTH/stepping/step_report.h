@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[35].
+// What fix sph/integrate tells: counters, and the outputs f_ID[1] to f_ID[36].
 
 #ifndef SPHCLOTH_STEPPING_STEP_REPORT_H
 #define SPHCLOTH_STEPPING_STEP_REPORT_H
@@ -39,6 +39,7 @@ class StepReport : protected Pointers {
     MEAN_WAIT,
     SOUND_SPEED,
     SOUND_WORK,
+    PAIR_EVALUATIONS,
     N_OUTPUTS
   };
 

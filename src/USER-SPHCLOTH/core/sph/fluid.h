@@ -253,6 +253,8 @@ class Fluid {
   using Receiver = void (*)(void *context, int i, const Acceleration &);
   virtual void virials(const Particles &, Receiver, void *context) = 0;
 
+  // how often a loop has evaluated a neighbor of a particle, so far
+  virtual double pair_evaluations() const = 0;
   virtual double bytes() const = 0;
 
   const DualLists &order() const { return lists; }

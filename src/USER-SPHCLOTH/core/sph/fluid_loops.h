@@ -66,6 +66,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) override;
   void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
                     VertexPairs &) override;
+  double pair_evaluations() const override { return static_cast<double>(records.n_evaluated); }
   double bytes() const override
   {
     return lists.bytes() + records.bytes() +

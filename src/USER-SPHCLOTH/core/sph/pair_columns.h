@@ -105,6 +105,7 @@ template <class P> class PairColumns {
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
+  mutable std::int64_t n_evaluated = 0;    // pairs, by the loop over neighbors
 
   // Of some particles, null: of all
   void record_positions(const Particles &p, const Fluid::Box &box, double support,
@@ -163,6 +164,7 @@ template <class P> class PairColumns {
   SPHCLOTH_INLINE void for_neighbors(const Neighborhood &of, Columns &c, Load load, Term term,
                                      Done done) const
   {
+    n_evaluated += of.near.n;
     const Site site = sites[of.i];
     const Coordinate outside = site.x + of.terms.outside;
     const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];

@@ -105,6 +105,7 @@ void FixSPHIntegrate::init()
   control.init(fluid, limits.shortest_sound_time());
   first_kick.begin_run(atom);
   stepper->init(fluid);
+  fluid->take_pair_evaluations();    // before this run
   check_group();
 }
 
@@ -201,6 +202,7 @@ void FixSPHIntegrate::finish_step()
 {
   control.end_step();
   report.count_step(control.limited_by());
+  report.pair_evaluations += fluid->take_pair_evaluations();
   stepper->end_step();
   stepper->choose_step();
   control.times.look_for_end();
@@ -249,13 +251,15 @@ struct FixSPHIntegrate::Record {
   SteppingScheme scheme;
   double sound_work, sound_elapsed;
   int sound_columns;
+  double pair_evaluations;
 };
 
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
-  const double mine[4] = {report.updates, report.ideal_updates, report.waits, sound.work};
-  double all[4] = {0.0, 0.0, 0.0, 0.0}, longest_wait = 0.0;
-  MPI_Reduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, 0, world);
+  const double mine[5] = {report.updates, report.ideal_updates, report.waits, sound.work,
+                          report.pair_evaluations};
+  double all[5] = {0.0, 0.0, 0.0, 0.0, 0.0}, longest_wait = 0.0;
+  MPI_Reduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, 0, world);
   MPI_Reduce(&report.longest_wait, &longest_wait, 1, MPI_DOUBLE, MPI_MAX, 0, world);
   if (comm->me) return;
   const StepControl::State state = control.state();
@@ -276,7 +280,8 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       scheme,
                       all[3],
                       sound.elapsed,
-                      sound.columns.count()};
+                      sound.columns.count(),
+                      all[4]};
   write_record(fp, record);
 }
 
@@ -292,6 +297,7 @@ void FixSPHIntegrate::restart(char *buf)
   report.updates = comm->me == 0 ? record.updates : 0.0;
   report.ideal_updates = comm->me == 0 ? record.ideal_updates : 0.0;
   report.waits = comm->me == 0 ? record.waits : 0.0;
+  report.pair_evaluations = comm->me == 0 ? record.pair_evaluations : 0.0;
   report.longest_wait = record.longest_wait;
   report.steps_by_limit = record.steps_by_limit;
   sound.work = comm->me == 0 ? record.sound_work : 0.0;

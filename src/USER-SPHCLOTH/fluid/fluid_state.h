@@ -89,8 +89,8 @@ class FluidState : public SPHMaterials {
   // the rates of a type of fluid, of this viscosity at the boundary
   Wetting wetting_by(int fluid_type, double nu) const;
 
-  // of this rank, since pair_style was given
-  double pair_evaluations() const { return core ? core->pair_evaluations() : 0.0; }
+  // of this rank, since it was asked last
+  double take_pair_evaluations() { return core->take_pair_evaluations(); }
 
   bool feels_moving_wall(int i) const;
   bool is_beside_mesh(int i) const;

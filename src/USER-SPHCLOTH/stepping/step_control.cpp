@@ -156,8 +156,6 @@ double StepControl::fastest_sound() const
   return fastest;
 }
 
-double StepControl::pair_evaluations() const { return fluid->pair_evaluations(); }
-
 Compression StepControl::compression_of_ranks() const
 {
   double largest = largest_compression(), mine[2] = {0.0, 0.0}, all[2];

@@ -55,7 +55,6 @@ class StepControl : protected Pointers {
   double largest_compression() const;
   // the largest speed of sound at rest of all fluids
   double fastest_sound() const;
-  double pair_evaluations() const;    // of this rank
 
   // `wanted`, held between floor and ceiling and to the growth from the step before; an error if it
   // is below a floor that ends the run

@@ -36,7 +36,7 @@ double StepReport::output(int n, Stepper &stepper, StepControl &control, const A
     case MEAN_WAIT: return mean_wait();
     case SOUND_SPEED: return control.fastest_sound();
     case SOUND_WORK: return sum_of_ranks(sound.work);
-    case PAIR_EVALUATIONS: return sum_of_ranks(control.pair_evaluations());
+    case PAIR_EVALUATIONS: return sum_of_ranks(pair_evaluations);
     default: break;
   }
   if (n < PARTICLES_BY_LIMIT) return steps_by_limit[n - STEPS_BY_LIMIT + 1];

@@ -46,6 +46,8 @@ class StepReport : protected Pointers {
   // of this rank: updates so far, and how many there would have been if each particle had taken
   // exactly the step that the limits allow
   double updates = 0.0, ideal_updates = 0.0;
+  // of this rank: neighbors that the loops of the pair style have evaluated
+  double pair_evaluations = 0.0;
   // of this rank, individual steps: times between two updates over the step that the particle asked
   // for at the first, their largest and their sum
   double longest_wait = 0.0, waits = 0.0;

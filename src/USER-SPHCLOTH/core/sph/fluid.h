@@ -253,8 +253,8 @@ class Fluid {
   using Receiver = void (*)(void *context, int i, const Acceleration &);
   virtual void virials(const Particles &, Receiver, void *context) = 0;
 
-  // how often a loop has evaluated a neighbor of a particle, so far
-  virtual double pair_evaluations() const = 0;
+  // how often a loop has evaluated a neighbor of a particle since it was asked last
+  virtual double take_pair_evaluations() = 0;
   virtual double bytes() const = 0;
 
   const DualLists &order() const { return lists; }

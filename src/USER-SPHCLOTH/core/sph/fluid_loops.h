@@ -15,6 +15,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 
 namespace sphcloth {
 
@@ -66,7 +67,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) override;
   void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
                     VertexPairs &) override;
-  double pair_evaluations() const override { return static_cast<double>(records.n_evaluated); }
+  double take_pair_evaluations() override { return std::exchange(records.n_evaluated, 0.0); }
   double bytes() const override
   {
     return lists.bytes() + records.bytes() +

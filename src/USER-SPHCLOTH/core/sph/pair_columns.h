@@ -105,7 +105,7 @@ template <class P> class PairColumns {
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
-  mutable std::int64_t n_evaluated = 0;    // pairs, by the loop over neighbors
+  mutable double n_evaluated = 0.0;    // pairs, by the loop over neighbors
 
   // Of some particles, null: of all
   void record_positions(const Particles &p, const Fluid::Box &box, double support,

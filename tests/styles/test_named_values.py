@@ -4,7 +4,8 @@ import ctypes
 
 import numpy as np
 import pytest
-from harness import instance, last_frame, run, write
+from harness import by_id, instance, last_frame, run, write
+from reference_sph import H, lattice
 from scenes import DROP, END, FREE_SHEET, MAKE_DROP
 
 LIMITS = "velocity force acoustic viscous density relative wetted cloth max"
@@ -264,3 +265,22 @@ def test_clear_takes_the_compute_along():
         lmp.command("clear")
         assert not lmp.has_id("compute", "x")
     lmp.close()
+
+
+def test_pairs_are_the_neighbors_that_loops_evaluate():
+    """Of each particle and step once for its density and once for its force, and a few behind."""
+    lmp = lattice(
+        "fix step all sph/integrate constant\ncompute it all sph/step pairs updates\nrun 0"
+    )
+    x = by_id(lmp, "x")
+    d = x[:, None] - x[None]
+    d -= 0.4 * np.round(d / 0.4)
+    inside = (np.linalg.norm(d, axis=2) < H).sum() - len(x)
+    counts = []
+    for _ in range(2):
+        lmp.command("run 10 post no")
+        counts.append(np.array(lmp.numpy.extract_compute("it", 0, 1)))
+    (pairs, updates), before = counts[1], counts[0]
+    assert updates == 20 * len(x)
+    assert 2 * 20 * inside <= pairs < 3 * 22 * inside
+    assert pairs - before[0] == pytest.approx(before[0], rel=0.2)

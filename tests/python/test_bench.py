@@ -276,7 +276,10 @@ def test_block_steps_from_end_to_end(monkeypatch: pytest.MonkeyPatch) -> None:
     assert figures["basins_updates"]["value"] < 0.9 and np.isfinite(
         figures["basins_saved"]["value"]
     )
-    assert "saved of" in said.getvalue()
+    pairs = [figures[f"{name}_pairs"]["value"] for name in scenes]
+    assert figures["pair_evaluations_per_update"]["value"] == pytest.approx(max(pairs))
+    assert all(0.8 < each < 2 for each in pairs)
+    assert "saved of" in said.getvalue() and "pair evaluations per update" in said.getvalue()
 
 
 def test_one_metric_of_block_steps_alone(tmp_path: Path) -> None:
@@ -284,7 +287,8 @@ def test_one_metric_of_block_steps_alone(tmp_path: Path) -> None:
     options = ["--rounds", "1", "--only", "light_cloth", "--json", tmp_path / "out.json"]
     subprocess.run([*command, "block", *options], check=True, capture_output=True, timeout=600)
     figures = json.loads((tmp_path / "out.json").read_text())["figures"]
-    assert list(figures) == ["light_cloth", "light_cloth_updates"]
+    assert list(figures) == ["light_cloth", "light_cloth_updates", "light_cloth_pairs"]
+    assert 0.8 < figures["light_cloth_pairs"]["value"] < 1.3
     done = subprocess.run([*command, "air", *options], capture_output=True, text=True)
     assert done.returncode == 2 and "only block has metrics" in " ".join(done.stderr.split())
     with pytest.raises(UserError, match="--only sail: choose from two_resolutions, basins"):

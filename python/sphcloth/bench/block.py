@@ -193,12 +193,12 @@ def figures_of(name: str, ratios: list[Ratios]) -> dict:
     Without fewer updates there is nothing to save, and no such figure.
     """
     figures = {name: figure([each.time for each in ratios])}
-    if name != FEW_ACTIVE:
-        figures[f"{name}_pairs"] = figure([each.pairs for each in ratios])
     if name in COMPARED:
         figures[f"{name}_updates"] = figure([each.updates for each in ratios])
         if COMPARED[name].saves and all(each.updates < 1 for each in ratios):
             figures[f"{name}_saved"] = figure([each.saved for each in ratios])
+    if all(each.pairs is not None for each in ratios):
+        figures[f"{name}_pairs"] = figure([each.pairs for each in ratios])
     return figures
 
 

@@ -8,8 +8,10 @@ from reference_sph import H, wendland
 from scenes import FLUID, box, final_dump, header, neighbor, sph_tait
 from scenes import lattice as sites
 from test_block import MAKE_DROPS, collide, from_restart, momentum, started
+from test_stepping import own_steps
 
 DELTA = 0.1
+LAST_UPDATE = 1  # column of fix sph/integrate
 SUPPORT = {(1, 1): 0.1, (1, 2): 0.075, (2, 2): 0.05}
 MASS = np.array([0.0, 0.125, 0.015625])
 
@@ -184,18 +186,24 @@ def test_particles_that_enter_do_not_change_the_densities_of_others(delta):
         assert np.abs(velocities).max() < 1e-9
 
 
-def test_water_that_sleeps_keeps_its_density():
-    """Also while it wakes; it is thinner than at rest, without pressure."""
-    script = SPLASH.format(scheme="block", limits="sleep 0.01", ceiling=2e-3, end=10, height=0.3)
+def asleep_and_uneven(height):
+    """Return a drop above a pool, both thinner than at rest, without pressure, and asleep."""
+    script = SPLASH.format(scheme="block", limits="sleep 0.01", ceiling=2e-3, end=10, height=height)
     script = script.replace("velocity falls", "#").replace(
         "sph/tait 0.1", f"sph/tait 0.1 density continuity delta {DELTA}"
     )
-    with instance() as lmp:
-        lmp.commands_string(
-            f"{script}variable uneven atom 995+4*sin(17*x+5*y+3*z)\n"
-            "set group all sph/rho v_uneven\nrun 150"
-        )
-        assert lmp.extract_fix("step", 0, 1, 1) == 0
+    lmp = instance()
+    lmp.commands_string(
+        f"{script}variable uneven atom 995+4*sin(17*x+5*y+3*z)\n"
+        "set group all sph/rho v_uneven\nrun 150"
+    )
+    assert lmp.extract_fix("step", 0, 1, 1) == 0
+    return lmp
+
+
+def test_water_that_sleeps_keeps_its_density():
+    """Also while it wakes."""
+    with asleep_and_uneven(0.3) as lmp:
         asleep = by_id(lmp, "rho")
         assert np.ptp(asleep) > 2
         lmp.command("run 30")
@@ -206,6 +214,34 @@ def test_water_that_sleeps_keeps_its_density():
         lmp.commands_string("run 1")
         change = np.abs(by_id(lmp, "rho") - asleep).max()
         assert 0 < change < 0.1
+
+
+def test_water_that_sleeps_beside_water_that_moves_keeps_its_density():
+    with asleep_and_uneven(0.15) as lmp:
+        x, rho, last = by_id(lmp, "x"), by_id(lmp, "rho"), own_steps(lmp, LAST_UPDATE)
+        lmp.command("velocity falls set 0 0 -3 units box")
+        beside = 0
+        for _ in range(40):
+            lmp.command("run 2 post no")
+            still = own_steps(lmp, LAST_UPDATE) == last
+            assert np.array_equal(by_id(lmp, "rho")[still], rho[still])
+            moves = by_id(lmp, "x")[~still]
+            near = np.linalg.norm(x[still][:, None] - moves[None], axis=2) < H
+            beside = max(beside, near.any(axis=1).sum())
+        assert beside > 50
+
+
+def test_what_changes_between_runs_is_no_motion():
+    """Sums of before are no measure where masses are others now, also of particles that wait."""
+    script = STILL.format(scheme="block").replace(f"delta {DELTA}", "delta 0")
+    with instance() as lmp:
+        lmp.commands_string(script + "run 5 post no")
+        while lmp.extract_fix("step", 0, 1, 1) == 1:
+            lmp.command("run 1 post no")
+        before = by_id(lmp, "rho")
+        lmp.commands_string("mass * 0.02\nrun 0 post no")
+        synchronized(lmp, 1)
+        np.testing.assert_allclose(by_id(lmp, "rho"), before, rtol=1e-12)
 
 
 def test_density_is_not_advanced_by_setting_up_again(folder, monkeypatch):

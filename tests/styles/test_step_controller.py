@@ -103,20 +103,29 @@ def test_a_restart_goes_on_with_the_controllers_step_to_the_last_bit(scheme, tmp
     np.testing.assert_array_equal(by_id(again, "x"), by_id(whole, "x"))
 
 
-def test_with_block_where_all_steps_are_equal_they_are_those_of_global():
+@pytest.mark.parametrize("fast", [False, True])
+def test_with_block_where_all_steps_are_equal_they_are_those_of_global(fast):
+    """Also where another limit has been tighter before: that of the speed, until drag sets in."""
+    others = OTHERS_OFF.replace("velocity 0", "velocity 0.2") if fast else OTHERS_OFF
     steps = {}
     for scheme, gain in (("global", ""), ("block", "gain 100")):
-        lmp = run_column(f"{OTHERS_OFF} fluctuation 0.01 {gain}", "")
+        eta = 0.2 if fast else 0.01
+        lmp = run_column(f"{others} fluctuation {eta} {gain}", "")
         if scheme == "block":
             lmp.command(BLOCK)
-        lmp.command("run 0 post no")
+        if fast:
+            lmp.command("velocity all set 50 0 0 units box")
+        lmp.command("run 20 post no")
+        assert (dt_and_limit(lmp)[1] == FLUCTUATION) is not fast
+        if fast:
+            lmp.command("fix drag all viscous 20")
         steps[scheme] = []
         for _ in range(200):
             lmp.command("run 1 post no")
             steps[scheme].append(lmp.extract_global("dt"))
-            assert dt_and_limit(lmp)[1] == FLUCTUATION
+        assert dt_and_limit(lmp)[1] == FLUCTUATION
         lmp.close()
-    np.testing.assert_allclose(steps["block"], steps["global"], rtol=1e-6)
+    np.testing.assert_allclose(steps["block"], steps["global"], rtol=1e-3 if fast else 1e-6)
     assert max(steps["global"]) > 1.1 * min(steps["global"])
 
 

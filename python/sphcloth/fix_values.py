@@ -32,7 +32,7 @@ SET_BY = {
 }
 # style of a fix -> n of f_ID[n] by the keyword that its compute has for it
 NUMBERS = {
-    "sph/integrate": {"limit": 1, "updates": 3, "compression": 4}
+    "sph/integrate": {"limit": 1, "updates": 3, "compression": 4, "pairs": 36}
     | {f"particles/{limit}": 19 + n for n, limit in enumerate(LIMITS)},
     "pbd/cloth": {"strain": 4},
     "cloth/contact": {"contacts": 1, "stops": 2},

@@ -235,7 +235,7 @@ def test_a_quick_case_from_end_to_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("finest_only")
-@pytest.mark.parametrize("scheme", schemes.UNEQUAL)
+@pytest.mark.parametrize("scheme", ["individual", "block"])
 def test_a_column_at_rest_by_steps_of_individual_particles(tmp_path: Path, scheme: str) -> None:
     result = run_hydrostatic(tmp_path, scheme=scheme, time="0.5")
     assert result.parameters["scheme"] == scheme

@@ -19,10 +19,11 @@ from rich.table import Table
 from sphcloth.bench import activity
 from sphcloth.bench.timing import Runner, cell, figure, read_timing
 from sphcloth.errors import UserError
+from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
 from sphcloth.results import versions
 from sphcloth.tradeoff.command import all_scenes
-from sphcloth.tradeoff.runs import count_updates
+from sphcloth.tradeoff.runs import count_updates, integrate_fix
 from sphcloth.tradeoff.scene import Values
 
 SCHEMES = ("global", "block")
@@ -177,10 +178,12 @@ def measure_rest(scheme: str, across: int, steps: int, folder: Path) -> Cost:
 def _run_counting(runner: Runner, variables: Mapping[str, object]) -> tuple[str, float]:
     """Return the log of a script and its pair evaluations per update, over all of its runs."""
     script = (runner.folder / runner.script).read_text(encoding="utf-8")
-    fix = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)[1]
+    pairs, updates = (
+        column(integrate_fix(script), "sph/integrate", name) for name in ("pairs", "updates")
+    )
     counted = runner.folder / "in.counted"
     counted.write_text(
-        f'include {runner.script}\nprint "pair evaluations per update: $(f_{fix}[36]/f_{fix}[3])"\n'
+        f'include {runner.script}\nprint "pair evaluations per update: $({pairs}/{updates})"\n'
     )
     runner.script = counted.name
     said = runner(**variables)

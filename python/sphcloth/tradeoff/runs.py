@@ -286,6 +286,12 @@ class Crew:
                     self.end(process)
 
 
+def integrate_fix(script: str) -> str | None:
+    """Return the ID of fix sph/integrate in a script; None if it has none."""
+    found = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)
+    return found and found[1]
+
+
 def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
     """Return how often a particle was updated in a run.
 
@@ -296,8 +302,7 @@ def count_updates(table: ThermoTable, script: str, scheme: str) -> float:
     Raises:
         UserError: steps are individual and the log has neither column.
     """
-    fix = re.search(r"^\s*fix\s+(\w+)\s+\S+\s+sph/integrate\b", script, re.MULTILINE)
-    counted = column(fix[1] if fix else "step", "sph/integrate", "updates")
+    counted = column(integrate_fix(script) or "step", "sph/integrate", "updates")
     for name in ("v_updates", "c_updates", counted):
         if name in table:
             return float(table[name][-1] - table[name][0])

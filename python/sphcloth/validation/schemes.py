@@ -9,8 +9,6 @@ from sphcloth.errors import UserError
 from sphcloth.validation.case import Parameter, Value
 
 SCHEMES = ("constant", "global", "individual", "block")
-# those in which particles have steps of their own
-UNEQUAL = ("individual", "block")
 # share of a frame
 EARLY = 1e-6
 

@@ -400,23 +400,26 @@ int FluidEvaluation::ghost_size(GhostData what)
   return 0;
 }
 
+double *FluidEvaluation::pack(GhostData what, int i, double *buf) const
+{
+  switch (what) {
+    case GhostData::MASS_OR_VOLUME: *buf = mass_or_volume[i]; return buf + 1;
+    case GhostData::DENSITY:
+      buf[0] = atom->rho[i];
+      buf[1] = p_over_rho2[i];
+      return buf + 2;
+    case GhostData::SINCE:
+    case GhostData::CHANGE:
+    case GhostData::GRADIENT: return integrated.pack(what, i, buf);
+    case GhostData::STIFFNESS: return stability.pack(i, buf);
+    default: return buf + scaled.pack(what, i, buf);
+  }
+}
+
 int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) const
 {
   double *end = buf;
-  for (int k = 0; k < n; k++) {
-    const int i = list[k];
-    switch (what) {
-      case GhostData::MASS_OR_VOLUME: *end++ = mass_or_volume[i]; break;
-      case GhostData::DENSITY:
-        *end++ = atom->rho[i];
-        *end++ = p_over_rho2[i];
-        break;
-      case GhostData::SINCE:
-      case GhostData::GRADIENT: end = integrated.pack(what, i, end); break;
-      case GhostData::STIFFNESS: end = stability.pack(i, end); break;
-      default: end += scaled.pack(what, i, end);
-    }
-  }
+  for (int k = 0; k < n; k++) end = pack(what, list[k], end);
   return static_cast<int>(end - buf);
 }
 
@@ -440,12 +443,7 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
 int FluidEvaluation::pack_reverse(GhostData what, int n, int first, double *buf) const
 {
   double *end = buf;
-  for (int i = first; i < first + n; i++) {
-    if (what == GhostData::CHANGE)
-      end = integrated.pack(what, i, end);
-    else
-      end += scaled.pack(what, i, end);
-  }
+  for (int i = first; i < first + n; i++) end = pack(what, i, end);
   return static_cast<int>(end - buf);
 }
 

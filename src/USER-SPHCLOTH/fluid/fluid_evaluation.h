@@ -53,6 +53,7 @@ class FluidEvaluation : public FluidState {
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
 
   void find_sides();
+  double *pack(GhostData, int i, double *buf) const;    // of one atom; returns the end
   void begin_lists();    // new atoms: masses, and arrays as large
   void update_lists(const sphcloth::Particles &);
   sphcloth::Motion usual_motion(const sphcloth::Particles &) const;

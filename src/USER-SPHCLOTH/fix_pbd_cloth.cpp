@@ -189,7 +189,7 @@ void FixPBDCloth::post_neighbor()
   vertices.reset(w, substepping.uses(ClothSolver::JACOBI));
   constraints.distance.weigh(vertices.p.data());
   constraints.bending.weigh(vertices.p.data());
-  substepping.measure_hinges();
+  substepping.measure_compliances();
 }
 
 /* ----------------------------------------------------------------------

@@ -37,13 +37,13 @@ std::array<Vertex, N + 1> vertices(const std::array<Vec3, N> &x, const std::arra
   return p;
 }
 
-template <std::size_t N> Constraints<N> alone(const Spring &spring)
+template <std::size_t N> Constraints<N> alone(const Spring &spring, double size = 1.0)
 {
   Constraints<N> c;
   c.clear(1, N);
   std::array<int, N> slots;
   for (std::size_t q = 0; q < N; q++) slots[q] = static_cast<int>(q);
-  c.add(slots, spring);
+  c.add(slots, spring, 1.0, size);
   c.close_color();
   return c;
 }
@@ -167,11 +167,13 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
   // no more from 1.6 of the strain on
   const double hardest = 1.0 + 9.0 * std::pow(1.6, 4);
   BOOST_TEST(of_edge(LENGTH, 0.0, 1e9).hardest == 1.0 / (hardest * hardest), close);
-  // W h^2/2 is a tenth of a compliance, if that is longer; 0.4 of the strain where there is no size
+  // W h^2/2 is a tenth of a compliance, if that is longer
   const double floor = 0.1 * 0.5 / (0.5 * 4.0 * LONGEST_SQ);
   BOOST_TEST(of_edge(LENGTH, 0.5, 1e9).hardest == floor, close);
   BOOST_TEST(of_edge(LENGTH, 0.5, 0.0).hardest == 1.0, close);
-  BOOST_TEST(of_edge(0.0, 0.5, 0.0).hardest == 4.0 * STRAIN * floor, close);
+  // no load says anything of what has no size
+  BOOST_TEST(of_edge(0.0, 0.5, 1e9).hardest == 1.0);
+  BOOST_TEST(of_edge(0.0, 0.5, 1e9).largest == 0.0);
   // no strain is asked for
   BOOST_TEST(of_edge(LENGTH, 0.0, 1e9, 0.0).hardest == 1.0);
   BOOST_TEST(of_edge(LENGTH, 0.0, 2.0, 0.0).largest == UNLOADED * 2.0 / LENGTH, close);
@@ -186,6 +188,40 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
   BOOST_TEST(solver_error(hinge, {INV_DT_SQ, LONGEST_SQ, STRAIN, SOFTEST}).largest ==
                  SOFTEST * 2.5 * 6.5 * LONGEST_SQ * 1e-9,
              close);
+}
+
+// Its substeps follow from its compliance alone, and what edges beside it may be strained by changes
+// nothing.
+
+BOOST_AUTO_TEST_CASE(an_edge_without_a_size_is_as_soft_under_any_load)
+{
+  constexpr double SHARE = 0.02;
+  const auto close = boost::test_tools::tolerance(1e-12);
+  const auto vertex = vertices<2>({Vec3(0, 0, 0), Vec3(1, 0, 0)}, {1.0, 3.0});
+  Constraints<2> c;
+  c.clear(1, 2);
+  for (const double compliance : {2.0, 0.5, 8.0}) c.add({0, 1}, {0, 1, compliance, FREE}, 1.0, 0.0);
+  c.add({0, 1}, {1.0, 1.0, 0.1, FREE}, 1.0, 1.0);
+  c.add({0, 2}, {1.0, 1.0, 0.1, FREE}, 1.0, 0.0, 0.0);
+  c.close_color();
+  c.weigh(vertex.data());
+  BOOST_TEST(c.min_compliance_without_size() == 0.5 / 4.0, close);
+
+  for (const double error : {1e-3, 1.0, 1e3})
+    for (const double allowed : {0.01, 1.28}) {
+      auto ends = vertices<2>({Vec3(0, 0, 0), Vec3(error, 0, 0)}, {0.0, 1.0});
+      Constraints<2> edge = alone<2>({0.0, 1.0, 100.0, FREE}, 0.0);
+      auto displacement = ends;
+      for (Vertex &v : displacement) v.x = v.y = v.z = 0.0;
+      ClothState state{ends.data(), displacement.data(), true, nullptr, 1.0};
+      state.longest_sq = 1e6;
+      state.max_edge_share = 0.8;
+      state.max_edge_error = allowed;
+      state.without_size = SHARE;
+      project(edge, 0, state);
+      // its compliance, and half of what 4 percent of it are more than W
+      BOOST_TEST(-displacement[1].x == error / (1.0 + 100.0 + 0.5 * (4.0 - 1.0)), close);
+    }
 }
 
 // Most of many constraints are passed over: none that is harder, or has a larger error.

@@ -5,6 +5,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <limits>
 
 using namespace sphcloth;
 
@@ -66,6 +67,10 @@ auto held(double strain)
   };
 }
 
+// half of the softness that a load leaves, where it hardens edges by far
+
+double needed(double hardness) { return 10.0 / std::sqrt(0.5 * hardness * (1.0 + hardness)); }
+
 }    // namespace
 
 BOOST_AUTO_TEST_SUITE(substep_length)
@@ -80,9 +85,16 @@ BOOST_AUTO_TEST_CASE(the_longest_step_has_as_many_as_usual)
   BOOST_TEST(length.longest() == 0.2 * DT);
 }
 
-// half of the softness that a load leaves, where it hardens edges by far
-
-double needed(double hardness) { return 10.0 / std::sqrt(0.5 * hardness * (1.0 + hardness)); }
+BOOST_AUTO_TEST_CASE(constraints_without_a_size_take_substeps_of_their_own_to_a_limit)
+{
+  SubstepLength length;
+  length.substeps(DT, 10);
+  BOOST_TEST(length.substeps_for(DT, DT / 69.5) == 70);
+  BOOST_TEST(length.substeps_for(0.5 * DT, DT / 69.5) == 35);
+  BOOST_TEST(length.substeps_for(DT, std::numeric_limits<double>::infinity()) == 0);
+  // no more than under the heaviest load
+  BOOST_TEST(length.substeps_for(DT, 0.0) == std::ceil(needed(hardness(1.6))));
+}
 
 BOOST_AUTO_TEST_CASE(a_load_shortens_them_at_once_and_lengthens_them_slowly)
 {

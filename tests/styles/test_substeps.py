@@ -251,3 +251,31 @@ def test_soft_hinges_do_as_much_in_one_substep_as_in_each():
     # two rows of pins hold the moment of the sheet, far more than its weight
     assert np.abs(each_pull).max() > 5 * GRAVITY * 2 / 11
     assert np.abs(pull - each_pull).max() < 0.05 * np.abs(each_pull).max()
+
+
+def test_a_light_vertex_on_a_spring_without_length_bears_its_load_at_once():
+    """Of 1e-6 kg, in equilibrium from the start, in steps of 5 periods of the free vertex."""
+    with instance() as lmp:
+        lmp.commands_string(
+            header(boundary="f f f", cutoff=2.0)
+            + """
+region box block -1 1 -1 1 -1 1
+create_box 1 box bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 1
+create_atoms 1 single 0 0 0 units box
+create_atoms 1 single 0 0 -0.01 units box
+mass 1 1e-6
+group pins id 1
+group hangs id 2
+pair_style zero 2.0
+pair_coeff * *
+bond_style pbd
+bond_coeff 1 compliance 1e-3 rest zero
+create_bonds single/bond 1 1 2
+fix sheet all pbd/cloth pin pins
+fix load hangs addforce 0 0 -10
+timestep 1e-3
+"""
+        )
+        for _ in range(20):
+            lmp.command("run 1")
+            assert by_id(lmp, "x")[1, 2] == pytest.approx(-0.01, rel=5e-3)

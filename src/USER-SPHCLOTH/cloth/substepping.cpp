@@ -37,19 +37,24 @@ int Substepping::wanted_substeps(double dt)
                      "sheet stretches more, see 'unconverged' of compute pbd/cloth; give a "
                      "compliance, a larger 'strain', more 'iterations', or a shorter step",
                      options.strain, wanted));
-  return static_cast<int>(wanted);
+  return static_cast<int>(std::max(wanted, length.substeps_for(dt, longest_without_size)));
 }
 
-// A projection that stands for several substeps leaves a hinge as soft as in one of that length
-// (core/pbd/solver_softness.h).
+// A projection leaves a constraint as soft as the time says that it stands for, of one substep or
+// several (core/pbd/solver_softness.h).
 
-void Substepping::measure_hinges()
+void Substepping::measure_compliances()
 {
-  if (!single_sweeps()) return;
-  const double mine = constraints.bending.min_compliance_per_weight();
-  double all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-  longest_of_hinges = std::sqrt(MAX_HINGE_SOFTNESS / SINGLE_SWEEP_SOFTNESS * all / force->ftm2v);
+  if (!uses(ClothSolver::SUBSTEPS)) return;
+  const double mine[2] = {constraints.bending.min_compliance_per_weight(),
+                          constraints.distance.min_compliance_without_size()};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
+  const auto longest = [this](double softness, double compliance_per_weight) {
+    return std::sqrt(softness / SINGLE_SWEEP_SOFTNESS * compliance_per_weight / force->ftm2v);
+  };
+  if (single_sweeps()) longest_of_hinges = longest(MAX_HINGE_SOFTNESS, all[0]);
+  if (follows_load()) longest_without_size = longest(share_without_size(), all[1]);
 }
 
 // once
@@ -241,6 +246,7 @@ void Substepping::sweep()
   if (follows_load()) {
     state.max_edge_error = allowed_strain();
     state.max_hinge_error = ANGLE_OVER_STRAIN * allowed_strain();
+    state.without_size = share_without_size();
   }
   uses(ClothSolver::JACOBI) ? jacobi(state) : gauss_seidel(state);
   sweeps++;

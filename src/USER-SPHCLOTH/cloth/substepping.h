@@ -53,8 +53,8 @@ class Substepping : protected Pointers {
 
   bool uses(ClothSolver one) const { return options.solver == one; }
   int usual_substeps() const { return uses(ClothSolver::SUBSTEPS) ? options.iterations : 1; }
-  // after each list build: how soft the hinges are.  Collective.
-  void measure_hinges();
+  // after each list build: what is soft whatever the load is.  Collective.
+  void measure_compliances();
   // how many substeps the next step takes, of dt, under the load of the last one
   int wanted_substeps(double dt);
 
@@ -103,6 +103,7 @@ class Substepping : protected Pointers {
   int sweeps = 0;    // of the last substep
   sphcloth::SubstepLength length;
   double longest_of_hinges = 0.0;    // time that one projection may stand for
+  double longest_without_size = 0.0;    // substep that edges without a size bear
   sphcloth::SubstepGroups hinge_groups, damping_groups;
   int hinges_for = 1;    // so many substeps are hinges projected in this one; 0: not at all
   bool warned = false;
@@ -140,6 +141,8 @@ class Substepping : protected Pointers {
   static double softest(double share) { return 1.0 / share - sphcloth::SINGLE_SWEEP_SOFTNESS; }
   double strain_at_start() const;
   double allowed_strain() const { return options.strain * length.yield(); }
+  // of a compliance, what the solver may add to that of an edge without a size
+  double share_without_size() const { return sphcloth::SHARE_WITHOUT_SIZE * options.strain; }
 };
 
 }    // namespace LAMMPS_NS

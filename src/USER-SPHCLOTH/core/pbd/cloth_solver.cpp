@@ -64,12 +64,13 @@ namespace {
   // allowed: error that the solver may add
 
   struct Sweep {
-    double inv_dt_sq, inv_share, softest, longest_sq, per_allowed, part_of_way;
+    double inv_dt_sq, inv_share, softest, longest_sq, per_allowed, without_size, part_of_way;
 
     Sweep(const ClothState &s, double share, double allowed) :
         inv_dt_sq(s.inv_dt_sq), inv_share(1.0 / share),
         softest(inv_share - 1.0 + SINGLE_SWEEP_SOFTNESS), longest_sq(std::max(1.0, s.longest_sq)),
-        per_allowed(allowed > 0.0 ? 1.0 / allowed : 0.0), part_of_way(s.part_of_way)
+        per_allowed(allowed > 0.0 ? 1.0 / allowed : 0.0), without_size(s.without_size),
+        part_of_way(s.part_of_way)
     {
     }
   };
@@ -146,7 +147,7 @@ namespace {
       for (int l = 0; l < WIDE; l++) {
         const SolverSoftness of =
             solver_softness(error[l], now.w[l], compliance[l] * s.inv_dt_sq, per_size[l],
-                            s.longest_sq, s.per_allowed, s.softest);
+                            s.longest_sq, s.per_allowed, s.without_size, s.softest);
         softness[l] = of.softness;
         steeper[l] = of.steeper;
       }
@@ -256,8 +257,9 @@ namespace {
         const double step_ratio = std::min(h.valid, lever) > 0.0 ? k[l] : 0.0;
         const double error = angle_difference(h.angle, rest[l]);
         const double material = compliance[l] * s.inv_dt_sq;
-        const SolverSoftness of_solver = solver_softness(error, weight, material, per_size[l],
-                                                         s.longest_sq, s.per_allowed, s.softest);
+        const SolverSoftness of_solver =
+            solver_softness(error, weight, material, per_size[l], s.longest_sq, s.per_allowed,
+                            s.without_size, s.softest);
         const bool hard = step_ratio >= 1.0;
         const double soft = hard ? of_solver.softness : s.longest_sq * weight;
         // what acts for several substeps is a force, and not softer for what the force will move

@@ -89,6 +89,16 @@ template <std::size_t N> class Constraints {
     return smallest;
   }
 
+  // the same of those alone that have no size
+  double min_compliance_without_size() const
+  {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int m = 0; m < size(); m++)
+      if (weight[m] > 0.0 && hard[m] && per_size[m] == 0.0)
+        smallest = std::min(smallest, compliance[m] / weight[m]);
+    return smallest;
+  }
+
   // k of soft constraints such that they stay the springs that k is in a reference step.  ratio:
   // the square of that step over the square of the present one.
   void rescale_stiffness(double ratio)
@@ -145,6 +155,8 @@ struct ClothState {
   // error that the solver may add to the size of a constraint, which hardens on the way there; 0:
   // it is as soft under any load
   double max_edge_error = 0.0, max_hinge_error = 0.0;
+  // compliance that the solver may add to a constraint without a size, over its own
+  double without_size = 0.0;
 };
 
 // A single sweep goes from one end to the other: the forces that it makes of constraints that share

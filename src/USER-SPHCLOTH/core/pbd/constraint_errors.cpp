@@ -48,7 +48,7 @@ namespace {
     double largest = -1.0;
     for (int m = 0; m < c.size(); m++) {
       const double load = std::fabs(c.lambda[m]) * c.weight[m] * c.per_size[m];
-      if (c.hard[m] && c.weight[m] > 0.0 && load > largest) {
+      if (c.hard[m] && c.weight[m] > 0.0 && c.per_size[m] > 0.0 && load > largest) {
         largest = load;
         found = m;
       }
@@ -68,9 +68,8 @@ namespace {
     SolverError found = error(first);
     double known = s.without_news(found);
     for (int m = 0; m < c.size(); m++) {
-      if (!c.hard[m] || c.weight[m] == 0.0) continue;
-      if (c.per_size[m] > 0.0 && s.unloaded_error(load(m), c.weight[m], c.per_size[m]) <= known)
-        continue;
+      if (!c.hard[m] || c.weight[m] == 0.0 || c.per_size[m] == 0.0) continue;
+      if (s.unloaded_error(load(m), c.weight[m], c.per_size[m]) <= known) continue;
       found.join(error(m));
       known = s.without_news(found);
     }

@@ -11,7 +11,8 @@
 
 namespace sphcloth {
 
-// what the solver adds to the errors of hard constraints, under the multipliers of a substep
+// what the solver adds to the errors of hard constraints with a size, under the multipliers of a
+// substep
 SolverError solver_error(const Constraints<2> &, const LoadedSolver &);
 SolverError solver_error(const Constraints<4> &, const LoadedSolver &);
 

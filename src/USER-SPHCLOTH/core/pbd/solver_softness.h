@@ -30,7 +30,7 @@ inline constexpr double HARDENING = 9.0, MAX_OF_ALLOWED = 1.6,
                         MAX_HARDENING = HARDENING * (MAX_OF_ALLOWED * MAX_OF_ALLOWED) *
     (MAX_OF_ALLOWED * MAX_OF_ALLOWED);
 
-// of the own compliance of a constraint, and of one without a size, that of the allowed error
+// of the own compliance of a constraint; of one without a size, times the strain that is asked for
 inline constexpr double SHARE_OF_COMPLIANCE = 0.1, SHARE_WITHOUT_SIZE = 0.4;
 
 struct SolverSoftness {
@@ -56,11 +56,12 @@ inline double strain_with(double hardness)
 }
 
 // x: error; w: W; material: compliance/h^2; longest_sq: L^2/h^2; per_allowed: 1/allowed, relative
-// to the size, 0: no load hardens it; softest: of a rigid constraint over W L^2
+// to the size, 0: no load hardens it; without_size: what it adds to a constraint without a size,
+// over its compliance; softest: of a rigid constraint over W L^2
 
 SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double material, double per_size,
                                                double longest_sq, double per_allowed,
-                                               double softest)
+                                               double without_size, double softest)
 {
   constexpr double TINY = 1e-300;    // where nothing can move
   const double longest = w * longest_sq, rigid = softest * longest;
@@ -69,9 +70,7 @@ SPHCLOTH_INLINE SolverSoftness solver_softness(double x, double w, double materi
   const double harder = hardening(error * per_allowed);
   const double root = 1.0 / (1.0 + std::min(harder, MAX_HARDENING));
   const bool hardens = per_allowed > 0.0, has_size = per_size > 0.0;
-  const double share = has_size
-      ? SHARE_OF_COMPLIANCE / SINGLE_SWEEP_SOFTNESS
-      : SHARE_WITHOUT_SIZE / SINGLE_SWEEP_SOFTNESS / (hardens ? per_allowed : 1.0);
+  const double share = (has_size ? SHARE_OF_COMPLIANCE : without_size) / SINGLE_SWEEP_SOFTNESS;
   const double by_load = hardens ? (has_size ? longest * root * root : 0.0) : longest;
   const double floor = std::min(longest, share * material);
   s.softness = std::max(w, std::max(by_load, floor));
@@ -99,7 +98,7 @@ SPHCLOTH_INLINE double hardened_strain(double size, double kappa)
   return y;
 }
 
-// What the solver adds to the errors of constraints
+// What the solver adds to the errors of constraints that have a size
 
 struct SolverError {
   double hardest = 1.0;    // the least softness, over that in the longest substep
@@ -122,11 +121,10 @@ struct LoadedSolver {
   SolverError of(double load, double w, double compliance, double per_size) const
   {
     if (allowed == 0.0) return {1.0, unloaded_error(load, w, per_size)};
-    const bool has_size = per_size > 0.0;
-    const double share = has_size ? SHARE_OF_COMPLIANCE : SHARE_WITHOUT_SIZE * allowed;
-    const double floor = share / SINGLE_SWEEP_SOFTNESS * compliance / (w * longest_sq);
-    const double y = has_size ? strain_of(unloaded_error(load, w, per_size) / allowed) : 0.0;
-    return {std::min(1.0, std::max(has_size ? hardness_of(y) : 0.0, floor)), y * allowed};
+    constexpr double SHARE = SHARE_OF_COMPLIANCE / SINGLE_SWEEP_SOFTNESS;
+    const double y = strain_of(unloaded_error(load, w, per_size) / allowed);
+    const double floor = SHARE * compliance / (w * longest_sq);
+    return {std::min(1.0, std::max(hardness_of(y), floor)), y * allowed};
   }
 
   // the error that the unloaded softness would leave
@@ -135,7 +133,7 @@ struct LoadedSolver {
     return softest * w * longest_sq * load * per_size;
   }
 
-  // a constraint with a size and no more unloaded error than this changes nothing in what was found
+  // a constraint with no more unloaded error than this changes nothing in what was found
   double without_news(const SolverError &found) const
   {
     constexpr double ROOM = 0.99;    // strain_of() is not exact

@@ -25,6 +25,14 @@ class SubstepLength {
     return std::ceil(dt / (state.longest * std::sqrt(with_margin(state.hardness))) - SPARED);
   }
 
+  // In steps no longer than the longest one: substeps of this length, but no more than a load may
+  // ask for.
+  double substeps_for(double dt, double substep) const
+  {
+    const double shortest = state.longest * std::sqrt(with_margin(hardness_of(MAX_OF_ALLOWED)));
+    return std::ceil(dt / std::max(substep, shortest));
+  }
+
   // before the first step: the strain that edges have, over the one that is allowed
   void begin(double strain)
   {

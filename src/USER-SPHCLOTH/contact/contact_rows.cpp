@@ -42,9 +42,8 @@ static constexpr int PASSES_OF_PARTICLES = 3;
 static constexpr double NONE = -1.0;
 
 // By which, of the thickness, the two sides of a row may move past one another before their closest
-// points are found anew.  Until then its distance is that along its normal, to second order.  Where
-// these are at an edge or a vertex the normal leans, and turns; rows that lean too far do not push.
-// And of the distance to contact: before that has passed nothing pushes.
+// points are found anew; until then its distance is along its normal.  At an edge or a vertex that
+// turns, and rows that lean too far do not push.  And of the distance to contact.
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05,
                         MAX_SLIDE_APART = 0.5;
 
@@ -276,19 +275,21 @@ void ContactRows::load_ghosts(const Vec3 &aside)
 }
 
 // A row that sleeps would not push, and would keep its closest points: the answer does not depend
-// on what wakes it.
+// on what wakes it.  One that pushes has those of this substep: with older ones it would feed the
+// vibration of vertices that are light beside what they bear.
 
 void ContactRows::project_normal(int k)
 {
   ContactRow &row = rows[k];
   Vec3 vector = row.relative(mesh.end);
   double slid = (vector - row.distance * row.normal).norm();
-  if (slid > max_slide(row)) {
+  const bool starts = !row.active && slid > 0.0 && row.pushes(vector.dot(row.normal));
+  if (slid > max_slide(row) || starts) {
     vector = find_closest_points(k);
     slid = 0.0;
   }
   const double distance = vector.dot(row.normal);
-  if (row.normal_correction == 0.0 && (distance >= row.gap || row.share == 0.0)) {
+  if (!row.pushes(distance)) {
     awake_from[k] = path_of(k) + asleep(row, distance, slid);
     return;
   }

@@ -53,6 +53,7 @@ PARAMETERS = (
         choices=("extrapolate", "mirror", "own"),
     ),
     Parameter("thickness", 0.2, "spacing", "gap that contact keeps", 0.01, 0.5),
+    Parameter("aside", 0.2, "spacing", "water at the start aside of the diagonals", 0.0, 0.5),
     cloth.ITERATIONS,
     Parameter("solver", "substeps", "1", "what the iterations are", choices=cloth.SOLVERS),
     Parameter("direction", "start", "1", "of the projection", choices=cloth.DIRECTIONS),

@@ -222,7 +222,7 @@ def _plot(pistons: list[Piston], swings: list[Swing], path: Path) -> None:
         motion.plot(time[shown] / piston.period, height[shown] / scale, lw=1, label=label)
         motion.plot(time[shown] / piston.period, fitted[shown] / scale, ":", color="k", lw=0.8)
     motion.set(xlabel="time / T of the reference", ylabel="height / largest")
-    motion.legend(loc="upper right", fontsize="small")
+    motion.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, fontsize="small")
     masses = np.geomspace(0.5 * pistons[0].areal, 2 * pistons[-1].areal, 100)
     first = pistons[0]
     fixed = (first.stiffness, first.height, first.rho0, first.sound)

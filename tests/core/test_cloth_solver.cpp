@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(a_load_hardens_its_constraint)
              close);
 }
 
-// Its substeps follow from its compliance alone, and what edges beside it may be strained by changes
+// Its substeps follow from its compliance alone: what edges beside it may be strained by changes
 // nothing.
 
 BOOST_AUTO_TEST_CASE(an_edge_without_a_size_is_as_soft_under_any_load)

@@ -45,9 +45,10 @@ struct alignas(64) ContactRow {
     return weight[0] * of[slots[0]] + weight[1] * of[slots[1]] + weight[2] * of[slots[2]] +
         weight[3] * of[slots[3]];
   }
+  // a distance that is no number pushes: it must be seen
   bool pushes(double distance_now) const
   {
-    return normal_correction > 0.0 || (share > 0.0 && distance_now < gap);
+    return normal_correction != 0.0 || (share != 0.0 && !(distance_now >= gap));
   }
   bool is_inside_both() const { return sphcloth::inside_both(kind, {weight, normal}); }
   sphcloth::FourPoints of_slots(const std::vector<Vec3> &of) const

@@ -333,7 +333,10 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     by_limit = {"velocity": 41, "force": 25, "acoustic": 74, "output": 4, "max": 136}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
-    assert found == {"drain": "# fix drain fluid sph/drain"}
+    assert found == {
+        "drain": "# fix drain fluid sph/drain",
+        "limit density": "fix step fluid sph/integrate global until 0.5 density 0",
+    }
 
 
 def test_values_that_computes_give_by_keyword_are_known(tmp_path: Path) -> None:

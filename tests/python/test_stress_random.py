@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from sphcloth.cli import app
 from sphcloth.stress import oracle, random_run
+from sphcloth.stress.case import SCHEMES
 from sphcloth.stress.oracle import Evidence
 from sphcloth.stress.random_run import random_scenes
 from sphcloth.stress.random_scene import draw
@@ -29,6 +30,16 @@ def test_what_must_hold_holds_in_a_random_scene(seed, tmp_path):
 
 def test_a_scene_depends_on_its_seed_alone():
     assert script_of(draw(7)) == script_of(draw(7)) != script_of(draw(8))
+
+
+def test_a_scene_is_the_same_with_each_scheme_but_for_its_steps():
+    drawn = draw(7)
+    assert draw(7, drawn.scheme) == drawn
+    of_steps = ("scheme", "verlet", "density", "dt", "time")
+    for scheme in SCHEMES:
+        other = draw(7, scheme)
+        assert other.scheme == scheme
+        assert replace(other, **{name: getattr(drawn, name) for name in of_steps}) == drawn
 
 
 def run(scene, folder):
@@ -129,11 +140,22 @@ def test_a_failure_names_its_seed_and_leaves_its_script(monkeypatch, tmp_path):
     assert (tmp_path / "random-5" / "in.random-5").read_text() == script_of(draw(5))
 
 
+def test_schemes_that_are_named_take_the_place_of_the_one_that_is_drawn(monkeypatch, tmp_path):
+    monkeypatch.setattr(random_run, "complaints", lambda *_: ["made up"])
+    words = ["--seed", "5", "--count", "1", "--scheme", "constant,block", "--out", str(tmp_path)]
+    done = CliRunner().invoke(app, ["stress", "random", *words])
+    assert "2 runs: 2 breaches" in done.output
+    for scheme in ("constant", "block"):
+        name = f"random-5-{scheme}"
+        assert (tmp_path / name / f"in.{name}").read_text() == script_of(draw(5, scheme))
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         (["--seed", "-1"], "--seed -1: expected a whole number, 0 or above"),
         (["--count", "0"], "--count 0: expected a whole number above 0"),
+        (["--scheme", "euler"], "--scheme euler: choose from constant, global, individual, block"),
     ],
 )
 def test_wrong_use(words, message):

@@ -17,7 +17,7 @@ sphcloth stress --quick
 
 sphcloth stress impact-3-normal --scheme global,block --ranks 1,2
 
-sphcloth stress random --seed 1 --count 300
+sphcloth stress random --seed 1 --count 300 --scheme global,block
 
 sphcloth stress --json stress.json
 """
@@ -36,7 +36,7 @@ def stress(
         typer.Option(
             metavar="A,B,...",
             help="Schemes: constant, global, individual, block.",
-            show_default="all that are meaningful",
+            show_default="all that are meaningful; random: the one that a seed draws",
         ),
     ] = None,
     ranks: Annotated[
@@ -64,7 +64,7 @@ def stress(
         command.show_cases(console)
         return
     if case == "random":
-        found = command.stress_random(seed, count, out, json_file, console)
+        found = command.stress_random(seed, count, scheme, out, json_file, console)
         raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
     found = command.stress(case, scheme, ranks, quick, out, json_file, console)
     raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)

@@ -59,26 +59,34 @@ def stress(
 
 
 def stress_random(
-    seed: int, count: int, out: Path | None, json_file: Path | None, console: Console
+    seed: int,
+    count: int,
+    schemes: str | None,
+    out: Path | None,
+    json_file: Path | None,
+    console: Console,
 ) -> list[Verdict]:
     """Run random scenes and return what was found; a scene that fails leaves its files in out.
 
     Args:
         seed: of the first scene.
         count: how many.
+        schemes: with which each of them is run, names with commas between them; None: with the one
+            that the seed draws.
         out: folder for them; None: ``stress-random``.
         json_file: where the result goes, after each scene; None: nowhere.
         console: where progress and failures go.
 
     Raises:
-        UserError: a seed or a count that is none.
+        UserError: a seed or a count that is none, or an unknown scheme.
     """
+    wanted = [None] if schemes is None else _find_schemes(schemes)
     found: list[Verdict] = []
     start = time.monotonic()
     with console.status("") as status:
-        for one in random_scenes(seed, count, out or Path("stress-random"), console):
+        for one in random_scenes(seed, count, out or Path("stress-random"), console, wanted):
             found.append(one)
-            status.update(f"{one.case}, {len(found)} of {count}")
+            status.update(f"{one.case}, {len(found)} of {count * len(wanted)}")
             if json_file is not None:
                 _write(found, json_file, time.monotonic() - start)
     _show_sum(found, console)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -18,14 +18,18 @@ from sphcloth.stress.random_script import script_of
 from sphcloth.stress.runner import Verdict, run_script
 
 
-def random_scenes(first: int, count: int, out: Path, console: Console) -> Iterator[Verdict]:
+def random_scenes(
+    first: int, count: int, out: Path, console: Console, schemes: Sequence[str | None] = (None,)
+) -> Iterator[Verdict]:
     """Run the scenes of so many seeds from the first; print those that fail, and keep their files.
 
     Args:
-        first: the seed of the first scene; each scene depends on its seed alone.
+        first: the seed of the first scene; each scene depends on its seed, and the scheme, alone.
         count: how many.
-        out: folder that keeps what the failed scenes wrote, each in ``random-SEED``.
+        out: folder that keeps what the failed scenes wrote, each in ``random-SEED``, or
+            ``random-SEED-SCHEME`` where the scheme is not drawn.
         console: where failures are told.
+        schemes: with which each scene is run; None: with the one that is drawn.
 
     Raises:
         UserError: a seed below 0 or fewer than one scene.
@@ -36,11 +40,13 @@ def random_scenes(first: int, count: int, out: Path, console: Console) -> Iterat
         raise UserError(f"--count {count}: expected a whole number above 0")
     with tempfile.TemporaryDirectory() as scratch:
         for seed in range(first, first + count):
-            yield _run(draw(seed), Path(scratch), out, console)
+            for scheme in schemes:
+                name = "-".join(["random", str(seed), *([scheme] if scheme else [])])
+                yield _run(draw(seed, scheme), name, Path(scratch), out, console)
 
 
-def _run(scene: RandomScene, scratch: Path, out: Path, console: Console) -> Verdict:
-    name, start = f"random-{scene.seed}", time.monotonic()
+def _run(scene: RandomScene, name: str, scratch: Path, out: Path, console: Console) -> Verdict:
+    start = time.monotonic()
     script = scratch / f"in.{name}"
     script.write_text(script_of(scene), encoding="utf-8")
     outcome = run_script(script, scratch / name, {"every": 4}, scene.ranks)

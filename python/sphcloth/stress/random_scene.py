@@ -136,8 +136,14 @@ def _short(value: object) -> str:
 # ---- drawing ------------------------------------------------------------------------------------
 
 
-def draw(seed: int) -> RandomScene:
-    """Return the scene of a seed."""
+def draw(seed: int, scheme: str | None = None) -> RandomScene:
+    """Return the scene of a seed.
+
+    Args:
+        seed: of the draw.
+        scheme: of the step; None: it is drawn, too. Water, sheet and surroundings are the same with
+            each, the length of the step and how densities are found are drawn for it.
+    """
     r = random.Random(seed)
     s: dict[str, Any] = {"seed": seed}
     s["units"] = r.choices(list(UNITS), [6, 2, 2, 2, 2])[0]
@@ -156,7 +162,7 @@ def draw(seed: int) -> RandomScene:
         # nothing acts from outside
         s |= {"gravity": False, "walls": False, "plate": False, "pins": "none"}
         s["water"] = "block" if s["water"] == "jet" else s["water"]
-    _draw_steps(r, s)
+    _draw_steps(r, s, scheme)
     if s["scheme"] == "block" and not s["shift"] and r.random() < 0.3:
         s["density"] = "continuity"
     return RandomScene(**s)
@@ -248,8 +254,9 @@ def _draw_water(r: random.Random, s: dict[str, Any]) -> None:
     s["start"] = top + reach + s["thickness"] + dx * r.choice((0, r.uniform(0, 2)))
 
 
-def _draw_steps(r: random.Random, s: dict[str, Any]) -> None:
-    s["scheme"] = r.choice(SCHEMES)
+def _draw_steps(r: random.Random, s: dict[str, Any], scheme: str | None) -> None:
+    drawn = r.choice(SCHEMES)
+    s["scheme"] = scheme or drawn
     s["verlet"] = s["scheme"] in ("constant", "global") and r.random() < 0.5
     s["density"] = "summation"
     if s["scheme"] in ("constant", "global") and r.random() < 0.3:

@@ -11,6 +11,7 @@
 #include "contact/contact_pair.h"
 #include "core/util/bytes.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -100,7 +101,7 @@ class SplitMasses {
 
   // The same by load, so that a row that hardly pushes hardly counts: what rows push more in a
   // substep is added.  Sharing is collective.
-  void clear_loads() { loads.assign(shares.size(), Vec3::Zero()); }
+  void clear_loads() { clear(loads); }
   void add_load(const ContactRow &row, double load)
   {
     for (int k = 0; k < 4; k++) loads[row.slots[k]][0] += load * std::fabs(row.weight[k]);
@@ -118,7 +119,7 @@ class SplitMasses {
     return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
   }
 
-  void clear_impulses() { impulse.assign(shares.size(), Vec3::Zero()); }
+  void clear_impulses() { clear(impulse); }
   void apply(const ContactRow &row, const Vec3 &by)
   {
     for (int k = 0; k < 4; k++) impulse[row.slots[k]] += row.weight[k] * by;
@@ -128,6 +129,13 @@ class SplitMasses {
 
  private:
   std::vector<Vec3> shares, loads;    // by slot, in [0]
+
+  // as one block of numbers: in every pass, of all slots
+  void clear(std::vector<Vec3> &of) const
+  {
+    of.resize(shares.size());
+    if (!of.empty()) std::fill_n(of[0].data(), 3 * of.size(), 0.0);
+  }
 };
 
 }    // namespace LAMMPS_NS

@@ -101,12 +101,19 @@ void FixSPHIntegrate::init()
                label, scheme_name(scheme));
   sound.begin_run(fluid);
   limits.init(fluid, scheme);
-  if (options.scales_mass(scheme)) fluid->scaled_mass().want(groupbit);
+  scale_mass();
   control.init(fluid, limits.shortest_sound_time());
   first_kick.begin_run(atom);
   stepper->init(fluid);
   fluid->take_pair_evaluations();    // before this run
   check_group();
+}
+
+void FixSPHIntegrate::scale_mass()
+{
+  const bool scales = options.scales_mass(scheme);
+  if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
+  if (scales) fluid->scaled_mass().want(groupbit, springs);
 }
 
 // What the scheme before kept of particles is void, and they are all active; the same scheme goes
@@ -252,6 +259,7 @@ struct FixSPHIntegrate::Record {
   double sound_work, sound_elapsed;
   int sound_columns;
   double pair_evaluations;
+  int spring_columns;
 };
 
 void FixSPHIntegrate::write_restart(FILE *fp)
@@ -281,7 +289,8 @@ void FixSPHIntegrate::write_restart(FILE *fp)
                       all[3],
                       sound.elapsed,
                       sound.columns.count(),
-                      all[4]};
+                      all[4],
+                      springs.count()};
   write_record(fp, record);
 }
 
@@ -303,6 +312,7 @@ void FixSPHIntegrate::restart(char *buf)
   sound.work = comm->me == 0 ? record.sound_work : 0.0;
   sound.elapsed = record.sound_elapsed;
   sound.columns.create(record.sound_columns, atom->nmax);
+  springs.create(record.spring_columns, atom->nmax);
   // what each scheme keeps of the atoms follows, see unpack_restart(): a uniform step keeps nothing
   if (record.scheme == SteppingScheme::INDIVIDUAL || record.scheme == SteppingScheme::BLOCK)
     use_scheme(record.scheme, record.clock);
@@ -318,6 +328,7 @@ void FixSPHIntegrate::grow_arrays(int nmax)
   array_atom = rows.row;
   first_kick.columns.grow(nmax);
   sound.columns.grow(nmax);
+  springs.grow(nmax);
   stepper->grow(nmax);
 }
 
@@ -326,6 +337,7 @@ void FixSPHIntegrate::copy_arrays(int i, int j, int)
   std::copy(rows[i], rows[i] + UpdateRows::N_COLUMNS, rows[j]);
   first_kick.columns.copy(i, j);
   sound.columns.copy(i, j);
+  springs.copy(i, j);
   stepper->columns().copy(i, j);
 }
 
@@ -335,6 +347,7 @@ void FixSPHIntegrate::set_arrays(int i)
   rows[i][UpdateRows::ACTIVE] = 1.0;
   first_kick.add_particle(i, update->whichflag != 0);
   sound.columns.clear(i);
+  springs.clear(i);
   stepper->columns().clear(i);
   stepper->add_particle(i);
 }
@@ -357,13 +370,14 @@ int FixSPHIntegrate::unpack_exchange(int i, double *buf)
 
 double *FixSPHIntegrate::pack_always_kept(int i, double *buf) const
 {
-  return sound.columns.pack(i, first_kick.columns.pack(i, buf));
+  return springs.pack(i, sound.columns.pack(i, first_kick.columns.pack(i, buf)));
 }
 
 double *FixSPHIntegrate::unpack_always_kept(int i, double *buf)
 {
   first_kick.columns.unpack(i, buf);
   sound.columns.unpack(i, buf + first_kick.columns.count());
+  springs.unpack(i, buf + first_kick.columns.count() + sound.columns.count());
   return buf + n_always_kept();
 }
 
@@ -405,5 +419,5 @@ int FixSPHIntegrate::maxsize_restart()
 double FixSPHIntegrate::memory_usage()
 {
   return static_cast<double>(sizeof(double)) * UpdateRows::N_COLUMNS * atom->nmax +
-      first_kick.columns.bytes() + sound.columns.bytes() + stepper->bytes();
+      first_kick.columns.bytes() + sound.columns.bytes() + springs.bytes() + stepper->bytes();
 }

@@ -92,6 +92,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   StepControl control;
   StepReport report;
   AdaptiveSound sound;
+  ParticleColumns springs;    // of mass scaling (fluid/scaled_mass.h), in the last step
   SteppingScheme scheme;    // in force, of this fix or of the run style
   std::unique_ptr<Stepper> stepper;
   bool run_style_drives;
@@ -103,7 +104,10 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   {
     return scheme == SteppingScheme::INDIVIDUAL || scheme == SteppingScheme::BLOCK;
   }
-  int n_always_kept() const { return first_kick.columns.count() + sound.columns.count(); }
+  int n_always_kept() const
+  {
+    return first_kick.columns.count() + sound.columns.count() + springs.count();
+  }
   int n_exchanged() const
   {
     return n_always_kept() + UpdateRows::N_COLUMNS + stepper->columns().count();
@@ -112,6 +116,7 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   double *pack_always_kept(int i, double *) const;
   double *unpack_always_kept(int i, double *);
   void take_up_restored_step();
+  void scale_mass();
   void use_scheme(SteppingScheme, const BlockClock &);
 };
 

@@ -17,8 +17,11 @@ namespace {
 
 class Scaled {
  public:
-  explicit Scaled(const Scene &scene) : s(scene), of(s)
+  explicit Scaled(const Scene &scene) : Scaled(scene, Eigen::VectorXd::Zero(3 * scene.x.size())) {}
+
+  Scaled(const Scene &scene, const Eigen::VectorXd &velocities) : s(scene), v(velocities), of(s)
   {
+    of.p.v = v.data();
     const std::size_t n = s.x.size();
     const std::vector<int> is_vertex{0, 0, 1};
     std::vector<DirectionSums> gradients(n);
@@ -39,19 +42,21 @@ class Scaled {
     of.fluid->vertex_pairs(of.p, is_vertex.data(), strength.data(), pairs);
   }
 
-  // changes of velocity by these forces in a step
-  Eigen::VectorXd respond(const Eigen::VectorXd &forces, double dt) const
+  // changes of velocity by these forces in a step; this part of the springs is new
+  Eigen::VectorXd respond(const Eigen::VectorXd &forces, double dt, double new_part = 0.0) const
   {
     Eigen::VectorXd change = dt * forces;
     for (std::size_t i = 0; i < s.x.size(); i++) segment(change, i) /= s.mass[i];
     const Eigen::VectorXd kicks = change;
-    const auto kick = [&](int fluid) -> Vector3d { return kicks.segment<3>(3 * fluid); };
+    const auto kick = [&](int fluid) -> FluidKick {
+      return {kicks.segment<3>(3 * fluid), new_part};
+    };
     for (int n = 0; n < pairs.size(); n++) {
       const int j = pairs.vertices[n];
       const MassScaling mass(stiffness_of(pairs, n), 1.0 / s.mass[j], dt);
       segment(change, j) =
           mass.scaled(kicks.segment<3>(3 * j), carried_by_fluid(pairs, n, dt, kick));
-      give_to_fluid(pairs, n, dt, change.segment<3>(3 * j), kick,
+      give_to_fluid(pairs, n, dt, change.segment<3>(3 * j), 1.0, kick,
                     [&](int fluid, const Vector3d &impulse) {
                       segment(change, fluid) += impulse / s.mass[fluid];
                     });
@@ -73,8 +78,25 @@ class Scaled {
         .eigenvalues()[b.rows() - 1];
   }
 
+  // with these velocities, of what moves and of what is added
+  double energy(const Eigen::VectorXd &velocities, double dt, double added) const
+  {
+    double twice = 0.0;
+    for (std::size_t i = 0; i < s.x.size(); i++)
+      twice += s.mass[i] * velocities.segment<3>(3 * static_cast<int>(i)).squaredNorm();
+    for (int n = 0; n < pairs.size(); n++)
+      for (const VertexPairs::Pair &pair : pairs.of(n)) {
+        const Vector3d u = velocities.segment<3>(3 * pair.fluid) -
+            velocities.segment<3>(3 * pairs.vertices[n]);
+        twice += added * MassScaling::SHARE * dt * dt * pair.stiffness *
+            std::pow(direction(pair).dot(u), 2);
+      }
+    return 0.5 * twice;
+  }
+
   const Scene s;
-  const Evaluation of;
+  const Eigen::VectorXd v;
+  Evaluation of;
   VertexPairs pairs;
   double alone_sq = 0.0, bound_sq = 0.0;    // largest frequencies of water, and of what is scaled
 
@@ -114,17 +136,19 @@ BOOST_AUTO_TEST_CASE(the_step_does_not_depend_on_the_mass_of_vertices)
           }
 }
 
-// whatever the forces are
+// whatever the forces and velocities are
 
 BOOST_AUTO_TEST_CASE(momentum_and_angular_momentum_are_exact)
 {
-  const Scaled s(lattice(3, 6, 0.2, 0.05, 0.5));
+  const Scene scene = lattice(3, 6, 0.2, 0.05, 0.5);
+  Eigen::VectorXd velocities(3 * scene.x.size()), forces = velocities;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> component(-1.0, 1.0);
-  Eigen::VectorXd forces(3 * s.s.x.size());
   for (double &f : forces) f = component(random);
+  for (double &u : velocities) u = component(random);
+  const Scaled s(scene, velocities);
   const double dt = 1.9 / std::sqrt(s.bound_sq);
-  const Eigen::VectorXd change = s.respond(forces, dt);
+  const Eigen::VectorXd change = s.respond(forces, dt, 0.7);
   Vector3d momentum = Vector3d::Zero(), angular = momentum;
   double moved = 0.0;
   for (std::size_t i = 0; i < s.s.x.size(); i++) {
@@ -137,6 +161,35 @@ BOOST_AUTO_TEST_CASE(momentum_and_angular_momentum_are_exact)
   BOOST_TEST(moved > 0.1 * dt * forces.norm());
   BOOST_TEST(momentum.norm() < 1e-12 * moved);
   BOOST_TEST(angular.norm() < 1e-12 * moved);
+}
+
+// Water meets a sheet in motion: the masses that come between them get their energy from both.
+
+BOOST_AUTO_TEST_CASE(new_masses_bring_no_energy)
+{
+  for (const double areal : {50.0, 0.05})
+    for (const double new_part : {1.0, 0.3}) {
+      const Scene scene = lattice(3, 6, 0.2, areal, 0.5);
+      Eigen::VectorXd velocities = Eigen::VectorXd::Zero(3 * scene.x.size());
+      for (std::size_t i = 0; i < scene.x.size(); i++)
+        if (scene.type[i] == WATER) velocities[3 * static_cast<int>(i) + 2] = -1.0;
+      const Scaled s(scene, velocities);
+      const double dt = STABILITY * 2.0 / std::sqrt(s.bound_sq);
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(velocities.size());
+      const double before = s.energy(velocities, dt, 1.0 - new_part);
+      const double after = s.energy(velocities + s.respond(none, dt, new_part), dt, 1.0);
+      BOOST_TEST(after <= before * (1.0 + 1e-12));
+      BOOST_TEST(s.energy(velocities, dt, 1.0) > 1.001 * before);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(only_what_grows_is_new)
+{
+  BOOST_TEST(FluidKick::new_part_of(0.0, 2.0) == 1.0);
+  BOOST_TEST(FluidKick::new_part_of(0.5, 2.0) == 0.75);
+  BOOST_TEST(FluidKick::new_part_of(2.0, 2.0) == 0.0);
+  BOOST_TEST(FluidKick::new_part_of(2.0, 0.5) == 0.0);
+  BOOST_TEST(FluidKick::new_part_of(0.0, 0.0) == 0.0);
 }
 
 BOOST_AUTO_TEST_CASE(what_is_added_grows_with_the_square_of_the_step)

@@ -113,6 +113,31 @@ def wall_sheet(areal, step):
     )
 
 
+def impact(areal, step, speed, *, wall=False):
+    """Let a block of water meet a free sheet of boundary particles, or one that is a wall."""
+    half = 8 * SPACING
+    return (
+        header("p p p")
+        + cloth_box(f"-{half} {half} -{half} {half} -{half} {half}")
+        + ("" if wall else f"mass 1 {RHO0 * SPACING**3 / LATTICE_SUM}\n")
+        + sheet(2, areal, f"{10 * SPACING} {10 * SPACING}", SPACING)
+        + f"lattice sc {SPACING} origin 0.5 0.5 0\n"
+        + filled("water", "-0.15 0.15 -0.15 0.15 0.12 0.33")
+        + "group fluid type 1\n"
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 {SOUND}" + (f" spacing {SPACING}" if wall else ""),
+            "2 2 none" if wall else f"2 2 boundary pressure own volume {VOLUME}",
+            options="density calibrated" if wall else "",
+        )
+        + cloth_styles("compliance 1e-5", "compliance 1000")
+        + neighbor(0.03)
+        + f"timestep 2e-3\nfix step fluid sph/integrate {step}\n"
+        + "fix sheet cloth pbd/cloth\n"
+        + ("fix contact fluid cloth/contact 0.01 wall yes\n" if wall else "")
+        + f"velocity fluid set 0 0 {-speed} units box\n"
+    )
+
+
 def stir(lmp, speed=1e-2):
     """Give all small velocities."""
     lmp.numpy.extract_atom("v")[:512] = speed * np.random.default_rng(3).uniform(-1, 1, (512, 3))

@@ -218,11 +218,15 @@ void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoin
   }
 }
 
+Eigen::Vector3d BoundaryMesh::velocity_of(int slot) const
+{
+  return position_of(atom->v[set->halo.atom_of(slot)]);
+}
+
 Eigen::Vector3d BoundaryMesh::velocity_at(const ClosestPoint &closest) const
 {
   Vec3 velocity = Vec3::Zero();
-  for (int q = 0; q < 3; q++)
-    velocity += closest.weight[q] * position_of(atom->v[set->halo.atom_of(closest.vertices[q])]);
+  for (int q = 0; q < 3; q++) velocity += closest.weight[q] * velocity_of(closest.vertices[q]);
   return velocity;
 }
 

@@ -47,6 +47,7 @@ class BoundaryMesh : protected Pointers {
   // where particles stand now, those within reach, added to what is there
   void find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points);
 
+  Vec3 velocity_of(int slot) const;
   Vec3 velocity_at(const ClosestPoint &) const;
   VertexHalo &halo() { return set->halo; }
   // Sums by slot, of all ranks, to owned vertices: take(atom, sum) where it is not 0.  They are 0

@@ -393,11 +393,8 @@ int FluidEvaluation::ghost_size(GhostData what)
     case GhostData::CHANGE: return 1;
     case GhostData::GRADIENT: return 3;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
-    case GhostData::STRENGTH: return 1;
-    case GhostData::KICK:
-    case GhostData::IMPULSE: return 3;
+    default: return ScaledMass::ghost_size(what);
   }
-  return 0;
 }
 
 double *FluidEvaluation::pack(GhostData what, int i, double *buf) const

@@ -7,7 +7,7 @@
 namespace LAMMPS_NS {
 
 // One number, density and pressure; for a density that is integrated three, one and one; what a
-// vertex has; for mass scaling one, three and three
+// vertex has; for mass scaling one, four and three
 
 enum class GhostData {
   MASS_OR_VOLUME,

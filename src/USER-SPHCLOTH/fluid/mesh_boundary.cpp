@@ -275,7 +275,9 @@ void MeshBoundary::add_springs(MeshScaling &springs, const std::vector<double> &
       if (closest.sheet != static_cast<int>(k) || !(strength[closest.particle] > 0.0)) continue;
       const Vec3 gradient = rise(closest);
       const double size = gradient.norm();
-      if (size > 0.0) springs.add(closest, strength[closest.particle] * size, gradient / size);
+      if (size > 0.0)
+        springs.add(closest, strength[closest.particle] * size, gradient / size,
+                    position_of(atom->v[closest.particle]));
     }
   }
 }

@@ -3,7 +3,6 @@
 
 #include "fluid/mesh_scaling.h"
 
-#include "core/sph/mass_scaling.h"
 #include "core/util/bytes.h"
 
 using namespace LAMMPS_NS;
@@ -21,10 +20,14 @@ void MeshScaling::begin_mesh(BoundaryMesh &mesh)
   meshes[n_meshes++].of = &mesh;
 }
 
-void MeshScaling::add(const ClosestPoint &at, double stiffness, const Vec3 &direction)
+void MeshScaling::add(const ClosestPoint &at, double stiffness, const Vec3 &direction,
+                      const Vec3 &velocity)
 {
-  springs.push_back(
-      {at.particle, static_cast<int>(n_meshes) - 1, at.vertices, at.weight, direction, stiffness});
+  const int mesh = static_cast<int>(n_meshes) - 1;
+  std::array<double, 3> motion;
+  for (int q = 0; q < 3; q++)
+    motion[q] = direction.dot(velocity - meshes[mesh].of->velocity_of(at.vertices[q]));
+  springs.push_back({at.particle, mesh, at.vertices, at.weight, direction, stiffness, motion});
 }
 
 void MeshScaling::clear_sums()
@@ -64,14 +67,17 @@ void MeshScaling::carry(double dt, const OfFluid &kick, const Take &take)
 {
   clear_sums();
   for (const Spring &s : springs) {
-    const Vec3 carried =
-        MassScaling::SHARE * dt * dt * s.stiffness * s.direction.dot(kick(s.fluid)) * s.direction;
-    for (int q = 0; q < 3; q++) meshes[s.mesh].sums[s.vertices[q]] += s.weight[q] * carried;
+    const FluidKick &of_fluid = kick(s.fluid);
+    for (int q = 0; q < 3; q++) {
+      const double mass = MassScaling::SHARE * dt * dt * s.weight[q] * s.stiffness;
+      meshes[s.mesh].sums[s.vertices[q]] +=
+          mass * of_fluid.along(s.direction, s.motion[q]) * s.direction;
+    }
   }
   for (std::size_t m = 0; m < n_meshes; m++) meshes[m].of->sum_up(meshes[m].sums, take);
 }
 
-void MeshScaling::give(double dt, const OfFluid &kick,
+void MeshScaling::give(double dt, double part_of_step, const OfFluid &kick,
                        const std::function<const Vec3 *(int)> &changed,
                        const std::function<void(int, const Vec3 &)> &give)
 {
@@ -90,11 +96,13 @@ void MeshScaling::give(double dt, const OfFluid &kick,
   }
   for (const Spring &s : springs) {
     const Mesh &mesh = meshes[s.mesh];
-    const Vec3 of_fluid = kick(s.fluid);
+    const FluidKick &of_fluid = kick(s.fluid);
     double impulse = 0.0;
     for (int q = 0; q < 3; q++)
       if (const int v = s.vertices[q]; mesh.has_changed[v] != 0.0)
-        impulse += s.weight[q] * s.direction.dot(mesh.sums[v] - of_fluid);
+        impulse += s.weight[q] *
+            (s.direction.dot(mesh.sums[v]) -
+             part_of_step * of_fluid.along(s.direction, s.motion[q]));
     if (impulse == 0.0) continue;
     give(s.fluid, MassScaling::SHARE * dt * dt * s.stiffness * impulse * s.direction);
   }

@@ -7,6 +7,7 @@
 #ifndef SPHCLOTH_FLUID_MESH_SCALING_H
 #define SPHCLOTH_FLUID_MESH_SCALING_H
 
+#include "core/sph/mass_scaling.h"
 #include "fluid/boundary_mesh.h"
 
 #include <Eigen/Core>
@@ -21,21 +22,23 @@ class MeshScaling {
  public:
   using Vec3 = Eigen::Vector3d;
   using Mat3 = Eigen::Matrix3d;
-  using OfFluid = std::function<Vec3(int fluid)>;
+  using OfFluid = std::function<const sphcloth::FluidKick &(int fluid)>;
   using Take = std::function<void(int owned_atom, const Vec3 &)>;
 
   // anew in each evaluation: meshes, the same on all ranks, each with its springs behind it
   void begin();
   void begin_mesh(BoundaryMesh &);
-  void add(const ClosestPoint &, double stiffness, const Vec3 &direction);
+  // of a particle that has this velocity
+  void add(const ClosestPoint &, double stiffness, const Vec3 &direction, const Vec3 &velocity);
 
   // take(owned vertex, D_j); collective
   void sum_stiffness(const std::function<void(int owned_atom, const Mat3 &)> &take);
-  // take(owned vertex, sum of a dt^2 d_kj e e^T dv_k); kick(k) is dv_k; collective
+  // take(owned vertex, sum of a dt^2 d_kj e (e.dv_k + phi_k u_kj)), from kick(k); collective
   void carry(double dt, const OfFluid &kick, const Take &take);
   // give(k, impulse) to the fluid, where changed(owned vertex) is what changes its velocity, or
-  // null; collective
-  void give(double dt, const OfFluid &kick, const std::function<const Vec3 *(int)> &changed,
+  // null, and kicks act for a part of the step; collective
+  void give(double dt, double part_of_step, const OfFluid &kick,
+            const std::function<const Vec3 *(int)> &changed,
             const std::function<void(int fluid, const Vec3 &impulse)> &give);
 
   double bytes() const;
@@ -46,6 +49,7 @@ class MeshScaling {
     std::array<int, 3> vertices;    // slots
     Vec3 weight, direction;
     double stiffness;
+    std::array<double, 3> motion;    // of the fluid beside each vertex, along the direction
   };
   struct Mesh {
     BoundaryMesh *of = nullptr;

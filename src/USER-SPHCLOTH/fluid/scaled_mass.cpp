@@ -4,7 +4,6 @@
 #include "fluid/scaled_mass.h"
 
 #include "atom.h"
-#include "core/sph/mass_scaling.h"
 #include "core/util/bytes.h"
 #include "fluid/fluid_stability.h"
 #include "force.h"
@@ -75,29 +74,51 @@ void ScaledMass::bound_frequencies(const Fluid &core, FluidStability &stability)
   });
 }
 
+// In the column, dt^2 times the stiffness of all springs of a particle in the last step.  One for
+// which it is not known, at the start or of a source, begins with the springs that it has.
+
+static constexpr double UNKNOWN = 0.0, NO_SPRINGS = -1.0;
+
+void ScaledMass::note_springs(double dt)
+{
+  double *of_last = (*last)[0];
+  const auto springs = [&](int i) { return dt * dt * strength[i] * gradients[i].trace(); };
+  for (const int i : beside) {
+    if (i >= atom->nlocal) break;
+    const double before = std::max(of_last[i], 0.0);
+    kicks[i].new_part = of_last[i] == UNKNOWN ? 0.0 : FluidKick::new_part_of(before, springs(i));
+  }
+  std::fill_n(of_last, atom->nlocal, NO_SPRINGS);
+  for (const int i : beside) {
+    if (i >= atom->nlocal) break;
+    of_last[i] = springs(i);
+  }
+}
+
 void ScaledMass::find_kicks(double dt)
 {
   if (kicks_known) return;
   kicks_known = true;
-  kicks.resize(3 * static_cast<std::size_t>(atom->nmax));
-  impulses.resize(kicks.size());
+  kicks.resize(atom->nmax);
+  impulses.resize(atom->nmax, Vec3::Zero());
   for (const int i : beside) {
-    if (i >= atom->nlocal) continue;
-    const double by = dt * force->ftm2v / atom_mass(atom, i);
-    for (int d = 0; d < 3; d++) kicks[3 * static_cast<std::size_t>(i) + d] = by * atom->f[i][d];
+    if (i >= atom->nlocal) break;
+    kicks[i].change = dt * force->ftm2v / atom_mass(atom, i) * Vec3(atom->f[i]);
   }
+  note_springs(dt);
   if (any_pairs) ghosts.send_to_ghosts(GhostData::KICK);
   carried_by_meshes.assign(stiffnesses.size(), Vec3::Zero());
   meshes.carry(
-      dt, [this](int fluid) { return kick(fluid); },
+      dt, [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
       [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] += carried; });
 }
 
 ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const
 {
-  const auto of = [this](int fluid) { return kick(fluid); };
   Vec3 sum = carried_by_meshes[n];
-  if (n < vertex_pairs.size()) sum += carried_by_fluid(vertex_pairs, n, dt, of);
+  if (n < vertex_pairs.size())
+    sum += carried_by_fluid(vertex_pairs, n, dt,
+                            [this](int fluid) -> const FluidKick & { return kicks[fluid]; });
   return sum;
 }
 
@@ -107,8 +128,9 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
   is_changed[n] = 1;
   if (n >= vertex_pairs.size()) return;
   give_to_fluid(
-      vertex_pairs, n, dt, change, [&](int fluid) -> Vec3 { return part_of_step * kick(fluid); },
-      [this](int fluid, const Vec3 &impulse) { give(fluid, impulse); });
+      vertex_pairs, n, dt, change, part_of_step,
+      [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
+      [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
 }
 
 // The fluid has drifted already.
@@ -116,23 +138,33 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
 void ScaledMass::move_fluid(double dt, double part_of_step)
 {
   meshes.give(
-      dt, [&](int fluid) -> Vec3 { return part_of_step * kick(fluid); },
+      dt, part_of_step, [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
       [this](int vertex) -> const Vec3 * {
         const int n = rows[vertex];
         return n >= 0 && is_changed[n] ? &changes[n] : nullptr;
       },
-      [this](int fluid, const Vec3 &impulse) { give(fluid, impulse); });
+      [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
   std::fill(is_changed.begin(), is_changed.end(), 0);    // each cloth of a step for itself
   if (any_pairs) ghosts.add_from_ghosts(GhostData::IMPULSE);
   for (const int i : beside) {
-    double *impulse = &impulses[3 * static_cast<std::size_t>(i)];
-    if (i < atom->nlocal)
+    if (i < atom->nlocal) {
+      const Vec3 change = impulses[i] / atom_mass(atom, i);
       for (int d = 0; d < 3; d++) {
-        const double change = impulse[d] / atom_mass(atom, i);
-        atom->v[i][d] += change;
-        atom->x[i][d] += dt * change;
+        atom->v[i][d] += change[d];
+        atom->x[i][d] += dt * change[d];
       }
-    std::fill_n(impulse, 3, 0.0);    // each cloth of a step gives its part anew
+    }
+    impulses[i].setZero();    // each cloth of a step gives its part anew
+  }
+}
+
+int ScaledMass::ghost_size(GhostData what)
+{
+  switch (what) {
+    case GhostData::STRENGTH: return 1;
+    case GhostData::KICK: return 4;
+    case GhostData::IMPULSE: return 3;
+    default: return 0;
   }
 }
 
@@ -142,25 +174,21 @@ int ScaledMass::pack(GhostData what, int i, double *buf) const
     *buf = strength[i];
     return 1;
   }
-  const std::vector<double> &of = what == GhostData::KICK ? kicks : impulses;
-  std::copy_n(&of[3 * static_cast<std::size_t>(i)], 3, buf);
-  return 3;
+  Vec3::Map(buf) = what == GhostData::KICK ? kicks[i].change : impulses[i];
+  if (what == GhostData::KICK) buf[3] = kicks[i].new_part;
+  return ghost_size(what);
 }
 
 int ScaledMass::unpack(GhostData what, int i, const double *buf)
 {
-  if (what == GhostData::STRENGTH) {
+  if (what == GhostData::STRENGTH)
     strength[i] = *buf;
-    return 1;
-  }
-  std::copy_n(buf, 3, &kicks[3 * static_cast<std::size_t>(i)]);
-  return 3;
+  else
+    kicks[i] = {Vec3::Map(buf), buf[3]};
+  return ghost_size(what);
 }
 
-void ScaledMass::add(int i, const double *buf)
-{
-  for (int d = 0; d < 3; d++) impulses[3 * static_cast<std::size_t>(i) + d] += buf[d];
-}
+void ScaledMass::add(int i, const double *buf) { impulses[i] += Vec3::Map(buf); }
 
 double ScaledMass::bytes() const
 {

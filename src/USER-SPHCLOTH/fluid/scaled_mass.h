@@ -8,9 +8,11 @@
 #include "pointers.h"
 
 #include "core/sph/fluid.h"
+#include "core/sph/mass_scaling.h"
 #include "fluid/fluid_boundary.h"
 #include "fluid/ghost_exchange.h"
 #include "fluid/mesh_scaling.h"
+#include "lammps_util/particle_columns.h"
 
 #include <Eigen/Core>
 
@@ -25,9 +27,14 @@ class ScaledMass : protected Pointers {
   using Vec3 = Eigen::Vector3d;
   ScaledMass(class LAMMPS *lmp_, GhostExchange &ghosts_) : Pointers(lmp_), ghosts(ghosts_) {}
 
-  // Anew for each run: of the fluid of a group, which a uniform step moves
+  // Anew for each run: of the fluid of a group.  The column, of the fix that moves the fluid, is of
+  // what there was in the last step.
   void forget() { groupbit = 0; }
-  void want(int groupbit_) { groupbit = groupbit_; }
+  void want(int groupbit_, ParticleColumns &last_)
+  {
+    groupbit = groupbit_;
+    last = &last_;
+  }
   bool wanted() const { return groupbit != 0; }
   // is anything scaled?  Known from the first evaluation of a run on, the same on all ranks.
   bool on() const { return groupbit != 0 && any_vertices; }
@@ -42,7 +49,7 @@ class ScaledMass : protected Pointers {
   const Eigen::Matrix3d &stiffness(int n) const { return stiffnesses[n]; }
   // of an owned atom; -1: it is no vertex beside fluid
   int row(int i) const { return rows[i]; }
-  // changes of velocity by the forces of a step, of fluid of all ranks; collective once in a step
+  // what the forces of a step, and new springs, do to fluid of all ranks; collective once in a step
   void find_kicks(double dt);
   // what the fluid beside a vertex gives to it then
   Vec3 carried(int n, double dt) const;
@@ -52,6 +59,7 @@ class ScaledMass : protected Pointers {
   // moves the fluid by what it was given; collective
   void move_fluid(double dt, double part_of_step);
 
+  static int ghost_size(GhostData);
   int pack(GhostData, int i, double *buf) const;
   int unpack(GhostData, int i, const double *buf);
   void add(int i, const double *buf);
@@ -60,6 +68,7 @@ class ScaledMass : protected Pointers {
  private:
   GhostExchange &ghosts;
   int groupbit = 0;
+  ParticleColumns *last = nullptr;
   bool any_vertices = false, any_pairs = false, kicks_known = false;
   std::vector<sphcloth::DirectionSums> gradients;    // over vertices, of owned fluid
   // s_i^2 times their trace, of all atoms; 0 of what has no vertex near
@@ -72,13 +81,10 @@ class ScaledMass : protected Pointers {
   std::vector<Vec3> carried_by_meshes;    // of rows, in this step
   std::vector<Vec3> changes;    // of rows, until the fluid is moved
   std::vector<char> is_changed;
-  std::vector<double> kicks, impulses;    // [n][3], of all atoms
+  std::vector<sphcloth::FluidKick> kicks;    // of all atoms
+  std::vector<Vec3> impulses;
 
-  Vec3 kick(int fluid) const { return Vec3::Map(&kicks[3 * static_cast<std::size_t>(fluid)]); }
-  void give(int fluid, const Vec3 &impulse)
-  {
-    Vec3::Map(&impulses[3 * static_cast<std::size_t>(fluid)]) += impulse;
-  }
+  void note_springs(double dt);
   int row_of(int vertex);
 };
 

@@ -16,6 +16,11 @@
 // alone, whatever the mass of the vertices, and takes no energy out of any motion; with a = 1/2
 // twice the stiffness of the fluid bounds it (the square of a sum is at most twice the squares).
 // Motions much slower than the step do not change, those as fast as the step are slower.
+//
+// A mass that is there only now must not bring in energy: where the springs of a fluid particle
+// become stiffer, or the step longer, the masses that are new meet their pair in its motion
+// u = e.(v_k - v_j), without elasticity.  With phi_k the new part of what is there, the impulse
+// a dt^2 d_kj phi_k e u on the vertex joins that of dv_k, and the fluid gets the opposite.
 
 #ifndef SPHCLOTH_CORE_SPH_MASS_SCALING_H
 #define SPHCLOTH_CORE_SPH_MASS_SCALING_H
@@ -91,7 +96,25 @@ inline Eigen::Matrix3d stiffness_of(const VertexPairs &pairs, int n)
   return sum;
 }
 
-// Its sum of a dt^2 d_kj e e^T dv_k; kick(k) is dv_k
+// Of a fluid particle in a step: the change of velocity by its forces, dv_k, and phi_k
+
+struct FluidKick {
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();
+  double new_part = 0.0;
+
+  // what a spring along e takes up of it
+  double along(const Eigen::Vector3d &e, double motion) const
+  {
+    return e.dot(change) + new_part * motion;
+  }
+  // phi_k, from dt^2 sum_j d_kj in the last step and in this one
+  static double new_part_of(double before, double now)
+  {
+    return now > before ? 1.0 - before / now : 0.0;
+  }
+};
+
+// Its sum of a dt^2 d_kj e (e.dv_k + phi_k u); kick(k) is that of the fluid
 
 template <class Kick>
 Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt, Kick kick)
@@ -99,21 +122,23 @@ Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt, Kic
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const VertexPairs::Pair &pair : pairs.of(n)) {
     const Eigen::Vector3d e = direction(pair);
-    sum += pair.stiffness * e.dot(kick(pair.fluid)) * e;
+    sum += pair.stiffness * kick(pair.fluid).along(e, pair.motion) * e;
   }
   return MassScaling::SHARE * dt * dt * sum;
 }
 
-// give(k, impulse) to the fluid, where the vertex changes its velocity by that
+// give(k, impulse) to the fluid, where the vertex changes its velocity by that, and the kicks act
+// for a part of the step
 
 template <class Kick, class Give>
 void give_to_fluid(const VertexPairs &pairs, int n, double dt, const Eigen::Vector3d &change,
-                   Kick kick, Give give)
+                   double part_of_step, Kick kick, Give give)
 {
   for (const VertexPairs::Pair &pair : pairs.of(n)) {
     const Eigen::Vector3d e = direction(pair);
     const double mass = MassScaling::SHARE * dt * dt * pair.stiffness;
-    give(pair.fluid, mass * e.dot(change - kick(pair.fluid)) * e);
+    const double taken_up = part_of_step * kick(pair.fluid).along(e, pair.motion);
+    give(pair.fluid, mass * (e.dot(change) - taken_up) * e);
   }
 }
 

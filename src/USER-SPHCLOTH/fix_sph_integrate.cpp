@@ -101,19 +101,14 @@ void FixSPHIntegrate::init()
                label, scheme_name(scheme));
   sound.begin_run(fluid);
   limits.init(fluid, scheme);
-  scale_mass();
+  const bool scales = options.scales_mass(scheme);
+  if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
+  if (scales) fluid->scaled_mass().want(groupbit, springs);
   control.init(fluid, limits.shortest_sound_time());
   first_kick.begin_run(atom);
   stepper->init(fluid);
   fluid->take_pair_evaluations();    // before this run
   check_group();
-}
-
-void FixSPHIntegrate::scale_mass()
-{
-  const bool scales = options.scales_mass(scheme);
-  if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
-  if (scales) fluid->scaled_mass().want(groupbit, springs);
 }
 
 // What the scheme before kept of particles is void, and they are all active; the same scheme goes

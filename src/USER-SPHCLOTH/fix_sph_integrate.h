@@ -116,7 +116,6 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   double *pack_always_kept(int i, double *) const;
   double *unpack_always_kept(int i, double *);
   void take_up_restored_step();
-  void scale_mass();
   void use_scheme(SteppingScheme, const BlockClock &);
 };
 

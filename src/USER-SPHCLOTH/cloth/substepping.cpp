@@ -47,7 +47,7 @@ void Substepping::measure_compliances()
 {
   if (!uses(ClothSolver::SUBSTEPS)) return;
   const double mine[2] = {constraints.bending.min_compliance_per_weight(),
-                          constraints.distance.min_compliance_without_size()};
+                          constraints.distance.min_compliance_per_weight(true)};
   double all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
   const auto longest = [this](double softness, double compliance_per_weight) {

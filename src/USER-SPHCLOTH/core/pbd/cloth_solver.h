@@ -80,22 +80,14 @@ template <std::size_t N> class Constraints {
     }
   }
 
-  // the smallest compliance over W, of all that can move; 0 if a stiffness k says how soft one is
-  double min_compliance_per_weight() const
+  // The smallest compliance over W, of all that can move, 0 if a stiffness k says how soft one is;
+  // or of those alone that have a compliance and no size
+  double min_compliance_per_weight(bool without_size = false) const
   {
     double smallest = std::numeric_limits<double>::infinity();
     for (int m = 0; m < size(); m++)
-      if (weight[m] > 0.0) smallest = std::min(smallest, hard[m] ? compliance[m] / weight[m] : 0.0);
-    return smallest;
-  }
-
-  // the same of those alone that have no size
-  double min_compliance_without_size() const
-  {
-    double smallest = std::numeric_limits<double>::infinity();
-    for (int m = 0; m < size(); m++)
-      if (weight[m] > 0.0 && hard[m] && per_size[m] == 0.0)
-        smallest = std::min(smallest, compliance[m] / weight[m]);
+      if (weight[m] > 0.0 && !(without_size && (per_size[m] != 0.0 || !hard[m])))
+        smallest = std::min(smallest, hard[m] ? compliance[m] / weight[m] : 0.0);
     return smallest;
   }
 

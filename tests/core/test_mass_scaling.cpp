@@ -53,12 +53,10 @@ class Scaled {
     };
     for (int n = 0; n < pairs.size(); n++) {
       const int j = pairs.vertices[n];
-      const Eigen::Matrix3d stiffness = stiffness_of(pairs, n);
-      const Vector3d normal = normal_of(stiffness);
-      const MassScaling mass(stiffness, 1.0 / s.mass[j], dt);
+      const MassScaling mass(stiffness_of(pairs, n), 1.0 / s.mass[j], dt);
       segment(change, j) =
-          mass.scaled(kicks.segment<3>(3 * j), carried_by_fluid(pairs, n, dt, normal, kick));
-      give_to_fluid(pairs, n, dt, normal, change.segment<3>(3 * j), 1.0, kick,
+          mass.scaled(kicks.segment<3>(3 * j), carried_by_fluid(pairs, n, dt, kick));
+      give_to_fluid(pairs, n, dt, change.segment<3>(3 * j), 1.0, kick,
                     [&](int fluid, const Vector3d &impulse) {
                       segment(change, fluid) += impulse / s.mass[fluid];
                     });

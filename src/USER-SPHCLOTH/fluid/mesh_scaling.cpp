@@ -24,12 +24,10 @@ void MeshScaling::add(const ClosestPoint &at, double stiffness, const Vec3 &dire
                       const Vec3 &velocity)
 {
   const int mesh = static_cast<int>(n_meshes) - 1;
-  std::array<double, 3> approach;
-  for (int q = 0; q < 3; q++) {
-    const Vec3 of_vertex = meshes[mesh].of->velocity_of(at.vertices[q]);
-    approach[q] = std::max(direction.dot(velocity - of_vertex), 0.0);
-  }
-  springs.push_back({at.particle, mesh, at.vertices, at.weight, direction, stiffness, approach});
+  std::array<double, 3> motion;
+  for (int q = 0; q < 3; q++)
+    motion[q] = direction.dot(velocity - meshes[mesh].of->velocity_of(at.vertices[q]));
+  springs.push_back({at.particle, mesh, at.vertices, at.weight, direction, stiffness, motion});
 }
 
 void MeshScaling::clear_sums()
@@ -73,7 +71,7 @@ void MeshScaling::carry(double dt, const OfFluid &kick, const Take &take)
     for (int q = 0; q < 3; q++) {
       const double mass = MassScaling::SHARE * dt * dt * s.weight[q] * s.stiffness;
       meshes[s.mesh].sums[s.vertices[q]] +=
-          mass * of_fluid.along(s.direction, s.approach[q]) * s.direction;
+          mass * of_fluid.along(s.direction, s.motion[q]) * s.direction;
     }
   }
   for (std::size_t m = 0; m < n_meshes; m++) meshes[m].of->sum_up(meshes[m].sums, take);
@@ -104,7 +102,7 @@ void MeshScaling::give(double dt, double part_of_step, const OfFluid &kick,
       if (const int v = s.vertices[q]; mesh.has_changed[v] != 0.0)
         impulse += s.weight[q] *
             (s.direction.dot(mesh.sums[v]) -
-             part_of_step * of_fluid.along(s.direction, s.approach[q]));
+             part_of_step * of_fluid.along(s.direction, s.motion[q]));
     if (impulse == 0.0) continue;
     give(s.fluid, MassScaling::SHARE * dt * dt * s.stiffness * impulse * s.direction);
   }

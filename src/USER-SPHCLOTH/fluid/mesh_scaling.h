@@ -49,7 +49,7 @@ class MeshScaling {
     std::array<int, 3> vertices;    // slots
     Vec3 weight, direction;
     double stiffness;
-    std::array<double, 3> approach;    // of the fluid to each vertex, along the direction
+    std::array<double, 3> motion;    // of the fluid beside each vertex, along the direction
   };
   struct Mesh {
     BoundaryMesh *of = nullptr;

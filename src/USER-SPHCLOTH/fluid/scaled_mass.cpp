@@ -106,8 +106,6 @@ void ScaledMass::find_kicks(double dt)
     kicks[i].change = dt * force->ftm2v / atom_mass(atom, i) * Vec3(atom->f[i]);
   }
   note_springs(dt);
-  normals.resize(vertex_pairs.size());
-  for (int n = 0; n < vertex_pairs.size(); n++) normals[n] = normal_of(stiffnesses[n]);
   if (any_pairs) ghosts.send_to_ghosts(GhostData::KICK);
   carried_by_meshes.assign(stiffnesses.size(), Vec3::Zero());
   meshes.carry(
@@ -119,7 +117,7 @@ ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const
 {
   Vec3 sum = carried_by_meshes[n];
   if (n < vertex_pairs.size())
-    sum += carried_by_fluid(vertex_pairs, n, dt, normals[n],
+    sum += carried_by_fluid(vertex_pairs, n, dt,
                             [this](int fluid) -> const FluidKick & { return kicks[fluid]; });
   return sum;
 }
@@ -130,7 +128,7 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
   is_changed[n] = 1;
   if (n >= vertex_pairs.size()) return;
   give_to_fluid(
-      vertex_pairs, n, dt, normals[n], change, part_of_step,
+      vertex_pairs, n, dt, change, part_of_step,
       [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
       [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
 }
@@ -195,6 +193,6 @@ void ScaledMass::add(int i, const double *buf) { impulses[i] += Vec3::Map(buf); 
 double ScaledMass::bytes() const
 {
   return vertex_pairs.bytes() + meshes.bytes() +
-      bytes_of(gradients, strength, beside, rows, stiffnesses, normals, carried_by_meshes, changes,
+      bytes_of(gradients, strength, beside, rows, stiffnesses, carried_by_meshes, changes,
                is_changed, kicks, impulses);
 }

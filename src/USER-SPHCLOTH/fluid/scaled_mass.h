@@ -77,7 +77,6 @@ class ScaledMass : protected Pointers {
   sphcloth::VertexPairs vertex_pairs;
   std::vector<int> rows;    // of owned atoms
   std::vector<Eigen::Matrix3d> stiffnesses;    // of rows
-  std::vector<Vec3> normals;    // of vertices with pairs
   MeshScaling meshes;
   std::vector<Vec3> carried_by_meshes;    // of rows, in this step
   std::vector<Vec3> changes;    // of rows, until the fluid is moved

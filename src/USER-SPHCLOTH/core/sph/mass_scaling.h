@@ -18,10 +18,9 @@
 // Motions much slower than the step do not change, those as fast as the step are slower.
 //
 // A mass that is there only now must not bring in energy: where the springs of a fluid particle
-// become stiffer, or the step longer, the masses that are new meet their pair without elasticity.
-// With phi_k the new part of what is there, and the approach u = (e.n) n.(v_k - v_j) along the
-// normal n of the vertices if it is one, the impulse a dt^2 d_kj phi_k e u on the vertex joins that
-// of dv_k, and the fluid gets the opposite.  What slides along a sheet is not held.
+// become stiffer, or the step longer, the masses that are new meet their pair in its motion
+// u = e.(v_k - v_j), without elasticity.  With phi_k the new part of what is there, the impulse
+// a dt^2 d_kj phi_k e u on the vertex joins that of dv_k, and the fluid gets the opposite.
 
 #ifndef SPHCLOTH_CORE_SPH_MASS_SCALING_H
 #define SPHCLOTH_CORE_SPH_MASS_SCALING_H
@@ -85,22 +84,6 @@ class MassScaling {
 
 inline Eigen::Vector3d direction(const VertexPairs::Pair &pair) { return {pair.x, pair.y, pair.z}; }
 
-// u, along e: below 0, or 0 where the two part
-
-inline double approach(const VertexPairs::Pair &pair, const Eigen::Vector3d &normal)
-{
-  const Eigen::Vector3d velocity(pair.u, pair.v, pair.w);
-  return std::min(direction(pair).dot(normal) * normal.dot(velocity), 0.0);
-}
-
-// Normal of the vertices around one: the direction in which D_j is stiffest
-
-inline Eigen::Vector3d normal_of(const Eigen::Matrix3d &stiffness)
-{
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of;
-  return of.computeDirect(stiffness).eigenvectors().col(2);
-}
-
 // D_j of the n-th vertex
 
 inline Eigen::Matrix3d stiffness_of(const VertexPairs &pairs, int n)
@@ -120,9 +103,9 @@ struct FluidKick {
   double new_part = 0.0;
 
   // what a spring along e takes up of it
-  double along(const Eigen::Vector3d &e, double approach) const
+  double along(const Eigen::Vector3d &e, double motion) const
   {
-    return e.dot(change) + new_part * approach;
+    return e.dot(change) + new_part * motion;
   }
   // phi_k, from dt^2 sum_j d_kj in the last step and in this one
   static double new_part_of(double before, double now)
@@ -134,13 +117,12 @@ struct FluidKick {
 // Its sum of a dt^2 d_kj e (e.dv_k + phi_k u); kick(k) is that of the fluid
 
 template <class Kick>
-Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt,
-                                 const Eigen::Vector3d &normal, Kick kick)
+Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt, Kick kick)
 {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const VertexPairs::Pair &pair : pairs.of(n)) {
     const Eigen::Vector3d e = direction(pair);
-    sum += pair.stiffness * kick(pair.fluid).along(e, approach(pair, normal)) * e;
+    sum += pair.stiffness * kick(pair.fluid).along(e, pair.motion) * e;
   }
   return MassScaling::SHARE * dt * dt * sum;
 }
@@ -149,13 +131,13 @@ Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt,
 // for a part of the step
 
 template <class Kick, class Give>
-void give_to_fluid(const VertexPairs &pairs, int n, double dt, const Eigen::Vector3d &normal,
-                   const Eigen::Vector3d &change, double part_of_step, Kick kick, Give give)
+void give_to_fluid(const VertexPairs &pairs, int n, double dt, const Eigen::Vector3d &change,
+                   double part_of_step, Kick kick, Give give)
 {
   for (const VertexPairs::Pair &pair : pairs.of(n)) {
     const Eigen::Vector3d e = direction(pair);
     const double mass = MassScaling::SHARE * dt * dt * pair.stiffness;
-    const double taken_up = part_of_step * kick(pair.fluid).along(e, approach(pair, normal));
+    const double taken_up = part_of_step * kick(pair.fluid).along(e, pair.motion);
     give(pair.fluid, mass * (e.dot(change) - taken_up) * e);
   }
 }

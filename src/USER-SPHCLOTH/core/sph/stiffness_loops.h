@@ -186,7 +186,8 @@ void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
       const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
       if (!(stiffness > 0.0)) return;
       const double *u = p.v + 3 * i, *v = p.v + 3 * j;
-      pairs.add({i, s.x, s.y, s.z, stiffness, u[0] - v[0], u[1] - v[1], u[2] - v[2]});
+      const double motion = s.x * (u[0] - v[0]) + s.y * (u[1] - v[1]) + s.z * (u[2] - v[2]);
+      pairs.add({i, s.x, s.y, s.z, stiffness, motion});
     });
     pairs.end_vertex(j);
   });

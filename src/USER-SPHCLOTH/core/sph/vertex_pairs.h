@@ -14,7 +14,7 @@ struct VertexPairs {
   struct Pair {
     int fluid;    // atom
     double x, y, z, stiffness;    // unit vector between both; d_kj of core/sph/mass_scaling.h
-    double u, v, w;    // velocity of the fluid beside the vertex
+    double motion;    // velocity of the fluid beside the vertex along it
   };
   struct Range {
     const Pair *from, *to;

@@ -121,7 +121,7 @@ BUGS = [
     Bug("mass scaling: each vertex of a triangle gets all that a mesh carries",
         "fluid/mesh_scaling.cpp", "s.weight[q] * s.stiffness;", "s.stiffness;", SCALING),
     Bug("mass scaling: new masses bring their energy in", "fluid/scaled_mass.cpp",
-        "FluidKick::new_part_of(before, springs(i))", "0.0 * before", SCALING),
+        "FluidKick::new_part_of(before, now)", "0.0 * before", SCALING),
     Bug("mass scaling: vertices do not feel where the water goes", "core/sph/mass_scaling.h",
         "kept * (change + inverse_mass * carried)", "kept * change", SCALING),
     Bug("steps: a short step arrives at an output time", "core/timestep/step_limits.h",

@@ -159,7 +159,7 @@ def test_a_sheet_that_hangs_carries_its_water(step):
             lmp.command(f"fix step fluid sph/integrate {step} until {1.002 + 0.002 * k}")
             lmp.command("run 100 post no")
             pulls.append(lmp.extract_fix("sheet", 0, 1, 2))
-        assert by_id(lmp, "x")[:, 2].min() > -SPACING  # it settles at 0.024 or 0.032
+        assert by_id(lmp, "x")[:, 2].min() > -0.7 * SPACING  # it settles at 0.024 or 0.032
     assert np.mean(pulls) == pytest.approx(weight, rel=0.03)
 
 

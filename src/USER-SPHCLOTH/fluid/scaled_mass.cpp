@@ -82,17 +82,20 @@ static constexpr double UNKNOWN = 0.0, NO_SPRINGS = -1.0;
 void ScaledMass::note_springs(double dt)
 {
   double *of_last = (*last)[0];
-  const auto springs = [&](int i) { return dt * dt * strength[i] * gradients[i].trace(); };
-  for (const int i : beside) {
-    if (i >= atom->nlocal) break;
+  for (int i = 0; i < atom->nlocal; i++) {
     const double before = std::max(of_last[i], 0.0);
-    kicks[i].new_part = of_last[i] == UNKNOWN ? 0.0 : FluidKick::new_part_of(before, springs(i));
+    const bool known = of_last[i] != UNKNOWN;
+    of_last[i] = NO_SPRINGS;
+    if (!(strength[i] > 0.0)) continue;
+    const double now = dt * dt * strength[i] * gradients[i].trace();
+    kicks[i].new_part = known ? FluidKick::new_part_of(before, now) : 0.0;
+    of_last[i] = now;
   }
-  std::fill_n(of_last, atom->nlocal, NO_SPRINGS);
-  for (const int i : beside) {
-    if (i >= atom->nlocal) break;
-    of_last[i] = springs(i);
-  }
+}
+
+static auto each_of(const std::vector<FluidKick> &kicks)
+{
+  return [&kicks](int fluid) -> const FluidKick & { return kicks[fluid]; };
 }
 
 void ScaledMass::find_kicks(double dt)
@@ -108,17 +111,14 @@ void ScaledMass::find_kicks(double dt)
   note_springs(dt);
   if (any_pairs) ghosts.send_to_ghosts(GhostData::KICK);
   carried_by_meshes.assign(stiffnesses.size(), Vec3::Zero());
-  meshes.carry(
-      dt, [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
-      [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] += carried; });
+  meshes.carry(dt, each_of(kicks),
+               [this](int i, const Vec3 &carried) { carried_by_meshes[rows[i]] += carried; });
 }
 
 ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const
 {
   Vec3 sum = carried_by_meshes[n];
-  if (n < vertex_pairs.size())
-    sum += carried_by_fluid(vertex_pairs, n, dt,
-                            [this](int fluid) -> const FluidKick & { return kicks[fluid]; });
+  if (n < vertex_pairs.size()) sum += carried_by_fluid(vertex_pairs, n, dt, each_of(kicks));
   return sum;
 }
 
@@ -127,10 +127,8 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
   changes[n] = change;
   is_changed[n] = 1;
   if (n >= vertex_pairs.size()) return;
-  give_to_fluid(
-      vertex_pairs, n, dt, change, part_of_step,
-      [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
-      [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
+  give_to_fluid(vertex_pairs, n, dt, change, part_of_step, each_of(kicks),
+                [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
 }
 
 // The fluid has drifted already.
@@ -138,7 +136,7 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
 void ScaledMass::move_fluid(double dt, double part_of_step)
 {
   meshes.give(
-      dt, part_of_step, [this](int fluid) -> const FluidKick & { return kicks[fluid]; },
+      dt, part_of_step, each_of(kicks),
       [this](int vertex) -> const Vec3 * {
         const int n = rows[vertex];
         return n >= 0 && is_changed[n] ? &changes[n] : nullptr;

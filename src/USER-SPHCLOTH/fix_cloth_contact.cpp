@@ -172,7 +172,8 @@ void FixClothContact::pre_exchange()
 }
 
 // A particle must see whole triangles.  Wanted is room for displacements until the next list build:
-// the skin, and steps at the present speeds, as long as these do not cross the box.
+// the skin, and steps at twice the present speeds, as long as these do not cross the box: both the
+// speeds and the steps grow in between.
 
 std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
 {
@@ -189,7 +190,7 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
   });
   MPI_Allreduce(&mine, &speed_sq, 1, MPI_DOUBLE, MPI_MAX, world);
   const int steps = std::max({1, neighbor->every, neighbor->delay});
-  const double displacement = std::min(2.0 * steps * update->dt * std::sqrt(speed_sq),
+  const double displacement = std::min(4.0 * steps * update->dt * std::sqrt(speed_sq),
                                        std::max(2.0 * neighbor->skin, ghosts.size_of_box()));
   double needed = longest + reach_of_triangles(),
          wanted = longest + rules.thickness + neighbor->skin + displacement;

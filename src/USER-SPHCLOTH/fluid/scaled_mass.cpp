@@ -24,21 +24,24 @@ void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability
   if (!any_vertices) return;
   gradients.resize(atom->nmax);
   strength.assign(atom->nmax, 0.0);
+  normals.resize(3 * static_cast<std::size_t>(atom->nmax));
   if (any_pairs) core.vertex_gradients(p, is_vertex.data(), gradients.data());
   core.for_active_fluid([&](int i, int) {
-    if (!any_pairs) gradients[i] = DirectionSums();
+    if (!any_pairs) gradients[i] = VertexGradients();
     for (FluidBoundary *boundary : boundaries) boundary->add_gradients(i, gradients[i]);
     const double sum = gradients[i].trace();
     if (sum == 0.0 || !(atom->mask[i] & groupbit)) return;
     const double sound = stability.find_sound(i);
     strength[i] = sound * sound * sum;
+    Vec3::Map(&normals[3 * i]) = Vec3(gradients[i].away).normalized();
   });
   if (any_pairs) ghosts.send_to_ghosts(GhostData::STRENGTH);
   beside.clear();
   for (int i = 0; i < p.n_all; i++)
     if (strength[i] > 0.0) beside.push_back(i);
   vertex_pairs.clear();
-  if (any_pairs) core.vertex_pairs(p, is_vertex.data(), strength.data(), vertex_pairs);
+  if (any_pairs)
+    core.vertex_pairs(p, is_vertex.data(), strength.data(), normals.data(), vertex_pairs);
   stiffnesses.clear();
   rows.assign(atom->nlocal, -1);
   for (int n = 0; n < vertex_pairs.size(); n++) {
@@ -159,7 +162,7 @@ void ScaledMass::move_fluid(double dt, double part_of_step)
 int ScaledMass::ghost_size(GhostData what)
 {
   switch (what) {
-    case GhostData::STRENGTH: return 1;
+    case GhostData::STRENGTH: return 4;
     case GhostData::KICK: return 4;
     case GhostData::IMPULSE: return 3;
     default: return 0;
@@ -169,8 +172,9 @@ int ScaledMass::ghost_size(GhostData what)
 int ScaledMass::pack(GhostData what, int i, double *buf) const
 {
   if (what == GhostData::STRENGTH) {
-    *buf = strength[i];
-    return 1;
+    Vec3::Map(buf) = Vec3::Map(&normals[3 * i]);
+    buf[3] = strength[i];
+    return ghost_size(what);
   }
   Vec3::Map(buf) = what == GhostData::KICK ? kicks[i].change : impulses[i];
   if (what == GhostData::KICK) buf[3] = kicks[i].new_part;
@@ -179,10 +183,12 @@ int ScaledMass::pack(GhostData what, int i, double *buf) const
 
 int ScaledMass::unpack(GhostData what, int i, const double *buf)
 {
-  if (what == GhostData::STRENGTH)
-    strength[i] = *buf;
-  else
+  if (what == GhostData::STRENGTH) {
+    Vec3::Map(&normals[3 * i]) = Vec3::Map(buf);
+    strength[i] = buf[3];
+  } else {
     kicks[i] = {Vec3::Map(buf), buf[3]};
+  }
   return ghost_size(what);
 }
 
@@ -191,6 +197,6 @@ void ScaledMass::add(int i, const double *buf) { impulses[i] += Vec3::Map(buf); 
 double ScaledMass::bytes() const
 {
   return vertex_pairs.bytes() + meshes.bytes() +
-      bytes_of(gradients, strength, beside, rows, stiffnesses, carried_by_meshes, changes,
+      bytes_of(gradients, strength, normals, beside, rows, stiffnesses, carried_by_meshes, changes,
                is_changed, kicks, impulses);
 }

@@ -70,9 +70,10 @@ class ScaledMass : protected Pointers {
   int groupbit = 0;
   ParticleColumns *last = nullptr;
   bool any_vertices = false, any_pairs = false, kicks_known = false;
-  std::vector<sphcloth::DirectionSums> gradients;    // over vertices, of owned fluid
+  std::vector<sphcloth::VertexGradients> gradients;    // over vertices, of owned fluid
   // s_i^2 times their trace, of all atoms; 0 of what has no vertex near
   std::vector<double> strength;
+  std::vector<double> normals;    // of the same, [all][3], away from the vertices of pairs
   std::vector<int> beside;    // all atoms of a strength above 0
   sphcloth::VertexPairs vertex_pairs;
   std::vector<int> rows;    // of owned atoms

@@ -242,12 +242,13 @@ class Fluid {
                                 VertexStiffness *) = 0;
   virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,
                            bool scaled, VertexRow *) = 0;
-  // For mass scaling: of every active fluid particle the sum of |d rho/d x_j| e e^T over vertices
-  // j, e along both; and the fluid beside each owned vertex that has a strength above 0, with the
-  // stiffness strength |d rho/d x_j|
-  virtual void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) = 0;
+  // For mass scaling: of every active fluid particle the sums of |d rho/d x_j| e e^T and
+  // |d rho/d x_j| e over vertices j, e from it to the particle; and the fluid beside each owned
+  // vertex that has a strength above 0, with the stiffness strength |d rho/d x_j|, and its motion
+  // along e and across a surface with these normals, [n_all][3]
+  virtual void vertex_gradients(const Particles &, const int *is_vertex, VertexGradients *) = 0;
   virtual void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
-                            VertexPairs &) = 0;
+                            const double *normals, VertexPairs &) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
   using Receiver = void (*)(void *context, int i, const Acceleration &);

@@ -64,9 +64,9 @@ template <class K, class P> class FluidLoops : public Fluid {
                         VertexStiffness *) override;
   void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *, bool scaled,
                    VertexRow *) override;
-  void vertex_gradients(const Particles &, const int *is_vertex, DirectionSums *) override;
+  void vertex_gradients(const Particles &, const int *is_vertex, VertexGradients *) override;
   void vertex_pairs(const Particles &, const int *is_vertex, const double *strength,
-                    VertexPairs &) override;
+                    const double *normals, VertexPairs &) override;
   double take_pair_evaluations() override { return std::exchange(records.n_evaluated, 0.0); }
   double bytes() const override
   {

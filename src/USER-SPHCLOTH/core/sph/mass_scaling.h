@@ -19,8 +19,11 @@
 //
 // A mass that is there only now must not bring in energy: where the springs of a fluid particle
 // become stiffer, or the step longer, the masses that are new meet their pair in its motion
-// u = e.(v_k - v_j), without elasticity.  With phi_k the new part of what is there, the impulse
-// a dt^2 d_kj phi_k e u on the vertex joins that of dv_k, and the fluid gets the opposite.
+// w across the surface of the vertices, without elasticity.  With phi_k the new part of what is
+// there, the impulse a dt^2 d_kj phi_k e w on the vertex joins that of dv_k, and the fluid gets the
+// opposite.  With n_k along sum_j |g_kj| e_kj, w is the part that e.u and (e.n_k)(n_k.u) have in
+// common, u = v_k - v_j: what flows along the surface is not held, and as a share of e.u the
+// impulse of a pair never adds energy.
 
 #ifndef SPHCLOTH_CORE_SPH_MASS_SCALING_H
 #define SPHCLOTH_CORE_SPH_MASS_SCALING_H
@@ -114,7 +117,7 @@ struct FluidKick {
   }
 };
 
-// Its sum of a dt^2 d_kj e (e.dv_k + phi_k u); kick(k) is that of the fluid
+// Its sum of a dt^2 d_kj e (e.dv_k + phi_k w); kick(k) is that of the fluid
 
 template <class Kick>
 Eigen::Vector3d carried_by_fluid(const VertexPairs &pairs, int n, double dt, Kick kick)

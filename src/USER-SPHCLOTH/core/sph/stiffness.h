@@ -66,6 +66,20 @@ struct DirectionSums {
   }
 };
 
+// Of a fluid particle: sums of |g_kj| e_kj e_kj^T and, away from the vertices, of |g_kj| e_kj
+
+struct VertexGradients : public DirectionSums {
+  double away[3] = {};
+
+  void add(double times, double x, double y, double z)
+  {
+    DirectionSums::add(times, x, y, z);
+    away[0] += times * x;
+    away[1] += times * y;
+    away[2] += times * z;
+  }
+};
+
 // Of a vertex: the sum over fluid, T_j once it has V_j^2/m_j; and the rate at which fluid would
 // stop it.
 

@@ -160,11 +160,12 @@ void FluidLoops<K, P>::vertex_rows(const Particles &p, const int *is_vertex,
 }
 
 template <class K, class P>
-void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex, DirectionSums *of)
+void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex,
+                                        VertexGradients *of)
 {
   const VertexWalk walk{model, lists, is_vertex};
   for_active_fluid([&](int i, int type) SPHCLOTH_LAMBDA {
-    DirectionSums sums;
+    VertexGradients sums;
     walk.for_vertices_beside(i, type, [&](int j, const PairTerms &t) SPHCLOTH_LAMBDA {
       const Press s = press<K>(p, i, j, t);
       sums.add(p.mass_or_volume[j] * std::fabs(s.size), s.x, s.y, s.z);
@@ -175,7 +176,8 @@ void FluidLoops<K, P>::vertex_gradients(const Particles &p, const int *is_vertex
 
 template <class K, class P>
 void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
-                                    const double *strength, VertexPairs &pairs)
+                                    const double *strength, const double *normals,
+                                    VertexPairs &pairs)
 {
   const VertexWalk walk{model, lists, is_vertex};
   pairs.clear();
@@ -185,9 +187,10 @@ void FluidLoops<K, P>::vertex_pairs(const Particles &p, const int *is_vertex,
       const Press s = press<K>(p, i, j, t);
       const double stiffness = strength[i] * p.mass_or_volume[j] * std::fabs(s.size);
       if (!(stiffness > 0.0)) return;
-      const double *u = p.v + 3 * i, *v = p.v + 3 * j;
-      const double motion = s.x * (u[0] - v[0]) + s.y * (u[1] - v[1]) + s.z * (u[2] - v[2]);
-      pairs.add({i, s.x, s.y, s.z, stiffness, motion});
+      const double *u = p.v + 3 * i, *v = p.v + 3 * j, *n = normals + 3 * i;
+      const double motion[3] = {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+      const double met = along_and_across({s.x, s.y, s.z}, n, motion);
+      pairs.add({i, s.x, s.y, s.z, stiffness, met});
     });
     pairs.end_vertex(j);
   });

@@ -6,15 +6,28 @@
 
 #include "core/util/bytes.h"
 
+#include <cmath>
 #include <vector>
 
 namespace sphcloth {
+
+// What the motion u along a unit vector e, e.u, and its part across a surface with the normal n,
+// (e.n)(n.u), have in common
+
+inline double along_and_across(const double (&e)[3], const double *n, const double (&u)[3])
+{
+  const double along = e[0] * u[0] + e[1] * u[1] + e[2] * u[2];
+  const double across =
+      (e[0] * n[0] + e[1] * n[1] + e[2] * n[2]) * (n[0] * u[0] + n[1] * u[1] + n[2] * u[2]);
+  if (along * across <= 0.0) return 0.0;
+  return std::fabs(along) < std::fabs(across) ? along : across;
+}
 
 struct VertexPairs {
   struct Pair {
     int fluid;    // atom
     double x, y, z, stiffness;    // unit vector between both; d_kj of core/sph/mass_scaling.h
-    double motion;    // velocity of the fluid beside the vertex along it
+    double motion;    // velocity of the fluid beside the vertex, along it and across the surface
   };
   struct Range {
     const Pair *from, *to;

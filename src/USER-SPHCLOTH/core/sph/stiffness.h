@@ -39,9 +39,15 @@ struct Stiffness {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
     const double alone = squares / mass, others = (factor - 1.0) * fluid;
+    const double surface = factor * fluid + alone + 1.5 * std::sqrt(fluid * alone);
+    const double gradients = std::min(
+        surface, (factor - 1.0) * alone <= fluid ? factor * (fluid + alone)
+                                                 : others + alone + 2.0 * std::sqrt(others * alone));
     const double springs = std::max({spring[0], spring[1], spring[2]});
-    if ((factor - 1.0) * alone <= fluid) return factor * (fluid + alone) + springs;
-    return others + alone + 2.0 * std::sqrt(others * alone) + springs;
+    if (springs == 0.0) return gradients;
+    const double difference = gradients - springs;
+    return 0.5 * (gradients + springs) +
+        std::sqrt(0.25 * difference * difference + springs * std::min(fluid + alone, gradients));
   }
 };
 

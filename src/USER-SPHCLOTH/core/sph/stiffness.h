@@ -9,7 +9,15 @@
 // order.  In order there are no g_kk.  At a free surface they are large, and move a particle alone:
 // with f the factor, F the sum over j != k and G = |g_kk|^2/m_k, the roots of the largest
 // eigenvalues add up to no more than sqrt((f-1) F) + sqrt(G), the tangent of sqrt(f (F + G)) from
-// G = F/(f-1) on.
+// G = F/(f-1) on.  Waves of the largest factor do so in part only: f F + G + 1.5 sqrt(F G) is the
+// bound where it is smaller, found in order, disorder, films and spray (two particles alone have
+// 4 F, with F = G).
+//
+// The spring of a wall acts on one particle, and everything else moves that one alone with F + G at
+// most: with L the bound of before and S that of the spring, a matrix of the largest eigenvalue L
+// and a diagonal entry d, to which S is added, has none above
+//   (L + S)/2 + sqrt((L - S)^2/4 + S d).
+// Where all particles of a face have springs, what moves them together is more: d = 1.5 (F + G).
 //
 // Vertices of cloth may be much lighter than the fluid, and what they do to two particles may add
 // up or not.  Their part is bounded with a_kj = s_k |g_kj|/sqrt(m_j) and unit vectors e_kj along
@@ -29,7 +37,7 @@ namespace sphcloth {
 struct Stiffness {
   double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
   double gradient[3] = {};    // d rho/d x of itself
-  // the same of walls' springs alone, along each axis; the largest adds to the largest eigenvalue
+  // the same of walls' springs alone, along each axis, of which the largest counts
   double spring[3] = {};
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
@@ -38,16 +46,17 @@ struct Stiffness {
   {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
-    const double alone = squares / mass, others = (factor - 1.0) * fluid;
-    const double surface = factor * fluid + alone + 1.5 * std::sqrt(fluid * alone);
-    const double gradients = std::min(
-        surface, (factor - 1.0) * alone <= fluid ? factor * (fluid + alone)
-                                                 : others + alone + 2.0 * std::sqrt(others * alone));
+    const double alone = squares / mass, single = fluid + alone;
+    const double others = (factor - 1.0) * fluid;
+    const double of_roots = (factor - 1.0) * alone <= fluid
+        ? factor * single
+        : others + alone + 2.0 * std::sqrt(others * alone);
+    const double of_waves = factor * fluid + alone + 1.5 * std::sqrt(fluid * alone);
+    const double together = std::min(of_roots, of_waves);
     const double springs = std::max({spring[0], spring[1], spring[2]});
-    if (springs == 0.0) return gradients;
-    const double difference = gradients - springs;
-    return 0.5 * (gradients + springs) +
-        std::sqrt(0.25 * difference * difference + springs * std::min(fluid + alone, gradients));
+    const double half = 0.5 * (together - springs);
+    return 0.5 * (together + springs) +
+        std::sqrt(half * half + springs * std::min(1.5 * single, together));
   }
 };
 

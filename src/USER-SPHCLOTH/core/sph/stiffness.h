@@ -17,7 +17,7 @@
 // most: with L the bound of before and S that of the spring, a matrix of the largest eigenvalue L
 // and a diagonal entry d, to which S is added, has none above
 //   (L + S)/2 + sqrt((L - S)^2/4 + S d).
-// Where all particles of a face have springs, what moves them together is more: d = 1.5 (F + G).
+// Where all particles of a face have springs, what moves them together is more: d = 2 (F + G).
 //
 // Vertices of cloth may be much lighter than the fluid, and what they do to two particles may add
 // up or not.  Their part is bounded with a_kj = s_k |g_kj|/sqrt(m_j) and unit vectors e_kj along
@@ -56,7 +56,7 @@ struct Stiffness {
     const double springs = std::max({spring[0], spring[1], spring[2]});
     const double half = 0.5 * (together - springs);
     return 0.5 * (together + springs) +
-        std::sqrt(half * half + springs * std::min(1.5 * single, together));
+        std::sqrt(half * half + springs * std::min(2.0 * single, together));
   }
 };
 

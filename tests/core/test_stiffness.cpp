@@ -62,7 +62,8 @@ Frequency frequency(const Scene &s)
 
 Frequency frequency_at_wall(const Scene &s, double share)
 {
-  const Evaluation of(s);
+  Evaluation of(s);
+  std::fill(of.sound.begin(), of.sound.end(), SOUND);    // a wall completes the density
   const std::size_t n = s.x.size();
   std::vector<Stiffness> stiff(n);
   of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
@@ -150,7 +151,7 @@ BOOST_AUTO_TEST_CASE(the_bound_holds_at_walls)
         for (const double share : {0.1, 0.5, 1.0, 2.0}) {
           Scene s = lattice(dim, dim == 2 ? 18 : 8, disorder);
           s.support = support * SPACING;
-          check(frequency_at_wall(s, share), 1.25,
+          check(frequency_at_wall(s, share), 1.2,
                 "wall " + std::to_string(dim) + " support " + std::to_string(support) +
                     " disorder " + std::to_string(disorder) + " share " + std::to_string(share));
         }

@@ -134,6 +134,11 @@ def test_a_scene_has_the_particles_and_walls_of_the_others() -> None:
     assert np.array(box["translation"]) - 0.5 * np.array(box["scale"]) == pytest.approx(tank[0])
     free = splishsplash.scene("dfsph", (20, 8, 40), 0.05, tank, {"max_error": 0.3})
     assert free["Configuration"]["DFSPH"]["maxError"] == 0.3
+    thick = splishsplash.scene(
+        "dfsph", (20, 8, 40), 0.05, tank, {"max_error": 0.3, "viscosity": 0.02}
+    )
+    found = [each["Materials"][0]["Standard viscosity"]["viscosity"] for each in (free, thick)]
+    assert found == [0.01, 0.02]
 
 
 def bundled(folder: Path) -> Path:

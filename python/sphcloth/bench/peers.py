@@ -40,7 +40,12 @@ REMEDY = "pip install 'sphcloth[peers]'"
 OURS = "sphcloth"
 COST = ("CPU s per s", "steps", "over ours at\nthe same mean", "over ours at\nthe same 99 %")
 ACCURACY = ("density error,\nmean", "density error,\n99 %", "center\nx (m)", "center\nz (m)")
-KNOBS = {"sound": "c0 (m/s)", "max_error": "tolerance (%)"}
+KNOBS = {
+    "sound": "c0 (m/s)",
+    "alpha": "alpha",
+    "max_error": "tolerance (%)",
+    "viscosity": "viscosity (m2/s)",
+}
 
 Setting = Mapping[str, float]
 
@@ -60,17 +65,24 @@ def _sounds(*speeds: float) -> list[Setting]:
 
 # skin over support: with such steps water falls far
 OURS_IN = {"code": "double", "skin": 1.0}
+# artificial viscosity is proportional to the speed of sound: less of it with the largest
+OURS_SET = [*_sounds(20, 30, 45, 70), {"sound": 70, "alpha": 0.06}]
 
 PLAN = {
-    f"{OURS} double": Code("sph", OURS_IN, _sounds(20, 30, 45, 70)),
-    f"{OURS} mixed": Code("sph", {**OURS_IN, "code": "mixed"}, _sounds(20, 30, 45, 70)),
+    f"{OURS} double": Code("sph", OURS_IN, OURS_SET),
+    f"{OURS} mixed": Code("sph", {**OURS_IN, "code": "mixed"}, OURS_SET),
     f"{OURS} global": Code("sph", {**OURS_IN, "scheme": "global"}, _sounds(20, 30, 45)),
     f"{OURS} block": Code("sph", {**OURS_IN, "scheme": "block"}, _sounds(20, 30, 45)),
     "stock sph": Code("sph", {"code": "stock", "courant": 0.12, "skin": 0.4}, _sounds(20, 30, 45)),
     "stock rheo": Code("rheo", {}, _sounds(30)),
     "SPlisHSPlasH WCSPH": Code("wcsph", {"courant": 0.5}, _sounds(20, 30)),
     "SPlisHSPlasH DFSPH": Code(
-        "dfsph", {}, [{"max_error": error} for error in (1.0, 0.3, 0.05, 0.01)]
+        "dfsph",
+        {},
+        [
+            *({"max_error": error} for error in (1.0, 0.3, 0.05, 0.01)),
+            *({"max_error": 0.05, "viscosity": nu} for nu in (0.005, 0.02)),
+        ],
     ),
 }
 

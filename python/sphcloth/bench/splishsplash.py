@@ -25,6 +25,7 @@ MODULE = "pysplishsplash"
 GL_LIBRARIES = ("libGLU", "libGLX", "libGLdispatch", "libOpenGL")
 GL_REMEDY = "apt install libglu1-mesa libglx0 libglvnd0 libopengl0"
 METHODS = {"wcsph": 0, "dfsph": 4}
+VISCOSITY = 0.01  # m^2/s, of the scenes that SPlisHSPlasH comes with
 GAMMA = 7.0
 CELL = 0.1  # of the map of the walls, as in its own scenes
 
@@ -130,7 +131,8 @@ def scene(
 
     Args:
         method: ``wcsph``, with the settings sound and courant (step times speed of sound over half
-            the support), or ``dfsph``, with max_error (per cent of the density).
+            the support), or ``dfsph``, with max_error (per cent of the density); of both,
+            viscosity in m^2/s, that of its own scenes if it is not given.
         counts: particles along x, y and z.
         spacing: of the particles, twice their radius; the support is twice as much.
         tank: lower and upper corner.
@@ -151,7 +153,7 @@ def scene(
                 "id": "Fluid",
                 "density0": 1000,
                 "viscosityMethod": 1,
-                "Standard viscosity": {"viscosity": 0.01},
+                "Standard viscosity": {"viscosity": setting.get("viscosity", VISCOSITY)},
             }
         ],
         "RigidBodies": [

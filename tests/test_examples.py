@@ -74,14 +74,16 @@ def test_the_answer_of_pour_follows_neither_step_nor_scheme(tmp_path):
 
 
 def test_a_light_sheet_floats_and_a_heavy_one_sinks(tmp_path):
-    surface = 0.3
+    """The light one has a draft of 1 mm, its mass per area over the density of water."""
+    surface, draft = 0.3, 0.001
     heights = {}
     for areal in (1.0, 60.0):
-        summary, log = run("cloth_on_water", tmp_path / str(areal), f"areal={areal}")
+        summary, log = run("cloth_on_water", tmp_path / str(areal), f"areal={areal}", "t_end=0.8")
         assert summary["poured"] == 192
         assert log["v_contacts"][-1] > 0
         heights[areal] = log["v_height_of_sheet"][-1]
-    assert heights[60.0] < surface < heights[1.0], heights
+    assert heights[1.0] == pytest.approx(surface - draft, abs=0.002), heights
+    assert heights[60.0] < heights[1.0] - 0.01, heights
 
 
 def test_pins_carry_a_full_hammock_which_is_emptied(tmp_path):

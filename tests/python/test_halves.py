@@ -70,6 +70,7 @@ def test_runs_with_other_frames_are_not_compared(rows: tuple[Path, list]) -> Non
     ("arguments", "message"),
     [
         (["hammock"], "hammock has a source"),
+        (["banner"], "banner has no water"),
         (["nothing"], "no example 'nothing'"),
         (["curtain", "--vary", "depth=1,2"], "no variable 'depth'"),
         (["curtain", "--size", "huge"], "no size 'huge'"),

@@ -3,7 +3,8 @@
 ``python -m sphcloth.validation.halves EXAMPLE --vary NAME=A,B --out FOLDER`` runs an example that
 starts with all of its water with every combination, and once more with half the spacing and the
 last value of each. It prints the differences to that run, rms over the frames of the dump, of
-lengths over the spacing, of energies over the largest, and what each run costs.
+lengths over the spacing, of energies over the largest, and what each run costs. Frames of two runs
+are up to a step apart.
 """
 
 from __future__ import annotations
@@ -80,13 +81,16 @@ def study(
         out: folder for all runs and ``halves.json``.
 
     Raises:
-        UserError: no such example, size or variable, a source in the scene, or a run that failed.
+        UserError: no such example, size or variable, no water in the scene or a source of it, or a
+            run that failed.
     """
     example = find_example(name)
     given = example.variables(size, dict(settings) | varied)
     texts = example.defaults() | given
     if "particles" in texts:
         raise UserError(f"{name} has a source, whose jet changes with the spacing: no comparison")
+    if "density" not in texts:
+        raise UserError(f"{name} has no water: its script has no variable 'density'")
     runner = Runner(example.script, out, 1, Console(stderr=True))
 
     def run(label: str, values: Mapping[str, str]) -> Run:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -51,6 +51,15 @@ def markdown_table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> st
     """Return a Markdown table."""
     lines = [heads, ["---"] * len(heads), *rows]
     return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)
+
+
+def points_table(points: Sequence[Mapping[str, Value]]) -> str:
+    """Return points with the same names as a Markdown table, a row for each."""
+    rows = [
+        [f"{value:.4g}" if isinstance(value, float) else value for value in point.values()]
+        for point in points
+    ]
+    return markdown_table(list(points[0]), rows)
 
 
 def argument(value: Value) -> str:

@@ -21,7 +21,7 @@ SHORT = {"t_end": "0.1", "frames": "4", "spacing": "0.1", "mesh": "0.1"}
 def rows(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list]:
     out = tmp_path_factory.mktemp("halves")
     return out, halves.study(
-        "cloth_on_water", "tiny", SHORT, {"density": "summation,calibrated"}, out
+        "cloth_on_water", "tiny", SHORT, {"density": ("summation", "calibrated")}, out
     )
 
 
@@ -74,7 +74,7 @@ def test_runs_with_other_frames_are_not_compared(rows: tuple[Path, list]) -> Non
         (["nothing"], "no example 'nothing'"),
         (["curtain", "--vary", "depth=1,2"], "no variable 'depth'"),
         (["curtain", "--size", "huge"], "no size 'huge'"),
-        (["curtain", "--vary", "density"], "--vary density: expected name=value"),
+        (["curtain", "--vary", "density"], "--vary density: expected NAME=A,B,..."),
     ],
 )
 def test_what_cannot_be_compared_is_an_error(

@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 from scipy.integrate import quad
 
+from sphcloth.results import points_table
 from sphcloth.validation import lattice, water
 from sphcloth.validation.runner import Runner
 
@@ -72,5 +73,5 @@ def test_colliding_drops_keep_energy_to_second_order(tmp_path: Path) -> None:
 
 
 def test_points_are_shown_as_a_table(capsys: pytest.CaptureFixture) -> None:
-    print(water.table([{"what": "drop", "deepest": -0.123456}]))
+    print(points_table([{"what": "drop", "deepest": -0.123456}]))
     assert capsys.readouterr().out.splitlines()[-1] == "| drop | -0.1235 |"

@@ -10,8 +10,7 @@ are up to a step apart.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
-from itertools import product
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +19,12 @@ from rich.console import Console
 
 from sphcloth.errors import UserError
 from sphcloth.examples import find_example, parse_settings
-from sphcloth.results import Value, markdown_table, write_json
+from sphcloth.mesh import read_masses
+from sphcloth.metrics import kinetic_energy, masses
+from sphcloth.results import Value, points_table, write_json
 from sphcloth.roles import Roles
+from sphcloth.tradeoff.command import parse_variations
+from sphcloth.tradeoff.study import Variations, combinations
 from sphcloth.validation.compare import rms
 from sphcloth.validation.runner import Run, Runner
 
@@ -34,15 +37,15 @@ def course(run: Run) -> dict[str, NDArray[np.float64]]:
 
     Each is an array over the frames, in the units of the script; ``along`` is x, the height z.
     """
-    roles = Roles.read(run.folder / f"{run.name}.data")
-    kinds = sorted(roles.fluid or ())
+    data = run.folder / f"{run.name}.data"
+    kinds, by_type = sorted(Roles.read(data).fluid or ()), read_masses(data)
     rows = []
     for frame in run.trajectory:
         water = np.isin(frame.types, kinds)
-        weights = np.array([roles.volume.get(kind, 0.0) for kind in frame.types[water]])
-        place = np.average(frame.positions[water], axis=0, weights=weights)
-        energy = np.average((frame.velocities[water] ** 2).sum(axis=1) / 2, weights=weights)
+        mass = np.where(water, masses(frame, by_type), 0.0)
+        place = np.average(frame.positions, axis=0, weights=mass)
         cloth = frame.positions[~water].mean(axis=0)
+        energy = kinetic_energy(frame, mass) / mass.sum()
         rows.append((place[0], place[2], energy, cloth[0], cloth[2]))
     return dict(zip(QUANTITIES, np.array(rows).T, strict=True))
 
@@ -69,7 +72,7 @@ def compare(run: Run, fine: Mapping[str, NDArray[np.float64]], spacing: float) -
 
 
 def study(
-    name: str, size: str, settings: Mapping[str, str], varied: Mapping[str, str], out: Path
+    name: str, size: str, settings: Mapping[str, str], varied: Variations, out: Path
 ) -> list[dict[str, Value]]:
     """Run an example with all combinations of values and return a row for each.
 
@@ -77,7 +80,7 @@ def study(
         name: the example's name.
         size: one of its sizes.
         settings: variables of its script that all runs share.
-        varied: variable -> values, separated by commas.
+        varied: variable -> values.
         out: folder for all runs and ``halves.json``.
 
     Raises:
@@ -85,7 +88,8 @@ def study(
             run that failed.
     """
     example = find_example(name)
-    given = example.variables(size, dict(settings) | varied)
+    last = {key: values[-1] for key, values in varied.items()}
+    given = example.variables(size, {**settings, **last})
     texts = example.defaults() | given
     if "particles" in texts:
         raise UserError(f"{name} has a source, whose jet changes with the spacing: no comparison")
@@ -94,26 +98,16 @@ def study(
     runner = Runner(example.script, out, 1, Console(stderr=True))
 
     def run(label: str, values: Mapping[str, str]) -> Run:
-        variables = given | values
-        return runner.run(label, float(texts["t_end"]), variables)
+        return runner.run(label, float(texts["t_end"]), given | values)
 
-    values = {key: text.split(",") for key, text in varied.items()}
-    last = {key: options[-1] for key, options in values.items()}
     spacing = float(texts["spacing"])
-    fine = course(run("half", last | {"spacing": f"{spacing / 2:.6g}"}))
+    fine = course(run("half", {"spacing": f"{spacing / 2:.6g}"}))
     rows: list[dict[str, Value]] = []
-    for chosen in product(*values.values()):
-        setting = dict(zip(values, chosen, strict=True))
-        label = "_".join(chosen) or "default"
+    for setting in combinations(varied):
+        label = "_".join(setting.values()) or "default"
         rows.append({**setting, **compare(run(label, setting), fine, spacing)})
     write_json(out / "halves.json", rows)
     return rows
-
-
-def table(rows: Sequence[Mapping[str, Value]]) -> str:
-    """Return the rows as a table."""
-    texts = [[f"{v:.3g}" if isinstance(v, float) else v for v in row.values()] for row in rows]
-    return markdown_table(list(rows[0]), texts)
 
 
 def main() -> None:
@@ -130,12 +124,12 @@ def main() -> None:
             options.example,
             options.size,
             parse_settings(options.set),
-            parse_settings(options.vary, "--vary"),
+            parse_variations(options.vary),
             options.out,
         )
     except UserError as error:
         raise SystemExit(f"error: {error}") from None
-    print(table(rows))
+    print(points_table(rows))
 
 
 if __name__ == "__main__":

@@ -10,13 +10,13 @@ how deep water gets behind one, ``... impact`` the energy with which single part
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 from rich.console import Console
 
-from sphcloth.results import Value, markdown_table, write_json
+from sphcloth.results import Value, points_table, write_json
 from sphcloth.validation.runner import Runner
 
 FOLDER = Path(__file__).parent
@@ -194,15 +194,6 @@ def study(name: str, out: Path, console: Console) -> Points:
     return points
 
 
-def table(points: Sequence[Mapping[str, Value]]) -> str:
-    """Return the points as a table, a row for each."""
-    rows = [
-        [f"{value:.4g}" if isinstance(value, float) else value for value in point.values()]
-        for point in points
-    ]
-    return markdown_table(list(points[0]), rows)
-
-
 def main() -> None:
     """Run the study that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -210,4 +201,4 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("water"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    print(table(study(options.study, options.out, Console(stderr=True))))
+    print(points_table(study(options.study, options.out, Console(stderr=True))))

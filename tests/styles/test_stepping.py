@@ -26,9 +26,20 @@ def test_at_rest_the_step_is_the_largest():
     assert dt_and_limit(free_particles()) == (0.01, CEILING)
 
 
-def test_velocity_limit():
-    dt, limit = dt_and_limit(free_particles(speed=5.0))
-    assert (dt, limit) == (pytest.approx(0.1 * 0.1 / 5.0, rel=1e-14), VELOCITY)
+@pytest.mark.parametrize(
+    ("options", "coefficient"),
+    [
+        ("", 0.15),
+        ("acoustic 0.5", 0.1),
+        ("wetted 0.5", 0.1),
+        ("viscous 0.2", 0.1),
+        ("acoustic 0.5 velocity 0.3", 0.3),
+    ],
+)
+def test_velocity_limit(options, coefficient):
+    """With the limits of sound and viscosity it is that of the paper."""
+    dt, limit = dt_and_limit(free_particles(speed=50.0, options=options))
+    assert (dt, limit) == (pytest.approx(coefficient * 0.1 / 50.0, rel=1e-14), VELOCITY)
 
 
 def test_force_limit():
@@ -362,7 +373,7 @@ def test_a_restart_keeps_the_largest_step_and_the_limits_of_growth(tmp_path):
         velocity all set 0 0 0
         run 0""")
     dt, limit = dt_and_limit(again)
-    assert (dt, limit) == (pytest.approx(2 * 0.1 * 0.1 / 50.0), GROWTH)
+    assert (dt, limit) == (pytest.approx(2 * 0.15 * 0.1 / 50.0), GROWTH)
     again.command("run 20")
     assert dt_and_limit(again) == (0.01, CEILING)
     assert again.extract_fix("step", 0, 1, 2) == counted + 2 * 20

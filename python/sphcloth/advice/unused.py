@@ -10,7 +10,7 @@ from sphcloth.advice.evidence import Evidence
 from sphcloth.fix_values import LIMITS
 
 # limits of fix sph/integrate that can be switched off, with the value that is their default
-DEFAULTS = {"velocity": "0.1", "force": "0.2", "density": "0.1"}
+DEFAULTS = {"velocity": "0.15", "force": "0.2", "density": "0.1"}
 OPTIONAL = ("relative", "cloth", "fluctuation")
 # arguments of fix wall/sph: faces and their positions come first
 FACES = ("xlo", "xhi", "ylo", "yhi", "zlo", "zhi")

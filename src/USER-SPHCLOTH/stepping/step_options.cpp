@@ -18,8 +18,10 @@ using namespace sphcloth;
 
 static void choose_stability(ArgReader &args, std::optional<double> stability,
                              std::optional<double> acoustic, std::optional<double> viscous,
-                             std::optional<double> force, StepCoefficients &lambda)
+                             std::optional<double> velocity, std::optional<double> force,
+                             StepCoefficients &lambda)
 {
+  lambda.velocity = velocity.value_or(lambda.velocity);
   lambda.force = force.value_or(lambda.force);
   if (!acoustic && !viscous && !lambda.wetted) {
     lambda.stability = stability.value_or(lambda.stability);
@@ -29,6 +31,7 @@ static void choose_stability(ArgReader &args, std::optional<double> stability,
     args.fail("stability", fmt::format("{}", *stability),
               "it takes the place of acoustic, viscous and wetted: leave these out");
   lambda.stability = 0.0;
+  lambda.velocity = velocity.value_or(StepCoefficients::VELOCITY);
   lambda.force = force.value_or(StepCoefficients::FORCE);
   lambda.acoustic = acoustic.value_or(StepCoefficients::ACOUSTIC);
   lambda.viscous = viscous.value_or(StepCoefficients::VISCOUS);
@@ -106,9 +109,8 @@ void StepOptions::read(ArgReader &args, OutputTimes &times)
     lambda.set_accuracy(*accuracy);
     return;
   }
-  lambda.velocity = velocity.value_or(lambda.velocity);
   lambda.density = density.value_or(lambda.density);
-  choose_stability(args, stability, acoustic, viscous, force, lambda);
+  choose_stability(args, stability, acoustic, viscous, velocity, force, lambda);
 }
 
 bool StepOptions::scales_mass(SteppingScheme scheme_in_force) const

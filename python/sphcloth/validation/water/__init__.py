@@ -35,7 +35,7 @@ REACH, OF_SOUND = 0.1, 20.0
 
 # of in.bounce with the default limits and others: artificial viscosity, more limits, speeds over
 # that of sound, each times some factors: other steps meet the wall
-IMPACTS = ((0.1, ""), (0.05, ""), (0.0, ""), (0.0, "stability 0.5"))
+IMPACTS = ((0.1, ""), (0.1, "velocity 0.2"), (0.05, ""), (0.0, ""), (0.0, "stability 0.5"))
 IMPACT_SPEEDS = (0.01, 0.05, 0.15, 0.4)
 FACTORS = (0.94, 0.97, 1.0, 1.03, 1.06)
 CEILING = 0.01  # s, longer than the limits

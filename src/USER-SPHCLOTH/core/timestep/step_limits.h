@@ -75,7 +75,7 @@ inline const char *limit_name(Limit limit)
 
 struct StepCoefficients {
   double stability = 0.95;    // of the longest stable step, in the place of the next two
-  double velocity = 0.1;    // lambda_v of (10)
+  double velocity = 0.15;    // lambda_v of (10)
   double force = 0.2;    // lambda_f of (11)
   double acoustic = 0.0;    // of h_s/c; on a lattice stable up to 1.6
   double viscous = 0.0;    // of h_s^2/nu; stable up to 0.3 in 3-D
@@ -98,7 +98,8 @@ struct StepCoefficients {
     stability = usual.stability * std::min(1.0, times);
   }
 
-  static constexpr double ACOUSTIC = 0.5, VISCOUS = 0.2, FORCE = 0.05;    // with these limits
+  // with the limits of sound and viscosity; those of the paper
+  static constexpr double ACOUSTIC = 0.5, VISCOUS = 0.2, VELOCITY = 0.1, FORCE = 0.05;
 };
 
 // state of one particle

@@ -41,7 +41,7 @@ compute most all reduce max c_edges[2] inputs local
 compute steps all sph/step dt active compression updates
 compute held all pbd/cloth force/z strain
 """,
-    steps=60,
+    steps=50,
 )
 # water without pressure: contact alone stops it
 RAIN = replace(
@@ -77,7 +77,7 @@ SHEET_AS_WALL = replace(
     forces=DROP_SCENE.forces.replace("2 2 boundary", "2 2 none"),
     settings=DROP_SCENE.settings.replace("neigh_modify", "comm_modify cutoff 0.3[m]\nneigh_modify"),
     fixes=DROP_SCENE.fixes.replace("cloth/contact 0.015[m]", "cloth/contact 0.015[m] wall yes"),
-    steps=20,
+    steps=18,
 )
 # impulses of ghosts are added in the order in which they come, another one behind a restart
 BLOCK = replace(
@@ -241,7 +241,7 @@ SCENES = {
     "balloons": BALLOONS,
     "followed flow": followed(FLOW, 30),
 }
-for name, steps in {"tank": 30, "block steps": 19, "sheet as wall": 12}.items():
+for name, steps in {"tank": 30, "block steps": 19, "sheet as wall": 9}.items():
     SCENES[f"calibrated {name}"] = calibrated(SCENES[name], steps)
     SCENES[f"followed {name}"] = followed(SCENES[name], steps)
 

@@ -131,7 +131,8 @@ velocity slow set 1 0 0 units box
 """
     + sph_tait("1 1 fluid 1000 c0 20")
     + neighbor(0.03)
-    + "timestep 8e-3\nfix step all sph/integrate global velocity 0.1 gain 1.8\nrun_style sph/adaptive block\n"
+    + "timestep 8e-3\nfix step all sph/integrate global velocity 0.1 gain 1.8\n"
+    + "run_style sph/adaptive block\n"
 )
 
 

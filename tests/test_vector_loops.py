@@ -31,6 +31,7 @@ UNITS = {
     "core/air/air_loads.cpp": (SOURCE / "core/air/air_loads.cpp",),
     "core/air/gust_field.cpp": (SOURCE / "core/air/gust_field.cpp",),
     "core/sph/pair_columns.h": (KERNEL,),
+    "core/sph/shifting.h": (SOURCE / "fix_sph_shift.cpp",),
     "core/neighbor/dual_lists.h": (KERNEL,),
     "core/neighbor/cell_lists.h": (SOURCE / "core/sph/fluid.cpp",),
     "contact/candidate_pairs.cpp": (SOURCE / "contact/candidate_pairs.cpp",),

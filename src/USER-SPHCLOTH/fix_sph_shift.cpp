@@ -111,8 +111,7 @@ void FixSPHShift::post_force(int)
   const int n = atom->nlocal, n_types = atom->ntypes + 1;
   concentration.assign(n, ConcentrationGradient());
   open.assign(n + atom->nghost, 0.0);
-  volumes.resize(n + atom->nghost);
-  for (int i = 0; i < n + atom->nghost; i++) volumes[i] = volume(i);
+  record_sites();
   left.assign(n, 1);
   own_speed.assign(n, 0.0);
   double fastest = 0.0;
@@ -138,37 +137,37 @@ void FixSPHShift::post_force(int)
   MPI_Allreduce(&fastest, &reference, 1, MPI_DOUBLE, MPI_MAX, world);
 }
 
-template <class K> void FixSPHShift::measure(int i, const std::vector<KernelScale> &scale)
+template <class K>
+SPHCLOTH_MULTIVERSION void FixSPHShift::measure(int i, const std::vector<KernelScale> &scale)
 {
   const int dim = domain->dimension, n_types = atom->ntypes + 1, type = atom->type[i];
-  const double spacing = spacing_of(volumes[i].at_rest, dim);
-  const double *x = atom->x[i], *v = atom->v[i];
+  const double spacing = spacing_of(sites.at_rest[i], dim);
   ConcentrationGradient &mine = concentration[i];
   for (int t = 1; t < n_types; t++) {
     const KernelScale &s = scale[type * n_types + t];
     const double at_spacing = K::shape(std::min(spacing * s.inv_support, 0.9));
     const NeighborSpan near = fluid->neighbors(i, t);
-    for (int k = 0; k < near.n; k++) {
-      const int j = near.of[k];
-      const double *xj = atom->x[j];
-      const NeighborTerm neighbor_type{
-          {x[0] - xj[0], x[1] - xj[1], x[2] - xj[2]}, volumes[j].now, volumes[j].at_rest};
-      add_neighbor<K>(mine, neighbor_type, s, at_spacing, coefficients.clumping, dim);
-      if (!correct_velocity) continue;
-      const double *vj = atom->v[j];
-      add_velocity<K>(mine, neighbor_type, {v[0] - vj[0], v[1] - vj[1], v[2] - vj[2]}, s);
-    }
+    add_neighbors<K>(mine, sites, i, near, {s, 1.0 / at_spacing, coefficients.clumping, dim});
+    if (correct_velocity) add_velocities<K>(mine, sites, i, near, s, atom->v[0]);
   }
   if (walls) walls->add_to(mine, i);
   open[i] = mine.cover < coefficients.surface ? 1.0 : 0.0;
 }
 
-FixSPHShift::Volume FixSPHShift::volume(int i) const
+// for the loops over neighbors, of owned and ghost particles
+
+void FixSPHShift::record_sites()
 {
-  const int type = atom->type[i];
-  const double now = fluid->volume(i);
-  if (!fluid->is_fluid(type)) return {now, now};
-  return {now, now * atom->rho[i] / fluid->equation_of_state(type).rho0};
+  const int n = atom->nlocal + atom->nghost;
+  sites.resize(n);
+  for (int i = 0; i < n; i++) {
+    const int type = atom->type[i];
+    const double *x = atom->x[i], volume = fluid->volume(i);
+    sites.sites[i] = {x[0], x[1], x[2], volume};
+    sites.at_rest[i] = volume;
+    if (fluid->is_fluid(type))
+      sites.at_rest[i] *= atom->rho[i] / fluid->equation_of_state(type).rho0;
+  }
 }
 
 // Contact with cloth follows a particle from where its velocity says that it came.
@@ -221,7 +220,7 @@ void FixSPHShift::initial_integrate(int)
 
 void FixSPHShift::shift(int i)
 {
-  const double spacing = spacing_of(volumes[i].at_rest, domain->dimension);
+  const double spacing = spacing_of(sites.at_rest[i], domain->dimension);
   const double u = speed == Speed::OWN ? own_speed[i] : reference;
   const double scale = -coefficients.strength * fluid->support(atom->type[i]) * u * update->dt;
   std::array<double, 3> move = concentration[i].gradient;
@@ -272,5 +271,5 @@ void FixSPHShift::restart(char *buf)
 
 double FixSPHShift::memory_usage()
 {
-  return bytes_of(concentration, open, own_speed, volumes, left);
+  return sites.bytes() + bytes_of(concentration, open, own_speed, left);
 }

@@ -44,10 +44,6 @@ class FixSPHShift : public Fix {
   enum class Speed { LARGEST, OWN };
   enum Count { MOVED, SHIFTED, LEFT, CUT, N_COUNTS };
 
-  struct Volume {
-    double now, at_rest;
-  };
-
   std::string label;
   FluidState *fluid;
   FixWallSPH *walls;    // null without plane walls
@@ -58,7 +54,7 @@ class FixSPHShift : public Fix {
 
   // between the evaluation and the next step, during which no particle changes its place in memory
   std::vector<sphcloth::ConcentrationGradient> concentration;
-  std::vector<Volume> volumes;    // owned and ghost
+  sphcloth::ShiftSites sites;    // owned and ghost
   std::vector<double> open;    // owned and ghost: 1 at a free surface
   std::vector<char> left;
   std::vector<double> own_speed;
@@ -68,8 +64,9 @@ class FixSPHShift : public Fix {
   std::array<double, N_COUNTS> counts{};    // this rank
 
   void read_options(ArgReader &);
-  template <class K> void measure(int i, const std::vector<sphcloth::KernelScale> &);
-  Volume volume(int i) const;
+  template <class K>
+  SPHCLOTH_MULTIVERSION void measure(int i, const std::vector<sphcloth::KernelScale> &);
+  void record_sites();
   bool near_surface_or_cloth(int i) const;
   void shift(int i);
 };

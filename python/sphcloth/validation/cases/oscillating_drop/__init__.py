@@ -33,7 +33,7 @@ PARAMETERS = (
     Parameter("sound", 20.0, "omega R", "speed of sound at rest c0", 5.0, 100.0),
     Parameter("across", 80, "1", "particles over the radius", 10, 400, quick=40),
     Parameter("periods", 1, "T", "time of the motion", 1, 50),
-    Parameter("shift", 0.1, "1", "strength of the shifting; 0 by continuity with block", 0.0, 10.0),
+    Parameter("shift", 0.1, "1", "strength of the shifting, 0 for none", 0.0, 10.0),
     *numerics(alpha=0.0, courant=1.0, kernel="wendland/c4", support=5.0, density="continuity"),
 )
 
@@ -128,16 +128,10 @@ def _run(
             "sigma": drop.sigma,
             "sound": values["sound"] * drop.omega * values["radius"],
             "lattice": lattice_density(values),
-            "shift": 0.0 if _follows_positions(values) else values["shift"],
             "room": ROOM * drop.largest,
             "damping": DAMPING * drop.omega,
         },
     )
-
-
-def _follows_positions(values: Mapping[str, Value]) -> bool:
-    """Return whether densities are integrals over positions, which allow no shift."""
-    return values["scheme"] == "block" and values["density"] == "continuity"
 
 
 def _energy_loss(run: Run, drop: EllipticDrop, values: Mapping[str, Value]) -> float:

@@ -77,16 +77,16 @@ void FixClothContact::init()
   obstacle_surfaces.clear();
   sheets.clear();
   vertex_bits = 0;
-  const std::vector<FixPBDCloth *> cloths = cloths_before(lmp, this, label);
+  cloths = cloths_before(lmp, this, label);
   for (const FixPBDCloth *cloth : cloths) vertex_bits |= cloth->groupbit;
-  check_group(cloths);
+  check_group();
   for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth));
   if (surfaces.empty() && options.obstacle_groups.empty())
     error->all(FLERR,
                "{}: there is no cloth: define 'fix ID group pbd/cloth' before, or name an obstacle",
                label);
-  for (int obstacle : options.obstacle_groups) add_obstacle(obstacle, cloths);
-  make_contacts(cloths);
+  for (int obstacle : options.obstacle_groups) add_obstacle(obstacle);
+  make_contacts();
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
@@ -118,7 +118,7 @@ void FixClothContact::require_ghosts()
 
 // Without water the group is that of the cloth.  An empty one is that of water to come.
 
-void FixClothContact::check_group(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::check_group()
 {
   int mine[2] = {0, 0}, any[2];    // vertices, and other atoms
   for (int i = 0; i < atom->nlocal; i++)
@@ -133,11 +133,11 @@ void FixClothContact::check_group(const std::vector<FixPBDCloth *> &cloths)
                  label, group->names[igroup], cloth->id);
 }
 
-void FixClothContact::make_contacts(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::make_contacts()
 {
   const std::size_t n = surfaces.size() + obstacle_surfaces.size();
   if (n > 1 && !cloths.empty() && (options.cloth_meets_cloth || !obstacles.empty())) {
-    join(cloths);
+    join();
     return;
   }
   for_all_surfaces([&](ContactSurface &surface) {
@@ -149,7 +149,7 @@ void FixClothContact::make_contacts(const std::vector<FixPBDCloth *> &cloths)
     cloths[k]->register_coupling(&contacts[k]->rows());
 }
 
-void FixClothContact::join(const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::join()
 {
   JoinedContact::Meshes meshes{{cloths.begin(), cloths.end()}, {}, vertex_bits, 0};
   for (const auto &obstacle : obstacles) {
@@ -208,7 +208,7 @@ std::array<double, 2> FixClothContact::ghosts_needed_and_wanted()
   return {needed, wanted};
 }
 
-void FixClothContact::add_obstacle(int obstacle_group, const std::vector<FixPBDCloth *> &cloths)
+void FixClothContact::add_obstacle(int obstacle_group)
 {
   const int bit = group->bitmask[obstacle_group];
   const char *name = group->names[obstacle_group];
@@ -295,6 +295,7 @@ void FixClothContact::initial_integrate(int)
   for (MeshContact *contact : contacts) contact->mesh().moved.clear();
   impulses.clear();
   counts.cloth_gap = options.cloth_rules.thickness;
+  counts.passed_on = counts.missed = 0.0;
 }
 
 // The cloths have been solved, with their contacts: see ContactRows.
@@ -306,10 +307,24 @@ void FixClothContact::post_integrate()
     for (MeshContact *contact : contacts) any = contact->resolve() || any;
     return any;
   };
-  for (int round = 0; round < MAX_ROUNDS; round++)
-    if (!resolve() || contacts.size() == 1) break;
+  bool any = false;
+  for (int round = 0; round < MAX_ROUNDS; round++) {
+    const bool again = resolve();
+    any = any || again;
+    if (!again || contacts.size() == 1) break;
+  }
+  if (any) report_missed();
   if (!excess_velocities.empty()) subtract_excess_velocities();
   store_positions();
+}
+
+void FixClothContact::report_missed()
+{
+  const double mine[2] = {counts.missed, counts.passed_on};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (all[0] > 0.0)
+    for (FixPBDCloth *cloth : cloths) cloth->missed_in_contact(all[0] / (all[0] + all[1]));
 }
 
 // Vertices, and particles in contact, end a step with the velocity of its last substep, which is

@@ -113,6 +113,7 @@ class FixClothContact : public Fix, public SideSource {
   // step, mass times velocity, if there are any; and velocity minus displacement over the step, if
   // densities follow displacements
   ParticleColumns last_positions, impulses, excess_velocities;
+  std::vector<FixPBDCloth *> cloths;    // those before this fix
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
@@ -165,9 +166,10 @@ class FixClothContact : public Fix, public SideSource {
   void wrap_last_positions();
   void subtract_excess_velocities();
   void find_sides();
-  void check_group(const std::vector<FixPBDCloth *> &cloths);
-  void make_contacts(const std::vector<FixPBDCloth *> &cloths);
-  void join(const std::vector<FixPBDCloth *> &cloths);
+  void check_group();
+  void make_contacts();
+  void join();
+  void report_missed();
   MeetingRules meeting_rules() const
   {
     return {options.cloth_rules, rules, options.cloth_meets_cloth};
@@ -178,7 +180,7 @@ class FixClothContact : public Fix, public SideSource {
     return std::make_unique<ContactSurface>(lmp, mesh, label, particle_bits, rules, counts,
                                             last_positions);
   }
-  void add_obstacle(int group, const std::vector<FixPBDCloth *> &cloths);
+  void add_obstacle(int group);
   template <class Do> void for_all_surfaces(Do something)
   {
     for (auto &surface : surfaces) something(*surface);

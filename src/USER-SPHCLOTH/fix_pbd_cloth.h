@@ -90,6 +90,9 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   // their solvers differ.
   static void solve_together(const std::vector<FixPBDCloth *> &);
 
+  // share of the impulses in the contacts of the last step that the solver did not pass on
+  void missed_in_contact(double share) { substepping.missed_in_contact(share); }
+
   // rest lengths and angles of the edges and hinges of the topology
   const ClothConstraints &rest() const { return constraints; }
   double shortest_edge(int i) const override { return constraints.shortest_edge(i); }

@@ -152,6 +152,31 @@ BOOST_AUTO_TEST_CASE(an_impact_raises_the_allowed_strain_to_what_the_substeps_ha
   BOOST_TEST(length.yield() == 1.0);
 }
 
+// More of them while half of what stops the water is missing, at most ten times as many.
+
+BOOST_AUTO_TEST_CASE(contact_that_lags_behind_takes_more_of_them)
+{
+  SubstepLength length;
+  steps(length, 3, free_edge());
+  const auto after = [&length](double share, double dt = DT) {
+    length.missed_in_contact(share);
+    length.missed_in_contact(0.1);
+    const double substeps = length.substeps(dt, 10);
+    find(length, 0.0);
+    return substeps;
+  };
+  BOOST_TEST(after(0.5) == 10);
+  BOOST_TEST(after(0.51) == 13);
+  BOOST_TEST(after(0.9) == 17);
+  // and less of them in time, not in steps
+  BOOST_TEST(length.state.refined == 1.69, boost::test_tools::tolerance(1e-12));
+  for (int n = 0; n < 10; n++) after(0.0, 0.1 * DT);
+  BOOST_TEST(length.state.refined == 1.69 / 1.03, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(steps(length, 30, free_edge()) == 10);
+  for (int n = 0; n < 30; n++) after(1.0);
+  BOOST_TEST(after(1.0) == 100);
+}
+
 BOOST_AUTO_TEST_CASE(what_is_held_apart_yields_until_it_is_soft)
 {
   SubstepLength length;

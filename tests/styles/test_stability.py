@@ -2,10 +2,21 @@
 
 import numpy as np
 import pytest
-from harness import by_id
-from step_scenes import RHO0, SOUND, SPACING, VOLUME, dt_and_limit, growth_in, soaked
+from harness import by_id, instance
+from scenes import FLUID, box, header, neighbor, sph_tait
+from step_scenes import (
+    LATTICE_SUM,
+    RHO0,
+    SOUND,
+    SPACING,
+    VOLUME,
+    dt_and_limit,
+    growth_in,
+    soaked,
+)
 from test_stepping import ACOUSTIC, VISCOUS, WETTED
 
+THIN = 1.12 * SPACING
 ALONE = "velocity 0 force 0 density 0 max 1 mass_scaling no"
 
 
@@ -14,7 +25,7 @@ def wendland_slope(r, support):
     return -20 * 21 / (2 * np.pi * support**5) * np.maximum(1 - r / support, 0) ** 3
 
 
-def longest_stable_step(lmp, support=2 * SPACING):
+def longest_stable_step(lmp, support=2 * SPACING, least_density=0.0):
     """Return 2 over the largest frequency of all particles and vertices together."""
     x, rho, kind = (by_id(lmp, name) for name in ("x", "rho", "type"))
     mass = lmp.numpy.extract_atom("mass")[kind]
@@ -29,6 +40,7 @@ def longest_stable_step(lmp, support=2 * SPACING):
     gradient = (felt[None] * slope)[..., None] * apart
     change = -gradient
     change[np.arange(len(x)), np.arange(len(x))] = gradient.sum(axis=1)
+    rho = np.where(water, np.maximum(rho, least_density), rho)
     sound = SOUND * (rho / RHO0) ** 3
     change *= (sound * np.sqrt(mass) / np.maximum(rho, 1))[:, None, None]
     change /= np.sqrt(mass)[None, :, None]
@@ -45,6 +57,27 @@ def test_a_step_above_the_exact_limit_explodes_and_the_limit_does_not(areal, n):
     assert by == (ACOUSTIC if areal == 200 else WETTED)
     assert growth(areal, 0.97 * exact, 40) < 3
     assert growth(areal, 1.05 * exact, n) > 30
+
+
+def test_water_in_free_flight_has_the_limit_of_the_pressure_that_it_will_have():
+    """Thin water that flies together, as spray before it meets water, has no pressure yet."""
+    half = 2.6 * THIN
+    with instance() as lmp:
+        lmp.commands_string(
+            header(atoms=FLUID)
+            + box("-1 1 -1 1 -1 1")
+            + f"mass 1 {RHO0 * SPACING**3 / LATTICE_SUM}\n"
+            + f"lattice sc {THIN}\nregion block block {f'-{half} {half} ' * 3} units box\n"
+            + "create_atoms 1 region block\n"
+            + sph_tait(f"1 1 fluid {RHO0} c0 {SOUND}", options="tension no")
+            + neighbor(0.03)
+            + f"velocity all ramp vx 100 -100 x -{half} {half} units box\n"
+            + f"timestep 1e-3\nfix step all sph/integrate global {ALONE} stability 1\nrun 0 post no"
+        )
+        step, by = dt_and_limit(lmp)
+        assert by == ACOUSTIC
+        assert by_id(lmp, "rho").max() < 0.8 * RHO0
+        assert 0.5 < step / longest_stable_step(lmp, least_density=RHO0) < 1
 
 
 def growth(areal, step, n):

@@ -229,6 +229,88 @@ def test_an_impact_gives_back_no_more_than_it_brought(
     assert found[-1, 1] > 0.1 * found[0, 1]
 
 
+GRAIN = 3.0  # kg; a vertex has 0.04
+GRAINS = (
+    header("f f f", "hybrid sph molecular")
+    + f"""comm_modify vel yes
+region box block -1 1 -1 1 -3 1
+create_box 2 box bond/types 1 angle/types 1 dihedral/types 1 extra/bond/per/atom 8 &
+  extra/angle/per/atom 8 extra/dihedral/per/atom 20
+region inner block -0.34 0.34 -0.34 0.34 INF INF side out units box
+create_cloth 1 1.0 size 0.8 0.8 spacing 0.2 pattern diagonal group cloth pin inner pins
+lattice sc 0.08
+region low block -0.17 0.17 -0.17 0.17 0.02 0.18 units box
+create_atoms 2 region low
+group grains type 2
+mass 2 {GRAIN}
+velocity grains set 0 0 -3 units box
+pair_style zero 0.2
+pair_coeff * *
+neighbor 0.1 bin
+"""
+    + cloth_styles("compliance 0.001", 0)
+    + f"""fix gravity all gravity 9.81 vector 0 0 -1
+fix move grains nve
+fix sheet cloth pbd/cloth pin pins
+fix contact grains cloth/contact 0.01
+compute grains grains ke
+compute cloth cloth ke
+compute height grains reduce sum z
+variable energy equal c_grains+c_cloth+{GRAIN}*9.81*c_height+f_sheet[7]
+thermo_style custom step v_energy f_sheet[6] f_contact[2]
+thermo_modify norm no format float %.12g
+thermo 1
+timestep 4e-3
+"""
+)
+
+
+def fallen(tmp_path, name, fix=""):
+    """50 heavy grains fall on the nine free vertices of a light sheet; the end of the script."""
+    script = GRAINS.replace("pin pins", f"pin pins {fix}")
+    return f"{script}log {tmp_path}/{name}\n"
+
+
+def test_grains_that_a_light_sheet_stops_gain_no_energy(tmp_path):
+    """The sheet passes too little of its pull on to them in substeps of the usual length."""
+    gained = {}
+    for fix in ("", "iterations 10"):
+        run(write(tmp_path, fallen(tmp_path, "log", fix) + "run 80\n"))
+        found = rows(tmp_path / "log")
+        energy = found[:, 1]
+        gained[fix] = np.max(energy - np.minimum.accumulate(energy)) / energy[0]
+        assert (found[:, 2].max() > 40) == (fix == "")
+    assert energy[0] == pytest.approx(50 * GRAIN * (0.5 * 3**2 + GRAVITY * 0.12), rel=1e-6)
+    assert gained[""] < 0.01
+    assert gained["iterations 10"] > 0.3
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_take_the_same_substeps_for_contact(tmp_path, ranks):
+    for n in (1, ranks):
+        run(write(tmp_path, fallen(tmp_path, f"log.{n}") + "run 40\n"), ranks=n)
+    one, more = rows(tmp_path / "log.1"), rows(tmp_path / f"log.{ranks}")
+    assert one[:, 2].max() > 20
+    assert np.array_equal(one[:, 2], more[:, 2])
+    assert np.allclose(one, more, rtol=1e-6)
+
+
+def test_a_restart_goes_on_with_the_substeps_for_contact(tmp_path):
+    script = fallen(tmp_path, "log.a")
+    with instance() as lmp:
+        lmp.commands_string(script + f"run 40\nwrite_restart {tmp_path}/half\nrun 20")
+        there = by_id(lmp, "x")
+    begin = script[: script.index("region box")]
+    go_on = fallen(tmp_path, "log.b")
+    go_on = go_on[go_on.index("pair_style") :]
+    with instance() as lmp:
+        lmp.commands_string(begin + f"read_restart {tmp_path}/half\n" + go_on + "run 20\n")
+        assert np.array_equal(by_id(lmp, "x"), there)
+    first, second = rows(tmp_path / "log.a"), rows(tmp_path / "log.b")
+    assert np.array_equal(first[-20:, 2], second[-20:, 2])
+    assert first[-20, 2] > 20
+
+
 def bent(fix):
     """A sheet that is clamped at one side and falls to where its soft hinges hold it."""
     rows = "region rows block INF -0.35 INF INF INF INF\n"

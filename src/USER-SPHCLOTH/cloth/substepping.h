@@ -58,6 +58,9 @@ class Substepping : protected Pointers {
   // how many substeps the next step takes, of dt, under the load of the last one
   int wanted_substeps(double dt);
 
+  // what contact did not pass on in the last step, as a share
+  void missed_in_contact(double share) { length.missed_in_contact(share); }
+
   // cuts the next step into substeps, with what meets the cloth in it; forces of the holders are
   // summed where they are wanted
   void begin_step(double dt, int substeps, const std::vector<SolverCoupling *> &, HolderForces &);

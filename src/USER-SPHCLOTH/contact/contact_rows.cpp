@@ -411,8 +411,6 @@ void ContactRows::end_substep(Vertex *v, double dt)
   points.push_velocities(masses.impulse);
 }
 
-// and the row starts anew
-
 void ContactRows::solve_velocity(int k, double dt)
 {
   ContactRow &row = rows[k];
@@ -421,6 +419,7 @@ void ContactRows::solve_velocity(int k, double dt)
     ContactMotion motion{row.relative(velocity), row.normal, 0.0,
                          masses.by_load(row, mesh.w_solver)};
     ExchangedImpulse so_far{row.normal_correction / dt};
+    if (row.meeting == Meeting::PARTICLE) mesh.counts.passed_on += so_far.normal;
     if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
     if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
     masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));

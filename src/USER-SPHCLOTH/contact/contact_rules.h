@@ -46,6 +46,8 @@ struct ContactCounts {
   // the first three of cloth on cloth, and the smallest distance at the start of the last step
   double cloth_contacts = 0.0, cloth_stops = 0.0, cloth_frozen = 0.0;
   double cloth_gap = 0.0;
+  // in the last step, momentum of particles: passed on in the solver, and missing behind it
+  double passed_on = 0.0, missed = 0.0;
 };
 
 // wall time, added up at the end of a block

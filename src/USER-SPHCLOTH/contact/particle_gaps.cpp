@@ -81,6 +81,7 @@ bool ParticleGaps::put_back(int particle)
     mesh.counts.stops++;
     const ContactPair pair = mesh.pair_of(particle, gap.triangle);
     mesh.end[pair.slots[0]] = sweep.end;
+    mesh.counts.missed += gap.depth / (mesh.w[pair.slots[0]] * update->dt);
     velocities.add(
         ContactRow(pair, {1.0, -gap.weight[0], -gap.weight[1], -gap.weight[2]}, gap.normal, 0.0),
         gap.max_approach);

@@ -54,11 +54,13 @@ const LatticeModes &FluidStability::modes(int type, double mass)
   return lattice.modes;
 }
 
+// In free flight that of the particle once it is pressed.
+
 double FluidStability::find_sound(int i) const
 {
   const int type = atom->type[i];
   const Tait &eos = materials.equation_of_state(type);
-  const double rho = atom->rho[i];
+  const double rho = materials.options.tension ? atom->rho[i] : std::max(atom->rho[i], eos.rho0);
   const double sound =
       eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
   // gradients are those of the density sum

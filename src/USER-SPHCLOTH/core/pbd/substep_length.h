@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // How long the substeps of a cloth are: as long as the softness allows that the present load has
-// left to its constraints (core/pbd/solver_softness.h).
+// left to its constraints (core/pbd/solver_softness.h), and shorter while contact lags behind.
 
 #ifndef SPHCLOTH_CORE_PBD_SUBSTEP_LENGTH_H
 #define SPHCLOTH_CORE_PBD_SUBSTEP_LENGTH_H
@@ -22,7 +22,9 @@ class SubstepLength {
     state.longest = std::max(state.longest, dt / usual);
     of_longest_step = dt / (usual * state.longest);
     state.hardness = std::min(state.hardest, state.hardness * RELAXES);
-    return std::ceil(dt / (state.longest * std::sqrt(with_margin(state.hardness))) - SPARED);
+    refine_for_contact();
+    const double substep = state.longest * std::sqrt(with_margin(state.hardness)) / state.refined;
+    return std::ceil(dt / substep - SPARED);
   }
 
   // In steps no longer than the longest one: substeps of this length, but no more than a load may
@@ -55,6 +57,10 @@ class SubstepLength {
     if (less > 1.0) state.hardest = hardness_of(less * strain_with(hardest));
   }
 
+  // Of the last step: what contact did not pass on in the substeps, as a share of the impulses that
+  // stop what touches the cloth; the largest of several.
+  void missed_in_contact(double share) { state.missed = std::max(state.missed, share); }
+
   // A softness that is not bounded by a strain: it follows substeps that are given, if they become
   // longer at once, else slowly.
   void follow(double substep)
@@ -80,6 +86,8 @@ class SubstepLength {
     double yield = 1.0, least_yield = 1.0;    // the second one where something holds them apart
     double phase = BORNE, steps = 0.0, strain_then = 0.0;
     double since = 0.0;    // the yield was raised, in longest steps
+    double missed = 0.0;    // in contact in the last step
+    double refined = 1.0;    // so many times more substeps for that
   };
   State state;
 
@@ -105,6 +113,17 @@ class SubstepLength {
     if (more <= 1.0) return;
     state.yield *= more;
     state.since = 0.0;
+  }
+
+  // A sheet that is light beside what lies on it passes a part of its pull on to that in a substep,
+  // and the smaller the parts that it has to pass on are, the less of them is missing.
+  void refine_for_contact()
+  {
+    constexpr double MISSED = 0.5, GROWS = 1.3, MOST = 10.0;
+    state.refined = state.missed > MISSED
+        ? std::min(MOST, GROWS * state.refined)
+        : std::max(1.0, state.refined / std::pow(CHANGE, of_longest_step));
+    state.missed = 0.0;
   }
 
   // What is allowed less lifts a load, and pulls at what has struck the sheet: slowly where edges

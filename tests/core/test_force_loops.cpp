@@ -21,12 +21,13 @@ struct Giving {
   Scene scene;
   Evaluation of;
   Particles p;
-  std::vector<double> v, pressure, force, rate, pressure_time, span, row;
+  std::vector<double> v, pressure, force, rate, pressure_time, span, row, share;
   std::vector<double *> rows;
   std::vector<int> giving, asleep;
   std::vector<double> given;
 
-  Giving(Precision precision, int every, bool sleepers, double areal = 4.0) :
+  Giving(Precision precision, int every, bool sleepers, double areal = 4.0,
+         bool switched = false) :
       scene(make(precision, areal)), of(scene), p(of.p)
   {
     const std::size_t n = scene.x.size();
@@ -38,6 +39,7 @@ struct Giving {
       pressure.push_back(1.0 + any(random));
       pressure_time.push_back(3.0 * any(random));
       span.push_back(1.5 + any(random));
+      share.push_back(switched ? std::fabs(any(random)) : 1.0);
       const bool water = scene.type[i] == WATER;
       row.push_back(water && i % every == 0);
       if (row.back() != 0.0) giving.push_back(static_cast<int>(i));
@@ -48,7 +50,7 @@ struct Giving {
     rate.assign(n, 0.0);
     given.assign(Impulses::STRIDE * n, 0.0);
     FluidModel &model = of.fluid->model;
-    model.friction = Friction::ANY;
+    model.friction = switched ? Friction::SWITCHED : Friction::ANY;
     model.outputs = Outputs::RATE;
     for (PairTerms &terms : model.terms) {
       terms.nu = NU;
@@ -64,6 +66,7 @@ struct Giving {
     of.fluid->record_positions(p, {{-1.0, -1.0, -1.0}, {3.0, 3.0, 3.0}, 0.2});
     of.fluid->gather(p, false);
     of.fluid->record(p);
+    of.fluid->record_viscosity_shares(p, share.data());
     of.fluid->impulses(p,
                        {&giving, pressure_time.data(), span.data(),
                         sleepers ? asleep.data() : nullptr, given.data(), true});
@@ -91,7 +94,7 @@ struct Giving {
     const double slope = of.scale.f * WendlandC2::slope_over_q(q);
     const double shared = water && !asleep[j] ? 0.5 * span[i] : span[i];
     const double of_partner = water && !asleep[j] ? 0.0 : span[i] * pressure[j];
-    const double approach = std::min(u.dot(r), 0.0) / (r.squaredNorm() + SOFT);
+    const double approach = share[i] * std::min(u.dot(r), 0.0) / (r.squaredNorm() + SOFT);
     if (water) {
       const double rho = of.rho[i] + of.rho[j];
       const double along = pressure_time[i] + of_partner - shared * 2.0 * MONAGHAN * approach / rho;
@@ -130,6 +133,30 @@ BOOST_AUTO_TEST_CASE(every_particle_gives_its_own_terms_to_its_neighbors)
   check_against_pairs({Precision::DOUBLE, 1, false}, 1e-12);
   check_against_pairs({Precision::DOUBLE, 3, true}, 1e-12);
   check_against_pairs({Precision::MIXED, 3, true}, 1e-4);
+}
+
+BOOST_AUTO_TEST_CASE(artificial_viscosity_that_is_switched_is_given_by_shares)
+{
+  check_against_pairs({Precision::DOUBLE, 2, true, 4.0, true}, 1e-12);
+  check_against_pairs({Precision::MIXED, 3, false, 4.0, true}, 1e-4);
+}
+
+// What all give to one another in one time, each with its own share, are forces with the mean.
+
+BOOST_AUTO_TEST_CASE(forces_between_water_have_the_mean_of_both_shares)
+{
+  Giving g(Precision::DOUBLE, 1, false, 0.0, true);
+  std::fill(g.given.begin(), g.given.end(), 0.0);
+  std::fill(g.span.begin(), g.span.end(), 1.0);
+  g.of.fluid->impulses(
+      g.p, {&g.giving, g.pressure.data(), g.span.data(), nullptr, g.given.data(), false});
+  std::vector<double> force(g.force.size(), 0.0);
+  g.p.f = force.data();
+  g.of.fluid->forces(g.p, Target::FLUID);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < g.scene.x.size(); i++) largest = std::max(largest, g.got(i).norm());
+  for (std::size_t i = 0; i < g.scene.x.size(); i++)
+    BOOST_CHECK((g.got(i) - Eigen::Map<Vector3d>(&force[3 * i])).norm() < 1e-12 * largest);
 }
 
 BOOST_AUTO_TEST_CASE(few_particles_give_the_same)

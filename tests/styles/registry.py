@@ -214,9 +214,9 @@ BALLOONS = Scene(
 
 
 def calibrated(scene: Scene, steps: int) -> Scene:
-    """Return the scene with water of a calibrated density."""
+    """Return the scene with water of a calibrated density, and viscosity that is switched."""
     forces = scene.forces.replace("sph/tait 0.1[m]", "sph/tait 0.1[m] density calibrated")
-    return replace(scene, forces=forces, steps=steps)
+    return replace(scene, forces=forces.replace("alpha 0.1", "alpha 0.1 switch 0.2"), steps=steps)
 
 
 def followed(scene: Scene, steps: int) -> Scene:

@@ -66,6 +66,7 @@ void FluidEvaluation::begin_run()
   model.mass.resize(n, 0.0);
   model.terms.assign(n * n, PairTerms());
   model.pressure_scale.assign(n, 1.0);
+  model.viscosity_switch.assign(n, ViscositySwitch());
   double first = 0.0;    // rest density; if there is no other, all factors are exactly 1
   for (int i = 1; i < n; i++) {
     model.role[i] = type(i).role;
@@ -83,8 +84,10 @@ void FluidEvaluation::set_pair(int i, int j, double listed)
   const int n = atom->ntypes + 1;
   FluidModel &model = core->model;
   const PairTerms t = set_terms(i, j);
-  if (t.monaghan > 0.0) model.friction = std::max(model.friction, Friction::ARTIFICIAL);
-  if (t.nu > 0.0) model.friction = Friction::ANY;
+  Friction needed = t.monaghan > 0.0 ? Friction::ARTIFICIAL : Friction::NONE;
+  if (t.monaghan > 0.0 && switches_viscosity()) needed = Friction::SWITCHED;
+  if (t.nu > 0.0) needed = std::max(needed, Friction::ANY);
+  model.friction = std::max(model.friction, needed);
   list_reach[i * n + j] = list_reach[j * n + i] = listed;
 }
 
@@ -136,6 +139,7 @@ void FluidEvaluation::find_densities_and_pressures()
   if (extrapolate) find_boundary_pressures(p);
   core->record(p);
   if (hooks && hooks->correct_velocities()) core->record(p);
+  if (core->model.friction == Friction::SWITCHED) find_viscosity_shares(p);
 }
 
 void FluidEvaluation::find_forces()
@@ -171,6 +175,8 @@ void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
   core->select(all);
   core->record_positions(all, box());
   core->record(all);
+  if (core->model.friction == Friction::SWITCHED)
+    core->record_viscosity_shares(all, viscosity_shares.data());
   core->virials(all, receive, context);
   core->select(particles());
 }
@@ -192,6 +198,7 @@ void FluidEvaluation::begin_lists()
   p_over_rho2.assign(atom->nmax, 0.0);
   if (integrates_density()) integrated.begin_lists(hooks);
   if (core->model.outputs == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
+  if (core->model.friction == Friction::SWITCHED) viscosity_shares.assign(atom->nmax, 1.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int itype = atom->type[i];
     if (!is_boundary(itype))
@@ -342,6 +349,20 @@ void FluidEvaluation::find_boundary_pressures(const Particles &p)
   ghosts.send_to_ghosts(GhostData::DENSITY);
 }
 
+// Noise follows the speed of sound.  Inactive particles keep their shares until lists are built.
+
+void FluidEvaluation::find_viscosity_shares(const Particles &p)
+{
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (is_fluid(t))
+      core->model.viscosity_switch[t] = {type(t).floor, ViscositySwitch::NOISE *
+                                             equation_of_state(t).sound_speed() /
+                                             (0.5 * support(t))};
+  core->viscosity_shares(p, viscosity_shares.data());
+  ghosts.send_to_ghosts(GhostData::VISCOSITY);
+  core->record_viscosity_shares(p, viscosity_shares.data());
+}
+
 void FluidEvaluation::find_frequencies()
 {
   const Particles p = particles();
@@ -387,7 +408,8 @@ void FluidEvaluation::find_pressures(const Particles &p)
 int FluidEvaluation::ghost_size(GhostData what)
 {
   switch (what) {
-    case GhostData::MASS_OR_VOLUME: return 1;
+    case GhostData::MASS_OR_VOLUME:
+    case GhostData::VISCOSITY: return 1;
     case GhostData::DENSITY: return 2;
     case GhostData::SINCE:
     case GhostData::CHANGE: return 1;
@@ -401,6 +423,7 @@ double *FluidEvaluation::pack(GhostData what, int i, double *buf) const
 {
   switch (what) {
     case GhostData::MASS_OR_VOLUME: *buf = mass_or_volume[i]; return buf + 1;
+    case GhostData::VISCOSITY: *buf = viscosity_shares[i]; return buf + 1;
     case GhostData::DENSITY:
       buf[0] = atom->rho[i];
       buf[1] = p_over_rho2[i];
@@ -425,6 +448,7 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
   for (int i = first; i < first + n; i++) {
     switch (what) {
       case GhostData::MASS_OR_VOLUME: mass_or_volume[i] = *buf++; break;
+      case GhostData::VISCOSITY: viscosity_shares[i] = *buf++; break;
       case GhostData::DENSITY:
         atom->rho[i] = *buf++;
         p_over_rho2[i] = *buf++;
@@ -457,5 +481,5 @@ void FluidEvaluation::add(GhostData what, int n, const int *list, const double *
 double FluidEvaluation::bytes() const
 {
   return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
-      bytes_of(mass_or_volume, p_over_rho2, approach, active_fluid);
+      bytes_of(mass_or_volume, p_over_rho2, approach, viscosity_shares, active_fluid);
 }

@@ -65,6 +65,7 @@ class FluidEvaluation : public FluidState {
   void find_pressures(const sphcloth::Particles &);
   void push(FluidBoundary &);
   void find_boundary_pressures(const sphcloth::Particles &);
+  void find_viscosity_shares(const sphcloth::Particles &);
   void find_frequencies();
 };
 

@@ -144,6 +144,7 @@ class FluidState : public SPHMaterials {
 
   std::vector<double> mass_or_volume, p_over_rho2;    // of all atoms
   std::vector<double> approach;    // empty unless wanted
+  std::vector<double> viscosity_shares;    // of all atoms, empty unless it is switched
 
   sphcloth::Particles particles();
   // of a pair of types in the loops

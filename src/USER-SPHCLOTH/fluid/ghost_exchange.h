@@ -7,7 +7,7 @@
 namespace LAMMPS_NS {
 
 // One number, density and pressure; for a density that is integrated three, one and one; what a
-// vertex has; for mass scaling one, four and three
+// vertex has; a share of viscosity; for mass scaling one, four and three
 
 enum class GhostData {
   MASS_OR_VOLUME,
@@ -16,6 +16,7 @@ enum class GhostData {
   SINCE,
   CHANGE,
   STIFFNESS,
+  VISCOSITY,
   STRENGTH,
   KICK,
   IMPULSE

@@ -164,12 +164,14 @@ SPHMaterials::TypeData SPHMaterials::read_fluid(ArgReader &args, PairData &pair)
       t.nu = args.at_least("nu", 0.0);
     else if (keyword == "alpha")
       t.alpha = args.at_least("alpha", 0.0);
+    else if (keyword == "switch")
+      t.floor = args.fraction("switch");
     else if (keyword == "support")
       pair.support = args.positive("support");
     else if (keyword == "spacing")
       t.spacing = args.positive("spacing");
     else
-      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, support, spacing");
+      args.unknown(keyword, "k, c0, fluctuation, gamma, nu, alpha, switch, support, spacing");
   }
   if (t.sound.follows())
     start_sound(args, t);
@@ -290,6 +292,11 @@ bool SPHMaterials::sound_follows() const
 {
   return std::any_of(types.begin(), types.end(),
                      [](const TypeData &t) { return t.sound.follows(); });
+}
+
+bool SPHMaterials::switches_viscosity() const
+{
+  return std::any_of(types.begin(), types.end(), [](const TypeData &t) { return t.floor < 1.0; });
 }
 
 void SPHMaterials::cache_pair_values()
@@ -456,5 +463,6 @@ std::string SPHMaterials::words(int i, int j, bool state) const
   }
   return fmt::format("fluid {} {} gamma {} nu {} alpha {}", t.eos.rho0, stiffness, t.eos.gamma,
                      t.nu, t.alpha) +
+      (t.floor < 1.0 ? fmt::format(" switch {}", t.floor) : "") +
       only_if(of_pair.support, "support") + (atom->rmass ? only_if(t.spacing, "spacing") : "");
 }

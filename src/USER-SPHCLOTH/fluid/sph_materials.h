@@ -49,6 +49,7 @@ class SPHMaterials : protected Pointers {
     sphcloth::SoundBounds sound;    // within which eos.k follows the flow
     double sound_unchanged_for = 0.0;    // a time
     double nu = 0.0, alpha = 0.0;
+    double floor = 1.0;    // share of alpha that is left where the flow shears; 1: all
     double volume = 0.0;    // of a boundary particle; 0: from the particles around it
     Pressure pressure = Pressure::EXTRAPOLATE;
     double spacing = 0.0;    // of the lattice whose mass a fluid has; 0: 'mass' says it
@@ -66,6 +67,7 @@ class SPHMaterials : protected Pointers {
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
   const sphcloth::Tait &equation_of_state(int i) const { return types[i].eos; }
   bool sound_follows() const;    // that of any fluid
+  bool switches_viscosity() const;    // that of any fluid
   // is the volume of its particles that which they share among themselves?
   bool is_measured(int i) const { return is_boundary(i) && !(types[i].volume > 0.0); }
   bool extrapolates(int i) const

@@ -142,6 +142,12 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                "{}: a speed of sound that follows the flow changes where all particles are updated "
                "together, with {} they never are: use another scheme, or a constant 'c0 C'",
                label, individual ? "individual" : "sleep");
+  if (fluid.switches_viscosity() && individual)
+    error->all(FLERR,
+               "{}: individual steps leave some of the partners of a particle without a share in "
+               "the artificial viscosity: leave 'switch' of pair_coeff out, or use another scheme "
+               "than individual",
+               label);
   if (fluid.integrates_density() && individual)
     error->all(
         FLERR,

@@ -8,7 +8,7 @@
 //
 // This is what the pair style sees; the loops, one set per kernel and precision, are in
 // core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h,
-// rate_loops.h and stiffness_loops.h.
+// rate_loops.h, stiffness_loops.h and viscosity_loops.h.
 
 #ifndef SPHCLOTH_CORE_SPH_FLUID_H
 #define SPHCLOTH_CORE_SPH_FLUID_H
@@ -31,7 +31,9 @@ enum class Role : int { NONE, FLUID, BOUNDARY };
 
 enum class Precision : int { DOUBLE, MIXED };
 
-enum class Friction : int { NONE, ARTIFICIAL, ANY };
+// SWITCHED: any, and particles take a share of their own in the artificial one
+
+enum class Friction : int { NONE, ARTIFICIAL, ANY, SWITCHED };
 
 // particles on which forces are found
 enum class Target { ALL, FLUID, BOUNDARIES };
@@ -60,6 +62,20 @@ struct PairTerms {
   double friction_rate() const { return 2.0 * nu + 0.25 * monaghan; }
 };
 
+// Of a fluid, see core/sph/viscosity_loops.h
+
+struct ViscositySwitch {
+  static constexpr double NOISE = 1e-4;    // of c0/h_s
+  double floor = 1.0;    // 1: there is none
+  double noise = 0.0;    // a rate
+
+  double share(double divergence, double curl) const
+  {
+    const double sum = divergence + curl + noise;
+    return floor + (1.0 - floor) * (sum > 0.0 ? divergence / sum : 0.0);
+  }
+};
+
 struct FluidModel {
   int dimension = 3, n_types = 0;
   Friction friction = Friction::NONE;
@@ -70,6 +86,7 @@ struct FluidModel {
   // pressure is the mean of what is recorded around it.  R is one density for all; a pair of fluids
   // has the stiffness R^2/(rho0_i rho0_j), a fluid and a boundary (R/rho0_i)^2 times the user's.
   std::vector<double> pressure_scale;
+  std::vector<ViscositySwitch> viscosity_switch;    // [n_types + 1]
   std::vector<PairTerms> terms;    // [(n_types + 1)^2]
   const PairTerms &pair(int i, int j) const { return terms[i * (n_types + 1) + j]; }
 };
@@ -223,6 +240,11 @@ class Fluid {
 
   // Records density, volume, velocity and pressure of all that are read.
   virtual void record(const Particles &) = 0;
+
+  // With Friction::SWITCHED, behind record(): the share of each active fluid particle in the
+  // artificial viscosity; and records those of all that are read
+  virtual void viscosity_shares(const Particles &, double *share) = 0;
+  virtual void record_viscosity_shares(const Particles &, const double *share) = 0;
 
   // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
   virtual void forces(const Particles &, Target) = 0;

@@ -53,6 +53,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   {
     records.record(p, model.role.data(), model.pressure_scale.data(), touched());
   }
+  void viscosity_shares(const Particles &p, double *share) override
+  {
+    all_viscosity_shares(p, share);
+  }
+  void record_viscosity_shares(const Particles &, const double *share) override;
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -78,6 +83,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   // of forces, force_loops.h
   template <Outputs OUTPUTS, bool VIRIAL, bool SOURCE> struct Sums;
   struct DifferenceSums;    // rate_loops.h
+  struct VelocitySums;    // viscosity_loops.h
   struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;
@@ -150,10 +156,15 @@ template <class K, class P> class FluidLoops : public Fluid {
   along_and_drag(Real push, const Separation &r, Real friction, const std::array<Real, 3> &velocity)
   {
     std::array<Real, 3> f{push * r.x, push * r.y, push * r.z};
-    if (F == Friction::ANY)
+    if (F >= Friction::ANY)
       for (int d = 0; d < 3; d++) f[d] += friction * velocity[d];
     return f;
   }
+
+  // viscosity_loops.h
+  void all_viscosity_shares(const Particles &, double *share);
+  template <bool FROM_BOUNDARY>
+  void add_velocities(const Neighborhood &, Columns &, VelocitySums &) const;
 
   // stiffness_loops.h
   void all_stiffness(const Particles &, const Selection &, Stiffness *);

@@ -88,7 +88,8 @@ struct FluidLoops<K, P>::Sums {
 // pressure terms, p_i/rho_i^2 + p_j/rho_j^2, along the line of the particles.
 //
 // SOURCE: of these terms the particle gives the one of its own pressure, and half of the friction,
-// each times the time for which it acts.
+// each times the time for which it acts.  Where artificial viscosity is switched, that half has the
+// particle's own share, so that both together have the mean of the two.
 
 template <class K, class P>
 template <Friction F, Outputs OUTPUTS, bool VIRIAL, bool SOURCE, bool SLEEPING>
@@ -99,6 +100,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
+  const Real share = F == Friction::SWITCHED ? records.shares[of.i] : Real(1);
   const Real half_span = Real(0.5) * gift.span, pressure = t.stiffness * gift.pressure;
   const double *mass = nullptr;
   records.for_neighbors(
@@ -107,6 +109,7 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
         records.load(c, of.near.of + from);
         mass = of.masses.group(from);
         if (SLEEPING) records.load_sleeping(c, gift.sleeping, of.near.of + from);
+        if (F == Friction::SWITCHED && !SOURCE) records.load_shares(c, of.near.of + from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
@@ -119,11 +122,13 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::fluid_on_fluid(const Neighborhood &of, Co
         if (F != Friction::NONE) {
           const Real both = rho_i + rho_j;
           damping = t.monaghan * Real(2) * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * both);
+          if (F == Friction::SWITCHED)
+            damping *= SOURCE ? share : Real(0.5) * (share + c.share[k]);
           along -= damping;
         }
         const Real push = -slope * along;
         const Real friction =
-            F == Friction::ANY ? slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j) : Real(0);
+            F >= Friction::ANY ? slope * t.nu * (rho_i + rho_j) / (rho_i * rho_j) : Real(0);
         sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
         sums.add(k, mass[k], along_and_drag<F>(push, r, friction, {du, dv, dw}),
                  t.rho0_ratio * slope * v_dot_r, r);
@@ -155,12 +160,14 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
   const Terms &t = of.terms;
   const Real rho_i = records.sites[of.i].density_or_volume;
   const typename Records::Motion motion = records.motions[of.i];
+  const Real share = F == Friction::SWITCHED && !ON_BOUNDARY ? records.shares[of.i] : Real(1);
   const double *mass = nullptr;
   records.for_neighbors(
       of, c,
       [&](int from) SPHCLOTH_LAMBDA {
         records.load(c, of.near.of + from);
         if (ON_BOUNDARY) mass = of.masses.group(from);
+        if (F == Friction::SWITCHED && ON_BOUNDARY) records.load_shares(c, of.near.of + from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
         const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
@@ -172,10 +179,11 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::across_boundary(const Neighborhood &of, C
         Real along = t.stiffness * (motion.p_over_rho2 + c.p_over_rho2[k]), damping = 0;
         if (F != Friction::NONE) {
           damping = t.monaghan * std::min(v_dot_r, Real(0)) / ((r_sq + t.soft) * rho);
+          if (F == Friction::SWITCHED) damping *= ON_BOUNDARY ? c.share[k] : share;
           along -= damping;
         }
         const Real push = -slope * along;
-        const Real friction = F == Friction::ANY ? slope * t.nu * Real(2) / rho : Real(0);
+        const Real friction = F >= Friction::ANY ? slope * t.nu * Real(2) / rho : Real(0);
         if (!ON_BOUNDARY) sums.add_approach(k, v_dot_r, r_sq, t.support_sq);
         const double mass_or_volume = ON_BOUNDARY ? mass[k]
                                                   : static_cast<double>(c.density_or_volume[k]);
@@ -278,6 +286,7 @@ void FluidLoops<K, P>::impulses_and(const Particles &p, const Impulses &of)
     case Friction::NONE: return all_impulses<Friction::NONE, OUTPUTS>(p, of);
     case Friction::ARTIFICIAL: return all_impulses<Friction::ARTIFICIAL, OUTPUTS>(p, of);
     case Friction::ANY: return all_impulses<Friction::ANY, OUTPUTS>(p, of);
+    case Friction::SWITCHED: return all_impulses<Friction::SWITCHED, OUTPUTS>(p, of);
   }
 }
 
@@ -313,6 +322,8 @@ void FluidLoops<K, P>::forces_and(const Particles &p, Target target)
     case Friction::ARTIFICIAL:
       return all_forces<Friction::ARTIFICIAL, OUTPUTS, false>(p, target, {});
     case Friction::ANY: return all_forces<Friction::ANY, OUTPUTS, false>(p, target, {});
+    case Friction::SWITCHED:
+      return all_forces<Friction::SWITCHED, OUTPUTS, false>(p, target, {});
   }
 }
 
@@ -322,7 +333,11 @@ void FluidLoops<K, P>::forces_and(const Particles &p, Target target)
 template <class K, class P>
 void FluidLoops<K, P>::virials(const Particles &p, Receiver receive, void *context)
 {
-  all_forces<Friction::ANY, Outputs::NOTHING, true>(p, Target::ALL, {receive, context});
+  const Listener listener{receive, context};
+  if (model.friction == Friction::SWITCHED)
+    all_forces<Friction::SWITCHED, Outputs::NOTHING, true>(p, Target::ALL, listener);
+  else
+    all_forces<Friction::ANY, Outputs::NOTHING, true>(p, Target::ALL, listener);
 }
 
 }    // namespace sphcloth

@@ -85,7 +85,8 @@ template <class P> class PairColumns {
   struct Columns {
     alignas(64) Coordinate x[LANES], y[LANES], z[LANES];
     alignas(64) Real density_or_volume[LANES], u[LANES], v[LANES], w[LANES], p_over_rho2[LANES];
-    alignas(64) Real asleep[LANES];    // 1 or 0, where it is asked
+    // where they are asked for: 1 or 0; of the artificial viscosity
+    alignas(64) Real asleep[LANES], share[LANES];
   };
   // x_i - x_j
   struct Separation {
@@ -105,6 +106,7 @@ template <class P> class PairColumns {
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
   AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
+  AlignedVector<Real> shares;    // of the artificial viscosity, empty unless it is switched
   mutable double n_evaluated = 0.0;    // pairs, by the loop over neighbors
 
   // Of some particles, null: of all
@@ -150,6 +152,16 @@ template <class P> class PairColumns {
       for (const int i : *some) record_one(i);
     else
       for (int i = 0; i < n; i++) record_one(i);
+  }
+
+  // Of some particles, null: of all n
+  void record_shares(const double *share, int n, const std::vector<int> *some)
+  {
+    shares.resize(n + LANES);
+    if (some)
+      for (const int i : *some) shares[i] = static_cast<Real>(share[i]);
+    else
+      for (int i = 0; i < n; i++) shares[i] = static_cast<Real>(share[i]);
   }
 
   // The one loop over the neighbors of a particle: for each group load(first neighbor), which fills
@@ -202,7 +214,12 @@ template <class P> class PairColumns {
     for (int m = 0; m < LANES; m++) c.asleep[m] = static_cast<Real>(sleeping[near[m]]);
   }
 
-  double bytes() const { return bytes_of(sites, motions, gradients); }
+  SPHCLOTH_INLINE void load_shares(Columns &c, const int *near) const
+  {
+    for (int m = 0; m < LANES; m++) c.share[m] = shares[near[m]];
+  }
+
+  double bytes() const { return bytes_of(sites, motions, gradients, shares); }
 
  private:
   SPHCLOTH_MULTIVERSION void record_positions(const Particles &p,

@@ -136,3 +136,38 @@ def test_bad_input_is_named(words, message):
 def test_nothing_is_summed_where_another_limit_is_asked_for(words):
     with soaked(4.0, f"global {words}") as lmp:
         assert (lmp.numpy.extract_fix("step", 1, 2)[:512, 3:] == 0).all()
+
+
+def test_water_that_begins_to_fall_is_not_compressed_by_a_long_step():
+    """At first nothing is under pressure, and the step is as long as the ceiling.
+
+    It compresses itself by 0.05 % in the step in which it meets the floor; in a step that was
+    chosen two steps before it is 2 %, and then the water is thrown upwards.
+    """
+    dx, sound = 0.05, 70.0
+    with instance() as lmp:
+        lmp.commands_string(
+            header("f f f", FLUID)
+            + box("-0.2 0.7 -0.2 0.7 -0.2 2.2")
+            + f"mass 1 {RHO0 * dx**3}\nlattice sc {dx} origin 0.5 0.5 0.5\n"
+            + "region column block 0 0.5 0 0.5 0 2 units box\ncreate_atoms 1 region column\n"
+            + sph_tait(
+                f"1 1 fluid {RHO0} c0 {sound} alpha 0.06", support=2 * dx, options="kernel cubic"
+            )
+            + neighbor(0.1)
+            + """fix tank all wall/sph xlo -0.025 xhi 0.525 ylo -0.025 yhi 0.525 zlo -0.025 &
+  pressure mirror
+fix gravity all gravity 9.81 vector 0 0 -1
+timestep 0.01
+fix step all sph/integrate global
+run_style sph/adaptive global
+run 1 post no
+"""
+        )
+        assert lmp.extract_global("dt") == 0.01
+        compressed = 0.0
+        for _ in range(15):
+            lmp.command("run 1 pre no post no")
+            compressed = max(compressed, lmp.extract_fix("step", 0, 1, 3))
+        assert lmp.extract_global("dt") < 0.002
+    assert compressed < 0.006

@@ -20,6 +20,9 @@ using namespace sphcloth;
 // a particle was put back.
 static constexpr double SLACK = 1e-6, OVERSHOOT = 1e-10;
 
+// of the thickness: how far a particle would have come for substeps to be shorter
+static constexpr double NOTICED = 0.01;
+
 // of the thickness: what a particle that is too near may get back in one step
 static constexpr double RECOVERY = 0.1;
 
@@ -81,13 +84,23 @@ bool ParticleGaps::put_back(int particle)
     mesh.counts.stops++;
     const ContactPair pair = mesh.pair_of(particle, gap.triangle);
     mesh.end[pair.slots[0]] = sweep.end;
-    mesh.counts.missed += gap.depth / (mesh.w[pair.slots[0]] * update->dt);
+    mesh.counts.missed += approach_left(particle, gap) / mesh.w[pair.slots[0]];
     velocities.add(
         ContactRow(pair, {1.0, -gap.weight[0], -gap.weight[1], -gap.weight[2]}, gap.normal, 0.0),
         gap.max_approach);
   }
   if (hit) mesh.moved.push_back(particle);
   return hit;
+}
+
+// Speed towards the triangle without a displacement, if that would have been seen
+
+double ParticleGaps::approach_left(int particle, const Gap &gap) const
+{
+  const double *v = atom->v[particle];
+  const double towards = -gap.normal.dot(Vec3(v[0], v[1], v[2]));
+  const double left = std::clamp(towards, 0.0, gap.depth / update->dt);
+  return left * update->dt > NOTICED * mesh.rules.thickness ? left : 0.0;
 }
 
 ParticleGaps::Gap ParticleGaps::deepest(const Sweep &sweep, bool first) const

@@ -60,6 +60,7 @@ class ParticleGaps : protected Pointers {
   // calls visit(particle) with its triangles in `near`
   template <class Visit> void for_particles(Visit visit);
   bool put_back(int particle);
+  double approach_left(int particle, const Gap &) const;
   Gap deepest(const sphcloth::Sweep &, bool first) const;
   Gap gap_over(const sphcloth::Sweep &, const Near &) const;
   bool recover(Gap &, const Vec3 &p, int triangle) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The longest stable step of all particles together, found anew as often as it changes: where it
-// shrinks in every step, where it does not every few steps.
+// shrinks in every step, where it does not every few steps, and in every step while nothing is
+// under pressure.
 
 #ifndef SPHCLOTH_STEPPING_STABILITY_WATCH_H
 #define SPHCLOTH_STEPPING_STABILITY_WATCH_H
@@ -39,10 +40,11 @@ class StabilityWatch {
   // it has changed by more than the motion
   void demand() { now.remaining = 0; }
   // of all ranks, after an evaluation in which it was due
-  void found(const sphcloth::StepLimit &tightest, tagint particle)
+  void found(const sphcloth::StepLimit &tightest, tagint particle, bool in_flight)
   {
     const bool shrinks = tightest.dt < (1.0 - SMALL_CHANGE) * now.tightest.dt;
-    now.interval = now.interval == 0 || shrinks ? 1 : std::min(2 * now.interval, LONGEST_WAIT);
+    const bool at_once = now.interval == 0 || shrinks || in_flight;
+    now.interval = at_once ? 1 : std::min(2 * now.interval, LONGEST_WAIT);
     now.remaining = now.interval;
     now.tightest = tightest;
     now.particle = particle;

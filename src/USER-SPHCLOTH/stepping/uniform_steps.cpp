@@ -44,10 +44,11 @@ void UniformSteps::choose_step()
   parts.control.choose(tightest, limited);
 }
 
-// Of all ranks
+// Of all ranks.  A step that no pressure allows is one of free flight.
 
 void UniformSteps::find_stable_step()
 {
+  constexpr double LONGEST_UNDER_PRESSURE = 2.0;    // of h_s/c0
   StepLimit mine;
   tagint particle = 0;
   for (const int i : integrated) {
@@ -58,7 +59,9 @@ void UniformSteps::find_stable_step()
     mine.tighten(limit.dt, limit.by);
   }
   const StepLimit tightest = parts.control.tightest_of_ranks(mine);
-  parts.control.watch.found(tightest, parts.control.owner_of(tightest, mine, particle));
+  parts.control.watch.found(
+      tightest, parts.control.owner_of(tightest, mine, particle),
+      tightest.dt > LONGEST_UNDER_PRESSURE * parts.limits.shortest_sound_time());
 }
 
 StepLimit UniformSteps::tightest_limit()

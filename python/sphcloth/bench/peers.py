@@ -66,13 +66,15 @@ def _sounds(*speeds: float) -> list[Setting]:
 # skin over support: with such steps water falls far
 OURS_IN = {"code": "double", "skin": 1.0}
 # artificial viscosity is proportional to the speed of sound: less of it with the largest
-OURS_SET = [*_sounds(20, 30, 45, 70), {"sound": 70, "alpha": 0.06}]
+LEAST_VISCOUS: Setting = {"sound": 70, "alpha": 0.06}
+OURS_SET = [*_sounds(20, 30, 45, 70), LEAST_VISCOUS]
+ADAPTIVE_SET = [*_sounds(20, 30, 45), LEAST_VISCOUS]
 
 PLAN = {
     f"{OURS} double": Code("sph", OURS_IN, OURS_SET),
     f"{OURS} mixed": Code("sph", {**OURS_IN, "code": "mixed"}, OURS_SET),
-    f"{OURS} global": Code("sph", {**OURS_IN, "scheme": "global"}, _sounds(20, 30, 45)),
-    f"{OURS} block": Code("sph", {**OURS_IN, "scheme": "block"}, _sounds(20, 30, 45)),
+    f"{OURS} global": Code("sph", {**OURS_IN, "scheme": "global"}, ADAPTIVE_SET),
+    f"{OURS} block": Code("sph", {**OURS_IN, "scheme": "block"}, ADAPTIVE_SET),
     "stock sph": Code("sph", {"code": "stock", "courant": 0.12, "skin": 0.4}, _sounds(20, 30, 45)),
     "stock rheo": Code("rheo", {}, _sounds(30)),
     "SPlisHSPlasH WCSPH": Code("wcsph", {"courant": 0.5}, _sounds(20, 30)),

@@ -298,6 +298,16 @@ void FixClothContact::initial_integrate(int)
   counts.passed_on = counts.missed = 0.0;
 }
 
+// of the momentum that stops particles, on all ranks
+
+static double missed_share(const ContactCounts &counts, MPI_Comm world)
+{
+  const double mine[2] = {counts.missed, counts.passed_on};
+  double all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return all[0] > 0.0 ? all[0] / (all[0] + all[1]) : 0.0;
+}
+
 // The cloths have been solved, with their contacts: see ContactRows.
 
 void FixClothContact::post_integrate()
@@ -313,18 +323,11 @@ void FixClothContact::post_integrate()
     any = any || again;
     if (!again || contacts.size() == 1) break;
   }
-  if (any) report_missed();
+  if (any)
+    if (const double share = missed_share(counts, world); share > 0.0)
+      for (FixPBDCloth *cloth : cloths) cloth->missed_in_contact(share);
   if (!excess_velocities.empty()) subtract_excess_velocities();
   store_positions();
-}
-
-void FixClothContact::report_missed()
-{
-  const double mine[2] = {counts.missed, counts.passed_on};
-  double all[2];
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  if (all[0] > 0.0)
-    for (FixPBDCloth *cloth : cloths) cloth->missed_in_contact(all[0] / (all[0] + all[1]));
 }
 
 // Vertices, and particles in contact, end a step with the velocity of its last substep, which is

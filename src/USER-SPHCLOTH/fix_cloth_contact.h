@@ -169,7 +169,6 @@ class FixClothContact : public Fix, public SideSource {
   void check_group();
   void make_contacts();
   void join();
-  void report_missed();
   MeetingRules meeting_rules() const
   {
     return {options.cloth_rules, rules, options.cloth_meets_cloth};

@@ -26,8 +26,7 @@ struct Giving {
   std::vector<int> giving, asleep;
   std::vector<double> given;
 
-  Giving(Precision precision, int every, bool sleepers, double areal = 4.0,
-         bool switched = false) :
+  Giving(Precision precision, int every, bool sleepers, double areal = 4.0, bool switched = false) :
       scene(make(precision, areal)), of(scene), p(of.p)
   {
     const std::size_t n = scene.x.size();

@@ -66,7 +66,8 @@ struct Shares {
 
 Vector3d stirred(const Vector3d &x)
 {
-  return {std::sin(20.0 * x[1]) + 3.0 * std::sin(12.0 * x[0]), std::cos(13.0 * x[2]) + 3.0 * x[1], 2.0 * std::sin(9.0 * x[0])};
+  return {std::sin(20.0 * x[1]) + 3.0 * std::sin(12.0 * x[0]), std::cos(13.0 * x[2]) + 3.0 * x[1],
+          2.0 * std::sin(9.0 * x[0])};
 }
 
 }    // namespace
@@ -79,15 +80,15 @@ BOOST_AUTO_TEST_CASE(shares_are_those_of_a_sum_over_pairs)
     Scene scene = lattice(3, 8, 0.2, 4.0);
     scene.precision = precision;
     const Shares s(scene, stirred);
-    double least = 1.0, most = 0.0;
+    double smallest = 1.0, largest = 0.0;
     for (std::size_t i = 0; i < scene.x.size(); i++) {
       if (scene.type[i] != WATER) continue;
       BOOST_CHECK_SMALL(s.share[i] - s.expected(i), precision == Precision::MIXED ? 1e-4 : 1e-12);
-      least = std::min(least, s.share[i]);
-      most = std::max(most, s.share[i]);
+      smallest = std::min(smallest, s.share[i]);
+      largest = std::max(largest, s.share[i]);
     }
-    BOOST_TEST(least < 0.3);
-    BOOST_TEST(most > 0.7);
+    BOOST_TEST(smallest < 0.3);
+    BOOST_TEST(largest > 0.7);
   }
 }
 
@@ -109,11 +110,11 @@ BOOST_AUTO_TEST_CASE(what_turns_or_shears_has_the_floor_and_what_is_compressed_h
 BOOST_AUTO_TEST_CASE(slow_motion_is_noise_and_rest_is_no_division_by_zero)
 {
   const Scene scene = lattice(3, 8, 0.0);
-  for (const double share : Shares(scene, [](const Vector3d &x) { return Vector3d(-1e-9 * x); }).inside())
+  const auto slow = [](const Vector3d &x) { return Vector3d(-1e-9 * x); };
+  for (const double share : Shares(scene, slow).inside())
     BOOST_TEST(share == FLOOR, boost::test_tools::tolerance(1e-6));
-  for (const double share :
-       Shares(scene, [](const Vector3d &) { return Vector3d(1.0, 2.0, 3.0); }, 0.0).inside())
-    BOOST_TEST(share == FLOOR);
+  const auto together = [](const Vector3d &) { return Vector3d(1.0, 2.0, 3.0); };
+  for (const double share : Shares(scene, together, 0.0).inside()) BOOST_TEST(share == FLOOR);
 }
 
 BOOST_AUTO_TEST_CASE(a_fluid_without_a_switch_takes_part_with_all)

@@ -355,9 +355,9 @@ void FluidEvaluation::find_viscosity_shares(const Particles &p)
 {
   for (int t = 1; t <= atom->ntypes; t++)
     if (is_fluid(t))
-      core->model.viscosity_switch[t] = {type(t).floor, ViscositySwitch::NOISE *
-                                             equation_of_state(t).sound_speed() /
-                                             (0.5 * support(t))};
+      core->model.viscosity_switch[t] = {
+          type(t).floor,
+          ViscositySwitch::NOISE * equation_of_state(t).sound_speed() / (0.5 * support(t))};
   core->viscosity_shares(p, viscosity_shares.data());
   ghosts.send_to_ghosts(GhostData::VISCOSITY);
   core->record_viscosity_shares(p, viscosity_shares.data());

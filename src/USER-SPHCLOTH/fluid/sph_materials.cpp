@@ -294,11 +294,6 @@ bool SPHMaterials::sound_follows() const
                      [](const TypeData &t) { return t.sound.follows(); });
 }
 
-bool SPHMaterials::switches_viscosity() const
-{
-  return std::any_of(types.begin(), types.end(), [](const TypeData &t) { return t.floor < 1.0; });
-}
-
 void SPHMaterials::cache_pair_values()
 {
   forget_pair_values();

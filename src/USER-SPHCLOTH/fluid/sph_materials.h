@@ -12,6 +12,7 @@
 #include "core/sph/sound_target.h"
 #include "core/sph/wall_impact.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,10 @@ class SPHMaterials : protected Pointers {
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
   const sphcloth::Tait &equation_of_state(int i) const { return types[i].eos; }
   bool sound_follows() const;    // that of any fluid
-  bool switches_viscosity() const;    // that of any fluid
+  bool switches_viscosity() const    // that of any fluid
+  {
+    return std::any_of(types.begin(), types.end(), [](const TypeData &t) { return t.floor < 1.0; });
+  }
   // is the volume of its particles that which they share among themselves?
   bool is_measured(int i) const { return is_boundary(i) && !(types[i].volume > 0.0); }
   bool extrapolates(int i) const

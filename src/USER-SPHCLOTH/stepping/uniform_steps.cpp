@@ -59,9 +59,8 @@ void UniformSteps::find_stable_step()
     mine.tighten(limit.dt, limit.by);
   }
   const StepLimit tightest = parts.control.tightest_of_ranks(mine);
-  parts.control.watch.found(
-      tightest, parts.control.owner_of(tightest, mine, particle),
-      tightest.dt > LONGEST_UNDER_PRESSURE * parts.limits.shortest_sound_time());
+  const bool in_flight = tightest.dt > LONGEST_UNDER_PRESSURE * parts.limits.shortest_sound_time();
+  parts.control.watch.found(tightest, parts.control.owner_of(tightest, mine, particle), in_flight);
 }
 
 StepLimit UniformSteps::tightest_limit()

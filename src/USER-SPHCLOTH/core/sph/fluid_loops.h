@@ -46,7 +46,11 @@ template <class K, class P> class FluidLoops : public Fluid {
     all_density_gradients(p, gradient);
   }
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
-  void diffuse(const Particles &, const Diffusion &) override;
+  void diffuse(const Particles &p, const Diffusion &diffusion) override
+  {
+    records.record_gradients(diffusion.gradient, diffusion.since, p.n_all, touched());
+    diffuse_all(p, diffusion);
+  }
   void smooth_densities(const Particles &, double *smooth) override;
   void boundary_pressures(const Particles &, int type, double *p_over_rho2) override;
   void record(const Particles &p) override
@@ -57,7 +61,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   {
     all_viscosity_shares(p, share);
   }
-  void record_viscosity_shares(const Particles &, const double *share) override;
+  void record_viscosity_shares(const Particles &p, const double *share) override
+  {
+    records.record_shares(share, p.n_all, touched());
+  }
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -163,8 +170,6 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   // viscosity_loops.h
   void all_viscosity_shares(const Particles &, double *share);
-  template <bool FROM_BOUNDARY>
-  void add_velocities(const Neighborhood &, Columns &, VelocitySums &) const;
 
   // stiffness_loops.h
   void all_stiffness(const Particles &, const Selection &, Stiffness *);

@@ -158,13 +158,6 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_density_rates(const Particles &
   }
 }
 
-template <class K, class P>
-void FluidLoops<K, P>::diffuse(const Particles &p, const Diffusion &diffusion)
-{
-  records.record_gradients(diffusion.gradient, diffusion.since, p.n_all, touched());
-  diffuse_all(p, diffusion);
-}
-
 // Each pair exchanges, in double precision, one volume.  It does so once: where both partners are
 // active each takes its own part.
 

@@ -14,34 +14,32 @@ namespace sphcloth {
 
 template <class K, class P> struct FluidLoops<K, P>::VelocitySums {
   LaneSum<LANES> divergence, x, y, z;
-};
 
-template <class K, class P>
-template <bool FROM_BOUNDARY>
-SPHCLOTH_INLINE void FluidLoops<K, P>::add_velocities(const Neighborhood &of, Columns &c,
-                                                      VelocitySums &sums) const
-{
-  const Terms &t = of.terms;
-  const typename Records::Motion motion = records.motions[of.i];
-  const double *mass = nullptr;
-  records.for_neighbors(
-      of, c,
-      [&](int from) SPHCLOTH_LAMBDA {
-        records.load(c, of.near.of + from);
-        if (!FROM_BOUNDARY) mass = of.masses.group(from);
-      },
-      [&](int k, Separation r) SPHCLOTH_LAMBDA {
-        const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
-        const Real slope = t.f * K::slope_over_q(std::sqrt(r.sq()) * t.inv_support);
-        const double mass_or_volume = FROM_BOUNDARY ? static_cast<double>(c.density_or_volume[k])
-                                                    : mass[k];
-        const double weight = mass_or_volume * (slope * (FROM_BOUNDARY ? t.rho0 : t.rho0_ratio));
-        sums.divergence.of[k] += weight * (du * r.x + dv * r.y + dw * r.z);
-        sums.x.of[k] += weight * (dv * r.z - dw * r.y);
-        sums.y.of[k] += weight * (dw * r.x - du * r.z);
-        sums.z.of[k] += weight * (du * r.y - dv * r.x);
-      });
-}
+  template <bool FROM_BOUNDARY>
+  SPHCLOTH_INLINE void add(const Records &records, const Neighborhood &of, Columns &c)
+  {
+    const Terms &t = of.terms;
+    const typename Records::Motion motion = records.motions[of.i];
+    const double *mass = nullptr;
+    records.for_neighbors(
+        of, c,
+        [&](int from) SPHCLOTH_LAMBDA {
+          records.load(c, of.near.of + from);
+          if (!FROM_BOUNDARY) mass = of.masses.group(from);
+        },
+        [&](int k, Separation r) SPHCLOTH_LAMBDA {
+          const Real du = motion.u - c.u[k], dv = motion.v - c.v[k], dw = motion.w - c.w[k];
+          const Real slope = t.f * K::slope_over_q(std::sqrt(r.sq()) * t.inv_support);
+          const double mass_or_volume = FROM_BOUNDARY ? static_cast<double>(c.density_or_volume[k])
+                                                      : mass[k];
+          const double weight = mass_or_volume * (slope * (FROM_BOUNDARY ? t.rho0 : t.rho0_ratio));
+          divergence.of[k] += weight * (du * r.x + dv * r.y + dw * r.z);
+          x.of[k] += weight * (dv * r.z - dw * r.y);
+          y.of[k] += weight * (dw * r.x - du * r.z);
+          z.of[k] += weight * (du * r.y - dv * r.x);
+        });
+  }
+};
 
 template <class K, class P>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_viscosity_shares(const Particles &p, double *share)
@@ -59,9 +57,9 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_viscosity_shares(const Particle
         const NeighborSpan near = lists(slot, other);
         if (near.n == 0) continue;
         if (is_fluid(other))
-          add_velocities<false>({i, near, pair(t, other), masses(p, near, other)}, c, sums);
+          sums.template add<false>(records, {i, near, pair(t, other), masses(p, near, other)}, c);
         else
-          add_velocities<true>({i, near, pair(t, other), {}}, c, sums);
+          sums.template add<true>(records, {i, near, pair(t, other), {}}, c);
       }
       const double x = sums.x.total(), y = sums.y.total(), z = sums.z.total();
       const double unit = f_unit / p.rho[i];
@@ -70,12 +68,6 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_viscosity_shares(const Particle
       share[i] = its.share(divergence, curl);
     }
   }
-}
-
-template <class K, class P>
-void FluidLoops<K, P>::record_viscosity_shares(const Particles &p, const double *share)
-{
-  records.record_shares(share, p.n_all, touched());
 }
 
 }    // namespace sphcloth

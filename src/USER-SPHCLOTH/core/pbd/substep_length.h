@@ -119,9 +119,9 @@ class SubstepLength {
   // and the smaller the parts that it has to pass on are, the less of them is missing.
   void refine_for_contact()
   {
-    constexpr double MISSED = 0.5, GROWS = 1.3, MOST = 10.0;
+    constexpr double MISSED = 0.5, GROWS = 1.3, LARGEST = 10.0;
     state.refined = state.missed > MISSED
-        ? std::min(MOST, GROWS * state.refined)
+        ? std::min(LARGEST, GROWS * state.refined)
         : std::max(1.0, state.refined / std::pow(CHANGE, of_longest_step));
     state.missed = 0.0;
   }

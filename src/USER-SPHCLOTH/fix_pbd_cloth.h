@@ -90,8 +90,12 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   // their solvers differ.
   static void solve_together(const std::vector<FixPBDCloth *> &);
 
-  // share of the impulses in the contacts of the last step that the solver did not pass on
-  void missed_in_contact(double share) { substepping.missed_in_contact(share); }
+  // Share of the impulses in the contacts of the last step that the solver did not pass on.  Where
+  // masses are scaled, pressure stops what comes, and springs between it and the vertices.
+  void missed_in_contact(double share)
+  {
+    if (!scaled.on()) substepping.missed_in_contact(share);
+  }
 
   // rest lengths and angles of the edges and hinges of the topology
   const ClothConstraints &rest() const { return constraints; }

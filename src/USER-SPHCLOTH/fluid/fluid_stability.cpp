@@ -54,13 +54,21 @@ const LatticeModes &FluidStability::modes(int type, double mass)
   return lattice.modes;
 }
 
+double FluidStability::find_sound(int i) const { return find_sound(i, atom->rho[i]); }
+
 // In free flight that of the particle once it is pressed.
 
-double FluidStability::find_sound(int i) const
+double FluidStability::find_sound_under_pressure(int i) const
+{
+  if (materials.options.tension) return find_sound(i);
+  const double rho0 = materials.equation_of_state(atom->type[i]).rho0;
+  return find_sound(i, std::max(atom->rho[i], rho0));
+}
+
+double FluidStability::find_sound(int i, double rho) const
 {
   const int type = atom->type[i];
   const Tait &eos = materials.equation_of_state(type);
-  const double rho = materials.options.tension ? atom->rho[i] : std::max(atom->rho[i], eos.rho0);
   const double sound =
       eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
   // gradients are those of the density sum
@@ -77,7 +85,7 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
   core.for_fluid(due, [&](int i, int t) {
     Stiffness &s = stiffness[i];
     for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
-    const double mass = atom_mass(atom, i), sound = sounds[i];
+    const double mass = atom_mass(atom, i), sound = find_sound_under_pressure(i);
     const LatticeModes &of_lattice = modes(t, mass);
     found[i].fluid_sq = sound * sound * s.largest(mass, of_lattice.sound);
     found[i].friction = of_lattice.friction * s.friction;

@@ -80,7 +80,9 @@ class FluidStability : protected Pointers {
   bool is_near_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &, int i) const;
 
   const Frequencies &operator[](int i) const { return found[i]; }
-  double find_sound(int i) const;    // s_k of fluid
+  double find_sound(int i) const;
+  double find_sound(int i, double rho) const;
+  double find_sound_under_pressure(int i) const;    // s_k of fluid
   double *pack(int i, double *end) const;
   const double *unpack(int i, const double *from);
 

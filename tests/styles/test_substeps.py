@@ -155,19 +155,25 @@ def test_ranks_take_the_same_substeps(tmp_path, ranks):
     assert np.allclose(one, more, rtol=1e-9, atol=1e-12)
 
 
-def test_a_restart_goes_on_with_the_same_substeps(tmp_path):
+def continued(tmp_path, script_of, steps, more):
+    """Rows of a run and of one that goes on from a restart file, behind `steps` of both."""
     with instance() as lmp:
-        lmp.commands_string(loaded(tmp_path, "log.a") + f"run 70\nwrite_restart {tmp_path}/half\n")
-        lmp.command("run 50")
+        lmp.commands_string(
+            f"{script_of(tmp_path, 'log.a')}run {steps}\nwrite_restart {tmp_path}/half\nrun {more}"
+        )
         there = by_id(lmp, "x")
-    script = loaded(tmp_path, "log.b")
+    script = script_of(tmp_path, "log.b")
     begin = script[: script.index("region box")]
     go_on = script[script.index("pair_style") :]
     with instance() as lmp:
-        lmp.commands_string(begin + f"read_restart {tmp_path}/half\n" + go_on + "run 50\n")
+        lmp.commands_string(f"{begin}read_restart {tmp_path}/half\n{go_on}run {more}\n")
         assert np.array_equal(by_id(lmp, "x"), there)
-    first, second = rows(tmp_path / "log.a"), rows(tmp_path / "log.b")
-    assert np.array_equal(first[-50:, 2], second[-50:, 2])
+    return (rows(tmp_path / name)[-more:] for name in ("log.a", "log.b"))
+
+
+def test_a_restart_goes_on_with_the_same_substeps(tmp_path):
+    first, second = continued(tmp_path, loaded, 70, 50)
+    assert np.array_equal(first[:, 2], second[:, 2])
 
 
 def test_a_strain_that_no_substep_reaches_is_said(tmp_path):
@@ -296,19 +302,9 @@ def test_ranks_take_the_same_substeps_for_contact(tmp_path, ranks):
 
 
 def test_a_restart_goes_on_with_the_substeps_for_contact(tmp_path):
-    script = fallen(tmp_path, "log.a")
-    with instance() as lmp:
-        lmp.commands_string(script + f"run 40\nwrite_restart {tmp_path}/half\nrun 20")
-        there = by_id(lmp, "x")
-    begin = script[: script.index("region box")]
-    go_on = fallen(tmp_path, "log.b")
-    go_on = go_on[go_on.index("pair_style") :]
-    with instance() as lmp:
-        lmp.commands_string(begin + f"read_restart {tmp_path}/half\n" + go_on + "run 20\n")
-        assert np.array_equal(by_id(lmp, "x"), there)
-    first, second = rows(tmp_path / "log.a"), rows(tmp_path / "log.b")
-    assert np.array_equal(first[-20:, 2], second[-20:, 2])
-    assert first[-20, 2] > 20
+    first, second = continued(tmp_path, fallen, 40, 20)
+    assert np.array_equal(first[:, 2], second[:, 2])
+    assert first[0, 2] > 20
 
 
 def bent(fix):

@@ -16,8 +16,7 @@ from scenes import (
     sph_tait,
 )
 
-N = 20
-SPACING = 1 / N
+SPACING = 0.05
 FLOWS = {"shear": "0 v_wave 0", "sound": "v_wave 0 0"}
 
 

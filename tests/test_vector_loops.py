@@ -43,7 +43,8 @@ UNITS = {
         CORE_TESTS / "test_sheet_layers.cpp",
     ),
     "core/geometry/hull_columns.h": (CORE_TESTS / "test_hull_columns.cpp",),
-    "core/contact/sheet_layers.h": (CORE_TESTS / "test_sheet_layers.cpp",),
+    "core/contact/center_distances.h": (CORE_TESTS / "test_center_distances.cpp",),
+    "core/contact/seen_triangles.h": (CORE_TESTS / "test_seen_triangles.cpp",),
 }
 # a function inside such a loop, in which the compiler's report places it
 INLINED = {"core/timestep/step_limits.h": "StepState operator[](int k) const"}

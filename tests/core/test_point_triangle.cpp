@@ -4,6 +4,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <array>
 #include <random>
 
 using namespace sphcloth;
@@ -39,6 +41,24 @@ BOOST_AUTO_TEST_CASE(no_point_of_a_triangle_is_nearer_than_the_closest)
       }
       BOOST_CHECK((p - a - r * (b - a) - s * (c - a)).norm() >= distance - 1e-12);
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(corners_may_lie_in_one_place)
+{
+  std::mt19937 generator(8);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const auto vec = [&] { return Vec3(u(generator), u(generator), u(generator)); };
+  for (int k = 0; k < 500; k++) {
+    const Vec3 a = vec(), b = vec(), p = 2.0 * vec();
+    const double on = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0),
+                 of_edge = (p - a - on * (b - a)).norm();
+    Vec3 weight;
+    for (const auto &[i, j, l] : {std::array<Vec3, 3>{a, a, b}, {a, b, a}, {b, a, a}}) {
+      BOOST_REQUIRE_SMALL(distance_vector(p, i, j, l, weight).norm() - of_edge, 1e-12);
+      BOOST_REQUIRE(weight.minCoeff() >= 0.0);
+    }
+    BOOST_REQUIRE_SMALL(distance_vector(p, a, a, a, weight).norm() - (p - a).norm(), 1e-14);
   }
 }
 

@@ -136,8 +136,7 @@ BOOST_AUTO_TEST_CASE(the_quick_test_misses_no_layer)
     grid.build({disc_around(t[0], t[1], t[2])}, 1.0);
     const Vec3 p = 0.3 * point(), foot = p + 0.1 * point(), normal = Vec3(0, 0.1, 1).normalized();
     bool within = false;
-    grid.nearest(p, 1.0, 0.0, [](int) {});
-    const bool may = !may_be_other_layers(grid, 1.0, foot, normal, 0.05).empty();
+    const bool may = !may_be_other_layers(grid, p, 1.0, foot, normal, 0.05).empty();
     grid.within(p, 1.0, [&](int) { within = true; });
     quick += may;
     if (!within || !is_another_layer(foot, normal, t, 0.05)) continue;

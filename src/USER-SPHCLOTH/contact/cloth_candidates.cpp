@@ -38,6 +38,39 @@ void ClothCandidates::update(double max_approach)
   if (2 * unused > pairs.size()) drop_unused();
 }
 
+// Those of a list that may have come near since they were measured: triangles are in front of
+// edges.
+
+void ClothCandidates::measure_centers(const PatchPair &both, double reach, double path)
+{
+  measured.resize(both.end - both.begin);
+  int n = 0;
+  for (int p = both.begin; p < both.end; p++) {
+    measured[n] = p;
+    n += !distances[p].is_beyond(reach, path);
+  }
+  measured.resize(n);
+  measured_slots.assign(whole_groups(n) + LANES, {0, 0, 0, 0});
+  at_least.resize(measured_slots.size());
+  for (int k = 0; k < n; k++) measured_slots[k] = pairs[measured[k]].slots;
+  const auto edge = std::partition_point(measured.begin(), measured.end(), [this](int p) {
+    return pairs[p].kind == PairKind::POINT_TRIANGLE;
+  });
+  const int n_triangles = static_cast<int>(edge - measured.begin());
+  const auto measure = [this](PairKind kind, int first, int end) {
+    center_distances.measure(kind, &measured_slots[first], end - first, &at_least[first]);
+  };
+  measure(PairKind::POINT_TRIANGLE, 0, n_triangles);
+  measure(PairKind::EDGE_EDGE, n_triangles, n);
+}
+
+double ClothCandidates::nearest_of(const PatchPair &both) const
+{
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int p = both.begin; p < both.end; p++) nearest = std::min(nearest, distances[p].last);
+  return nearest;
+}
+
 void ClothCandidates::measure()
 {
   patches.measure(mesh.start, mesh.end);
@@ -279,7 +312,9 @@ bool ClothCandidates::are_joined(const ContactPair &pair, double distance) const
 
 double ClothCandidates::memory_usage() const
 {
-  return patches.bytes() + grid.bytes() + triangle_columns.bytes() + edge_columns.bytes() +
-      bytes_of(pairs, pairs_before, distances, distances_before, near, near_before, boxes, prepared,
-               first_triangle, triangles_of, first_edge, edges_of);
+  return patches.bytes() + center_distances.bytes() + grid.bytes() + triangle_columns.bytes() +
+      edge_columns.bytes() +
+      bytes_of(measured, measured_slots, at_least, pairs, pairs_before, distances, distances_before,
+               near, near_before, boxes, prepared, first_triangle, triangles_of, first_edge,
+               edges_of);
 }

@@ -15,6 +15,7 @@
 #include "contact/contact_pair.h"
 #include "contact/mesh_edges.h"
 #include "contact/moving_triangles.h"
+#include "core/contact/center_distances.h"
 #include "core/contact/mesh_patches.h"
 #include "core/geometry/box_grid.h"
 #include "core/geometry/hull_columns.h"
@@ -49,28 +50,28 @@ class ClothCandidates : protected Pointers {
   // points at the start of the step).
   template <class Visit> void for_near(double reach, Visit visit)
   {
+    if (near.empty()) return;
+    center_distances.load(mesh.start);
     for (PatchPair &both : near) {
-      const double reach_then = reach + both.approach, path_then = reach + both.path + both.in_step;
+      const double path_then = reach + both.path + both.in_step;
       if (both.nearest > path_then) continue;
-      both.nearest = std::numeric_limits<double>::infinity();
       const double reach_in_step = reach + both.in_step;
-      for (int n = both.begin; n < both.end; n++) {
-        if (!distances[n].is_beyond(reach_then, path_then)) {
-          const ContactPair &pair = pairs[n];
-          const std::array<int, 4> &s = pair.slots;
-          const sphcloth::FourPoints x{mesh.start[s[0]], mesh.start[s[1]], mesh.start[s[2]],
-                                       mesh.start[s[3]]};
-          double distance = distance_along_centers(pair.kind, x);
-          if (distance <= reach_in_step) {
-            const sphcloth::ClosestPoints at = closest_points(pair.kind, x);
-            distance = at.vector.norm();
-            const double room = distance - reach;
-            if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
-          }
-          distances[n].measure(distance, both.path);
+      measure_centers(both, reach + both.approach, path_then);
+      for (std::size_t k = 0; k < measured.size(); k++) {
+        const ContactPair &pair = pairs[measured[k]];
+        double distance = at_least[k];
+        if (distance <= reach_in_step) {
+          const sphcloth::ClosestPoints at =
+              closest_points(pair.kind,
+                             {mesh.start[pair.slots[0]], mesh.start[pair.slots[1]],
+                              mesh.start[pair.slots[2]], mesh.start[pair.slots[3]]});
+          distance = at.vector.norm();
+          const double room = distance - reach;
+          if (room <= 0.0 || (room <= limit && room <= longest_approach(pair))) visit(pair, at);
         }
-        both.nearest = std::min(both.nearest, static_cast<double>(distances[n].last));
+        distances[measured[k]].measure(distance, both.path);
       }
+      both.nearest = nearest_of(both);
     }
   }
   double max_reach() const;
@@ -111,6 +112,11 @@ class ClothCandidates : protected Pointers {
   };
 
   sphcloth::MeshPatches patches;
+  // of a patch pair: the pairs that are measured, their slots, and how near they are at least
+  sphcloth::CenterDistances center_distances;
+  std::vector<int> measured;
+  std::vector<std::array<int, 4>> measured_slots;
+  std::vector<double> at_least;
   std::vector<ContactPair> pairs, pairs_before;
   std::vector<Distances> distances, distances_before;    // of these
   std::vector<PatchPair> near, near_before;
@@ -139,6 +145,8 @@ class ClothCandidates : protected Pointers {
     return std::sqrt(longest_sq);
   }
   Vec3 stride_of(int slot) const { return mesh.end[slot] - mesh.start[slot]; }
+  void measure_centers(const PatchPair &, double reach, double path);
+  double nearest_of(const PatchPair &) const;
   double margin() const;
   void measure();
   void measure(PatchPair &) const;

@@ -78,7 +78,7 @@ bool SheetSides::sees_another_layer(const Vec3 &p, const Nearest &at, double cut
 {
   const Vec3 foot = p - at.from_sheet, &normal = discs[at.triangle].normal;
   const double min_gap = MIN_GAP * cutoff;
-  const auto &others = may_be_other_layers(discs.grid, cutoff, foot, normal, min_gap);
+  const auto &others = may_be_other_layers(discs.grid, p, cutoff, foot, normal, min_gap);
   return std::any_of(others.begin(), others.end(), [&](int t) {
     const auto &[v0, v1, v2] = mesh.triangles[t];
     const Vec3 &a = mesh.end[v0], &b = mesh.end[v1], &c = mesh.end[v2];

@@ -46,7 +46,8 @@ inline Vec3 nearest_point(const Vec3 &p, const Vec3 &a, const Vec3 &b, const Vec
   if (d3 >= 0.0 && d4 <= d3) return {0.0, 1.0, 0.0};
   if (d6 >= 0.0 && d5 <= d6) return {0.0, 0.0, 1.0};
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return {d3 / (d3 - d1), d1 / (d1 - d3), 0.0};
+  // two corners in one place are no edge
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3) return {d3 / (d3 - d1), d1 / (d1 - d3), 0.0};
   if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {d6 / (d6 - d2), 0.0, d2 / (d2 - d6)};
   if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
     const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));

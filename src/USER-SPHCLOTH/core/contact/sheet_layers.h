@@ -11,10 +11,10 @@
 #define SPHCLOTH_CORE_CONTACT_SHEET_LAYERS_H
 
 #include "core/contact/edge_through_triangle.h"
+#include "core/contact/seen_triangles.h"
 #include "core/contact/sheet_sides.h"
 #include "core/geometry/disc_grid.h"
 #include "core/util/bytes.h"
-#include "core/util/simd.h"
 
 #include <algorithm>
 #include <array>
@@ -61,14 +61,14 @@ inline bool is_another_layer(const Vec3 &foot, const Vec3 &normal,
   return height > limit && std::fabs(normal.dot(to)) > limit;
 }
 
-// which of the last query of a grid may be: quick, and none is missed
+// which of those that are near p may be: quick, and none is missed
 
-inline const std::vector<int> &may_be_other_layers(DiscGrid &grid, double max_distance,
-                                                   const Vec3 &foot, const Vec3 &normal,
-                                                   double min_gap)
+inline const std::vector<int> &may_be_other_layers(DiscGrid &grid, const Vec3 &p,
+                                                   double max_distance, const Vec3 &foot,
+                                                   const Vec3 &normal, double min_gap)
 {
   constexpr double ROOM = 1e-9;    // for round-off
-  return grid.beside_plane(max_distance, foot, normal, COS_BEND + ROOM, min_gap * (1.0 - ROOM));
+  return grid.beside_plane(p, max_distance, foot, normal, COS_BEND + ROOM, min_gap * (1.0 - ROOM));
 }
 
 class SheetLayers : public Parting {
@@ -107,49 +107,10 @@ class SheetLayers : public Parting {
 
   double bytes() const
   {
-    return grid.bytes() + bytes_of(to_sheet, triangles, at_build, discs, seen.triangle);
+    return grid.bytes() + seen.bytes() + bytes_of(to_sheet, triangles, at_build, discs);
   }
 
  private:
-  // Discs around triangles near a particle, column by column, whole groups: centers as seen from
-  // there, normals, squares of radii.
-  struct Seen {
-    AlignedVector<double> x, y, z, nx, ny, nz, radius_sq;
-    std::vector<int> triangle;
-
-    void clear()
-    {
-      for (auto *column : {&x, &y, &z, &nx, &ny, &nz, &radius_sq}) column->clear();
-      triangle.clear();
-    }
-    void add(const Vec3 &center, const Vec3 &normal, double r_sq)
-    {
-      x.push_back(center[0]);
-      y.push_back(center[1]);
-      z.push_back(center[2]);
-      nx.push_back(normal[0]);
-      ny.push_back(normal[1]);
-      nz.push_back(normal[2]);
-      radius_sq.push_back(r_sq);
-    }
-    // may a line from the particle cross those of a group that begins at n?  1 for each that it may
-    SPHCLOTH_INLINE bool may_cross(std::size_t n, double lx, double ly, double lz,
-                                   double *each) const
-    {
-      double count = 0.0;
-#pragma omp simd reduction(+ : count)
-      for (std::size_t k = n; k < n + LANES; k++) {
-        const double height = nx[k] * x[k] + ny[k] * y[k] + nz[k] * z[k];
-        const double by = nx[k] * lx + ny[k] * ly + nz[k] * lz, share = height / by;
-        const double dx = share * lx - x[k], dy = share * ly - y[k], dz = share * lz - z[k];
-        const bool inside = dx * dx + dy * dy + dz * dz <= radius_sq[k];
-        each[k - n] = inside & (share >= 0.0) & (share <= 1.0) ? 1.0 : 0.0;
-        count += each[k - n];
-      }
-      return count > 0.0;
-    }
-  };
-
   double max_distance = 0.0;
   std::vector<Vec3> to_sheet;
   std::vector<Triangle> triangles;
@@ -157,7 +118,7 @@ class SheetLayers : public Parting {
   const double *positions = nullptr;
   std::vector<Disc> discs;    // with their grid, once a line is looked at
   DiscGrid grid;
-  Seen seen;    // from the particle whose lines are looked at
+  SeenTriangles seen;    // from the particle whose lines are looked at
   int particle = -1;
 
   Vec3 at(int i) const { return Eigen::Map<const Vec3>(positions + 3 * i); }
@@ -176,20 +137,9 @@ class SheetLayers : public Parting {
     // where a sheet is between, both are nearer to it than to each other
     if (to_sheet[i].norm() + to_sheet[j].norm() > (1.0 + SEAM) * line.norm()) return false;
     if (i != particle) look_from(i);
-    return any_crosses(p, q);
-  }
-
-  SPHCLOTH_MULTIVERSION bool any_crosses(const Vec3 &p, const Vec3 &q) const
-  {
-    const double lx = q[0] - p[0], ly = q[1] - p[1], lz = q[2] - p[2];
-    alignas(64) double each[LANES];
-    for (std::size_t n = 0; n < seen.x.size(); n += LANES) {
-      if (!seen.may_cross(n, lx, ly, lz, each)) continue;
-      for (std::size_t k = n; k < std::min(n + LANES, seen.triangle.size()); k++) {
-        if (each[k - n] == 0.0) continue;
-        const auto &[a, b, c] = triangles[seen.triangle[k]];
-        if (crosses(p, q, a, b, c)) return true;
-      }
+    for (const int t : seen.may_cross(line)) {
+      const auto &[a, b, c] = triangles[t];
+      if (crosses(p, q, a, b, c)) return true;
     }
     return false;
   }
@@ -205,12 +155,10 @@ class SheetLayers : public Parting {
     seen.clear();
     const Vec3 p = at(i);
     grid.within(p, max_distance, [&](int t) {
-      const Disc &disc = discs[t];
-      seen.add(disc.center - p, disc.normal, (1.0 + SEAM) * disc.radius * disc.radius);
-      seen.triangle.push_back(t);
+      const auto &[a, b, c] = triangles[t];
+      seen.add(t, a - p, b - p, c - p);
     });
-    // a line crosses no disc without a normal
-    while (seen.x.size() % LANES != 0) seen.add(Vec3::Zero(), Vec3::Zero(), -1.0);
+    seen.fill_up();
   }
 };
 

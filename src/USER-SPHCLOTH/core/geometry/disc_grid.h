@@ -60,11 +60,10 @@ class DiscGrid {
 
   template <class Visit> void within(const Eigen::Vector3d &p, double max_distance, Visit visit)
   {
+    found.clear();
     for (Size &size : sizes)
-      if (size.query(p, max_distance)) {
-        size.measure(p, std::numeric_limits<double>::infinity());
-        size.visit_near(p, max_distance, visit);
-      }
+      if (size.query(p, max_distance)) size.add_within(p, max_distance, found);
+    for (const int d : found) visit(d);
   }
 
   // no disc is nearer to p than this, which is 0 or below inside their bounds
@@ -84,21 +83,21 @@ class DiscGrid {
   {
     double min_sq = max_distance * max_distance;
     for (Size &size : sizes)
-      if (size.query(p, max_distance)) min_sq = size.measure(p, min_sq);
-    const double max = std::min(max_distance, std::sqrt(min_sq) + slack);
-    for (Size &size : sizes) size.visit_near(p, max, visit);
+      if (size.query(p, max_distance)) min_sq = size.min_distance_sq(p, min_sq);
+    within(p, std::min(max_distance, std::sqrt(min_sq) + slack), visit);
   }
 
-  // Behind a query, with the same distance: discs that may not lie along a plane, since the cosine
-  // between the normals is smaller than `min_cos`, or since they are farther off than `min_gap` and
-  // higher than aside, as seen from `origin`.  A few more may be among them.
-  const std::vector<int> &beside_plane(double max_distance, const Eigen::Vector3d &origin,
-                                       const Eigen::Vector3d &normal, double min_cos,
-                                       double min_gap)
+  // Of discs that may be within `max_distance` of p those that may not lie along a plane, since the
+  // cosine between the normals is smaller than `min_cos`, or since they are farther off than
+  // `min_gap` and higher than aside, as seen from `origin`.
+  const std::vector<int> &beside_plane(const Eigen::Vector3d &p, double max_distance,
+                                       const Eigen::Vector3d &origin, const Eigen::Vector3d &normal,
+                                       double min_cos, double min_gap)
   {
     found.clear();
-    for (const Size &size : sizes)
-      size.add_beside_plane(max_distance, origin, normal, min_cos, min_gap, found);
+    for (Size &size : sizes)
+      if (size.query(p, max_distance))
+        size.add_beside_plane(p, max_distance, origin, normal, min_cos, min_gap, found);
     return found;
   }
 
@@ -106,7 +105,7 @@ class DiscGrid {
   {
     double sum = bytes_of(found);
     for (const Size &s : sizes)
-      sum += bytes_of(s.members, s.first, s.items, s.x, s.y, s.z, s.radius, s.disc, s.distance_sq) +
+      sum += bytes_of(s.members, s.first, s.items, s.x, s.y, s.z, s.radius, s.room) +
           bytes_of(s.across[0], s.across[1], s.across[2]);
     return sum;
   }
@@ -119,12 +118,9 @@ class DiscGrid {
     CellGrid grid;
     double largest = 0.0;    // radius and room
     std::vector<int> first, items;
-    std::vector<double> x, y, z, radius;    // in the order of the cells
+    std::vector<double> x, y, z, radius, room;    // in the order of the cells
     std::array<std::vector<double>, 3> across;    // normals
-    std::vector<Disc> disc;
-    // of the last query: the cells, if any, and how far the centers in them are
-    CellGrid::Cell lo, hi;
-    std::vector<double> distance_sq;
+    CellGrid::Cell lo, hi;    // of the last query
 
     void sort(const std::vector<Disc> &discs, double reach)
     {
@@ -146,33 +142,31 @@ class DiscGrid {
       };
       sort_into_buckets(grid.size(), for_each, first, items);
       for (std::vector<double> *column :
-           {&x, &y, &z, &distance_sq, &radius, &across[0], &across[1], &across[2]})
+           {&x, &y, &z, &radius, &room, &across[0], &across[1], &across[2]})
         column->assign(items.size() + LANES, std::numeric_limits<double>::infinity());
-      disc.resize(items.size());
       for (std::size_t n = 0; n < items.size(); n++) {
-        disc[n] = discs[items[n]];
-        x[n] = disc[n].center[0];
-        y[n] = disc[n].center[1];
-        z[n] = disc[n].center[2];
-        radius[n] = disc[n].radius;
-        for (int d = 0; d < 3; d++) across[d][n] = disc[n].normal[d];
+        const Disc &disc = discs[items[n]];
+        x[n] = disc.center[0];
+        y[n] = disc.center[1];
+        z[n] = disc.center[2];
+        radius[n] = disc.radius;
+        room[n] = disc.room;
+        for (int d = 0; d < 3; d++) across[d][n] = disc.normal[d];
       }
     }
 
     // Which cells hold the centers of those within `max_distance`?  None: false.
     bool query(const Eigen::Vector3d &p, double max_distance)
     {
-      const double room = max_distance + largest;
-      lo = CellGrid::Cell::Zero();
-      hi = CellGrid::Cell::Constant(-1);
-      if (grid.empty() || !(grid.bounds.squaredExteriorDistance(p) <= room * room)) return false;
-      lo = grid.of(p - Eigen::Vector3d::Constant(room));
-      hi = grid.of(p + Eigen::Vector3d::Constant(room));
+      const double reach = max_distance + largest;
+      if (grid.empty() || !(grid.bounds.squaredExteriorDistance(p) <= reach * reach)) return false;
+      lo = grid.of(p - Eigen::Vector3d::Constant(reach));
+      hi = grid.of(p + Eigen::Vector3d::Constant(reach));
       return true;
     }
 
     // the minimum distance of a center, squared, if it is below what is known
-    SPHCLOTH_MULTIVERSION double measure(const Eigen::Vector3d &p, double known)
+    SPHCLOTH_MULTIVERSION double min_distance_sq(const Eigen::Vector3d &p, double known) const
     {
       const double px = p[0], py = p[1], pz = p[2];
       double min_sq[LANES];    // lane by lane, so that none waits for the one before
@@ -181,32 +175,49 @@ class DiscGrid {
         for (int j = lo[1]; j <= hi[1]; j++)
           for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
             const double *cx = &x[n], *cy = &y[n], *cz = &z[n];
-            double *to = &distance_sq[n];
 #pragma omp simd
             for (int l = 0; l < LANES; l++) {
               const double dx = px - cx[l], dy = py - cy[l], dz = pz - cz[l];
-              to[l] = dx * dx + dy * dy + dz * dz;
-              min_sq[l] = to[l] < min_sq[l] ? to[l] : min_sq[l];
+              const double sq = dx * dx + dy * dy + dz * dz;
+              min_sq[l] = sq < min_sq[l] ? sq : min_sq[l];
             }
           }
       return *std::min_element(min_sq, min_sq + LANES);
     }
 
-    template <class Visit>
-    void visit_near(const Eigen::Vector3d &p, double max_distance, Visit visit) const
+    SPHCLOTH_MULTIVERSION void add_within(const Eigen::Vector3d &p, double max_distance,
+                                          std::vector<int> &to) const
     {
-      const double room = max_distance + largest;
+      const double px = p[0], py = p[1], pz = p[2];
       for (int k = lo[2]; k <= hi[2]; k++)
         for (int j = lo[1]; j <= hi[1]; j++)
-          for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n++)
-            if (distance_sq[n] <= room * room && reaches(n, p, max_distance)) visit(items[n]);
+          for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
+            const double *cx = &x[n], *cy = &y[n], *cz = &z[n], *r = &radius[n], *more = &room[n];
+            const double *nx = &across[0][n], *ny = &across[1][n], *nz = &across[2][n];
+            double near[LANES], any = 0.0;
+#pragma omp simd reduction(+ : any)
+            for (int l = 0; l < LANES; l++) {
+              const double dx = px - cx[l], dy = py - cy[l], dz = pz - cz[l];
+              const double height = nx[l] * dx + ny[l] * dy + nz[l] * dz;
+              const double height_sq = height * height;
+              const double in_plane_sq = dx * dx + dy * dy + dz * dz - height_sq;
+              const double in_plane = std::sqrt(in_plane_sq > 0.0 ? in_plane_sq : 0.0);
+              const double aside = in_plane > r[l] ? in_plane - r[l] : 0.0;
+              const double max = max_distance + more[l];
+              near[l] = height_sq + aside * aside <= max * max ? 1.0 : 0.0;
+              any += near[l];
+            }
+            if (any > 0.0) add_lanes(near, n, end, to);
+          }
     }
 
-    SPHCLOTH_MULTIVERSION void add_beside_plane(double max_distance, const Eigen::Vector3d &origin,
+    SPHCLOTH_MULTIVERSION void add_beside_plane(const Eigen::Vector3d &p, double max_distance,
+                                                const Eigen::Vector3d &origin,
                                                 const Eigen::Vector3d &normal, double min_cos,
                                                 double min_gap, std::vector<int> &to) const
     {
-      const double room = max_distance + largest, room_sq = room * room;
+      const double reach = max_distance + largest, reach_sq = reach * reach;
+      const double px = p[0], py = p[1], pz = p[2];
       const double ox = origin[0], oy = origin[1], oz = origin[2];
       const double ax = normal[0], ay = normal[1], az = normal[2];
       for (int k = lo[2]; k <= hi[2]; k++)
@@ -214,33 +225,28 @@ class DiscGrid {
           for (int n = begin_of_row(j, k), end = end_of_row(j, k); n < end; n += LANES) {
             const double *cx = &x[n], *cy = &y[n], *cz = &z[n], *r = &radius[n];
             const double *nx = &across[0][n], *ny = &across[1][n], *nz = &across[2][n];
-            const double *apart_sq = &distance_sq[n];
             double beside[LANES], any = 0.0;
 #pragma omp simd reduction(+ : any)
             for (int l = 0; l < LANES; l++) {
+              const double fx = px - cx[l], fy = py - cy[l], fz = pz - cz[l];
               const double dx = cx[l] - ox, dy = cy[l] - oy, dz = cz[l] - oz;
               const double height = std::fabs(nx[l] * dx + ny[l] * dy + nz[l] * dz);
-              const double reach = height + r[l];
+              const double tip = height + r[l];
               const double aside_sq = dx * dx + dy * dy + dz * dz - height * height;
-              const double off = (height > min_gap) & (aside_sq < reach * reach) ? 1.0 : 0.0;
+              const double off = (height > min_gap) & (aside_sq < tip * tip) ? 1.0 : 0.0;
               const double bent = nx[l] * ax + ny[l] * ay + nz[l] * az < min_cos ? 1.0 : 0.0;
-              beside[l] = apart_sq[l] <= room_sq ? off + bent : 0.0;
+              beside[l] = fx * fx + fy * fy + fz * fz <= reach_sq ? off + bent : 0.0;
               any += beside[l];
             }
-            if (any == 0.0) continue;
-            for (int l = 0; l < std::min(LANES, end - n); l++)
-              if (beside[l] > 0.0) to.push_back(items[n + l]);
+            if (any > 0.0) add_lanes(beside, n, end, to);
           }
     }
 
-    // is a disc within `max_distance` of p?
-    bool reaches(int n, const Eigen::Vector3d &p, double max_distance) const
+    // of the group at n, those that are marked
+    SPHCLOTH_INLINE void add_lanes(const double *marked, int n, int end, std::vector<int> &to) const
     {
-      const Disc &d = disc[n];
-      const double height = d.normal.dot(p - d.center), height_sq = height * height;
-      const double aside = std::sqrt(std::max(0.0, distance_sq[n] - height_sq)) - d.radius;
-      const double max = max_distance + d.room;
-      return height_sq + (aside > 0.0 ? aside * aside : 0.0) <= max * max;
+      for (int l = 0; l < std::min(LANES, end - n); l++)
+        if (marked[l] > 0.0) to.push_back(items[n + l]);
     }
 
     // cells of a row along x lie one behind the other

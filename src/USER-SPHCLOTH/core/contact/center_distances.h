@@ -24,9 +24,9 @@ class CenterDistances {
 
   void load(const std::vector<Vec3> &positions)
   {
-    rows.resize(positions.size());
+    at.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); i++)
-      rows[i] = Row{positions[i][0], positions[i][1], positions[i][2], 0.0};
+      at[i] = {positions[i][0], positions[i][1], positions[i][2], 0.0};
   }
 
   // Of n pairs, to `to`.  Both hold whole groups: behind the n there are pairs of any vertices.
@@ -35,10 +35,15 @@ class CenterDistances {
     kind == PairKind::POINT_TRIANGLE ? of_triangles(pairs, n, to) : of_edges(pairs, n, to);
   }
 
-  double bytes() const { return bytes_of(rows); }
+  double bytes() const { return bytes_of(at); }
 
  private:
-  AlignedVector<Row> rows;
+  struct Position {
+    double x, y, z, w;
+  };
+  AlignedVector<Position> at;
+
+  SPHCLOTH_INLINE const Row &row(int i) const { return *reinterpret_cast<const Row *>(&at[i]); }
 
   // of a group: from center to center, and two vectors to corners, in columns
   struct Group {
@@ -62,8 +67,8 @@ class CenterDistances {
       Row line[LANES], first[LANES], second[LANES];
       for (int l = 0; l < LANES; l++) {
         const Four &of = pairs[m + l];
-        const Row &a = rows[of[1]], &b = rows[of[2]], center = THIRD * (a + b + rows[of[3]]);
-        line[l] = rows[of[0]] - center;
+        const Row &a = row(of[1]), &b = row(of[2]), center = THIRD * (a + b + row(of[3]));
+        line[l] = row(of[0]) - center;
         first[l] = a - center;
         second[l] = b - center;
       }
@@ -87,7 +92,7 @@ class CenterDistances {
       Row line[LANES], first[LANES], second[LANES];
       for (int l = 0; l < LANES; l++) {
         const Four &of = pairs[m + l];
-        const Row &p = rows[of[0]], &q = rows[of[1]], &a = rows[of[2]], &b = rows[of[3]];
+        const Row &p = row(of[0]), &q = row(of[1]), &a = row(of[2]), &b = row(of[3]);
         line[l] = 0.5 * ((p + q) - (a + b));
         first[l] = 0.5 * (q - p);
         second[l] = 0.5 * (b - a);

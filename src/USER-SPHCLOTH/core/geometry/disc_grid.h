@@ -56,7 +56,8 @@ class DiscGrid {
     for (Size &size : sizes) size.sort(discs, reach);
   }
 
-  // calls visit(d) for every disc d that is not farther from p than `max_distance`
+  // calls visit(d) for every disc d that is not farther from p than `max_distance`, and for a few
+  // more beside their rims
 
   template <class Visit> void within(const Eigen::Vector3d &p, double max_distance, Visit visit)
   {
@@ -76,7 +77,7 @@ class DiscGrid {
     return min;
   }
 
-  // of those the ones that are not farther than the nearest center of all, and `slack`
+  // the same up to the nearest center of all, and `slack`
 
   template <class Visit>
   void nearest(const Eigen::Vector3d &p, double max_distance, double slack, Visit visit)
@@ -199,12 +200,9 @@ class DiscGrid {
             for (int l = 0; l < LANES; l++) {
               const double dx = px - cx[l], dy = py - cy[l], dz = pz - cz[l];
               const double height = nx[l] * dx + ny[l] * dy + nz[l] * dz;
-              const double height_sq = height * height;
-              const double in_plane_sq = dx * dx + dy * dy + dz * dz - height_sq;
-              const double in_plane = std::sqrt(in_plane_sq > 0.0 ? in_plane_sq : 0.0);
-              const double aside = in_plane > r[l] ? in_plane - r[l] : 0.0;
-              const double max = max_distance + more[l];
-              near[l] = height_sq + aside * aside <= max * max ? 1.0 : 0.0;
+              const double max = max_distance + more[l], reach = max + r[l];
+              const double sq = dx * dx + dy * dy + dz * dz;
+              near[l] = (std::fabs(height) <= max) & (sq <= reach * reach) ? 1.0 : 0.0;
               any += near[l];
             }
             if (any > 0.0) add_lanes(near, n, end, to);

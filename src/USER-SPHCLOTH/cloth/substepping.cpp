@@ -57,6 +57,23 @@ void Substepping::measure_compliances()
   if (follows_load()) longest_without_size = longest(share_without_size(), all[1]);
 }
 
+// How much a solver does whose projections are counted is for the user to say.
+
+void Substepping::missed_in_contact(double share)
+{
+  constexpr int MANY = 10;
+  if (follows_load()) {
+    length.missed_in_contact(share);
+    return;
+  }
+  steps_missed = share > SubstepLength::MISSED ? steps_missed + 1 : 0;
+  if (steps_missed == MANY)
+    warn(fmt::format("contact leaves more than half of the momentum that stops particles behind {} "
+                     "iterations: what is heavy beside the cloth may gain energy; give more "
+                     "'iterations', or neither 'iterations' nor 'solver'",
+                     options.iterations));
+}
+
 // once
 
 void Substepping::warn(const std::string &of)

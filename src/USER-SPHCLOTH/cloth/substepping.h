@@ -59,7 +59,7 @@ class Substepping : protected Pointers {
   int wanted_substeps(double dt);
 
   // what contact did not pass on in the last step, as a share
-  void missed_in_contact(double share) { length.missed_in_contact(share); }
+  void missed_in_contact(double share);
 
   // cuts the next step into substeps, with what meets the cloth in it; forces of the holders are
   // summed where they are wanted
@@ -110,6 +110,7 @@ class Substepping : protected Pointers {
   sphcloth::SubstepGroups hinge_groups, damping_groups;
   int hinges_for = 1;    // so many substeps are hinges projected in this one; 0: not at all
   bool warned = false;
+  int steps_missed = 0;    // one behind the other in which contact missed much
   bool started = false;    // velocities are those of half a step ago, see direction start
 
   double inv_dt_sq(double substeps = 1.0) const;

@@ -14,6 +14,8 @@ namespace sphcloth {
 
 class SubstepLength {
  public:
+  static constexpr double MISSED = 0.5;    // share of contact that is too much
+
   // how many substeps a step of dt needs; the longest step so far takes at least `usual`
   double substeps(double dt, int usual)
   {
@@ -119,7 +121,7 @@ class SubstepLength {
   // and the smaller the parts that it has to pass on are, the less of them is missing.
   void refine_for_contact()
   {
-    constexpr double MISSED = 0.5, GROWS = 1.3, LARGEST = 10.0;
+    constexpr double GROWS = 1.3, LARGEST = 10.0;
     state.refined = state.missed > MISSED
         ? std::min(LARGEST, GROWS * state.refined)
         : std::max(1.0, state.refined / std::pow(CHANGE, of_longest_step));

@@ -222,12 +222,13 @@ PROVOKED = {
     "The step falls below `min`": SCENE
     + "fix step water sph/integrate global min 1e-3\nvelocity water set 0 0 -100 units box\nrun 5",
 }
-# said by other programs than LAMMPS, or not in this process, and the tests that see it
+# said by other programs than LAMMPS, in another process or a longer run, and the tests that see it
 SAID_ELSEWHERE = {
     "Another release of LAMMPS": "tests/test_package.py",
     "`unsupported PMI version PMIx`": "tests/python/test_cli.py",
     "Every rank runs the whole simulation": "tests/python/test_cli.py",
     "A log that cannot be read": "tests/python/test_log.py",
+    "Water is thrown off a light sheet": "tests/styles/test_substeps.py",
 }
 
 

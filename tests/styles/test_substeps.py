@@ -271,6 +271,13 @@ timestep 4e-3
 )
 
 
+MISSED = (
+    "WARNING: fix sheet pbd/cloth: contact leaves more than half of the momentum that stops "
+    "particles behind {} iterations: what is heavy beside the cloth may gain energy; give more "
+    "'iterations', or neither 'iterations' nor 'solver'"
+)
+
+
 def fallen(tmp_path, name, fix=""):
     """50 heavy grains fall on the nine free vertices of a light sheet; the end of the script."""
     script = GRAINS.replace("pin pins", f"pin pins {fix}")
@@ -283,7 +290,7 @@ def test_grains_that_a_light_sheet_stops_gain_no_energy(tmp_path):
     for fix in ("", "iterations 10", "solver gs iterations 10"):
         run(write(tmp_path, fallen(tmp_path, "log", fix) + "run 80\n"))
         text = (tmp_path / "log").read_text()
-        assert text.count("WARNING: fix sheet pbd/cloth: contact leaves more") == (fix != "")
+        assert text.count(MISSED.format(10)) == (fix != "")
         found = rows(tmp_path / "log")
         energy = found[:, 1]
         gained[fix] = np.max(energy - np.minimum.accumulate(energy)) / energy[0]

@@ -110,7 +110,7 @@ class Substepping : protected Pointers {
   sphcloth::SubstepGroups hinge_groups, damping_groups;
   int hinges_for = 1;    // so many substeps are hinges projected in this one; 0: not at all
   bool warned = false;
-  int steps_missed = 0;    // one behind the other in which contact missed much
+  int steps_missed = 0;    // in which contact missed much, since it last missed little
   bool started = false;    // velocities are those of half a step ago, see direction start
 
   double inv_dt_sq(double substeps = 1.0) const;

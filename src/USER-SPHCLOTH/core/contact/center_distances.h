@@ -9,7 +9,6 @@
 #include "core/util/bytes.h"
 #include "core/util/simd.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -9,7 +9,6 @@
 #include "core/util/simd.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 

@@ -105,8 +105,12 @@ void FixSPHIntegrate::init()
   if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
   if (scales) fluid->scaled_mass().want(groupbit, springs);
   control.init(fluid, limits.shortest_sound_time());
-  first_kick.begin_run(atom);
-  stepper->init(fluid);
+  const int changed_here = first_kick.begin_run(atom, domain);
+  int changed;
+  MPI_Allreduce(&changed_here, &changed, 1, MPI_INT, MPI_MAX, world);
+  stepper->init(fluid, changed != 0);
+  if (scheme == SteppingScheme::CONSTANT || scheme == SteppingScheme::INDIVIDUAL)
+    control.watch.demand();    // of a global step that comes later
   fluid->take_pair_evaluations();    // before this run
   check_group();
 }
@@ -218,6 +222,7 @@ void FixSPHIntegrate::post_run()
 {
   control.times.end_run();
   first_kick.end_run(atom);
+  control.watch.end_run([this] { return limits.settings(); });
   if (scheme == SteppingScheme::CONSTANT) return;
   const std::string waits = scheme == SteppingScheme::INDIVIDUAL ? label + report.waits_in_words()
                                                                  : "";
@@ -259,6 +264,7 @@ struct FixSPHIntegrate::Record {
 
 void FixSPHIntegrate::write_restart(FILE *fp)
 {
+  control.watch.end_run([this] { return limits.settings(); });
   const double mine[5] = {report.updates, report.ideal_updates, report.waits, sound.work,
                           report.pair_evaluations};
   double all[5] = {0.0, 0.0, 0.0, 0.0, 0.0}, longest_wait = 0.0;

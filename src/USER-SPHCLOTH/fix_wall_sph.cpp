@@ -41,6 +41,8 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), fluid(nullptr), slip(false),
     any_moves(false), reflection(1.0), summed(false)
 {
+  for (int k = 1; k < narg; k++)
+    for (const char *c = arg[k]; *c; c++) words = hash_with(words, static_cast<unsigned char>(*c));
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
   while (args.more()) {

@@ -17,6 +17,7 @@ FixStyle(wall/sph,FixWallSPH);
 #include "core/sph/wall_impact.h"
 #include "core/sph/wall_profile.h"
 #include "fluid/fluid_boundary.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/number_or_variable.h"
 
 #include <algorithm>
@@ -42,6 +43,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   double compute_vector(int) override;
   void *extract(const char *, int &) override;
 
+  std::uint64_t settings() const override { return words; }
   void begin() override;
   double density(int i, double of_particles) override;
   double density_rate(int i, double of_particles, double back) override;
@@ -58,6 +60,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
+  std::uint64_t words = EMPTY_HASH;    // of the command
   struct Record;    // in restart files
 
   struct Wall {

@@ -1,9 +1,22 @@
-"""What commands between two runs do to steps: nothing, or an error that says why."""
+"""What commands between two runs do to steps: nothing, an error that says why, or, where they
+change what moves, other steps and water that wakes."""
 
 import numpy as np
 import pytest
 from harness import by_id, instance
-from scenes import MAKE_FALL, fall
+from scenes import (
+    FLUID,
+    MAKE_FALL,
+    box,
+    fall,
+    filled,
+    gravity,
+    header,
+    lattice,
+    neighbor,
+    periodic_water,
+    sph_tait,
+)
 
 SCHEMES = ("constant", "global", "individual", "block")
 DUMP = "id type x y z vx vy vz"
@@ -183,3 +196,101 @@ def test_the_velocity_of_a_wall_does_not_feel_a_reset(here):
             return state(lmp)
 
     np.testing.assert_allclose(behind(True), behind(False), rtol=0, atol=1e-11)
+
+
+# A cube of water in a corner, over a floor.
+CORNER = (
+    header("f f f", FLUID)
+    + box("-0.2 1 -0.2 0.6 -0.4 0.8")
+    + lattice()
+    + filled("water", "0 0.3 0 0.3 0 0.3")
+    + "mass 1 0.125\n"
+    + sph_tait("1 1 fluid 1000 c0 {sound} alpha 0.5 spacing 0.05", options="density calibrated")
+    + neighbor(0.03)
+    + gravity()
+    + """timestep 4e-3
+fix walls all wall/sph xlo 0 xhi 0.3 ylo 0 yhi 0.3 zlo 0
+fix step all sph/integrate global {limits}
+run_style sph/adaptive {scheme}
+compute energy all pe
+variable moving equal ke+c_energy
+thermo_style custom step v_moving ke
+"""
+)
+
+
+@pytest.mark.parametrize("scheme", ["global", "block"])
+@pytest.mark.parametrize(
+    ("sound", "change", "bearable"),
+    [
+        (60, "velocity all set 0 0 -20 units box", 5e-4),
+        (10, "pair_coeff 1 1 fluid 1000 c0 200 alpha 0.5 spacing 0.05", 4e-4),
+    ],
+)
+def test_a_step_that_is_too_long_after_a_change_is_not_taken(scheme, sound, change, bearable):
+    with instance() as lmp:
+        lmp.commands_string(CORNER.format(scheme=scheme, sound=sound, limits="") + "run 5")
+        assert lmp.get_thermo("dt") > 1.1 * bearable
+        lmp.commands_string(f"{change}\nrun 0")
+        energy, dt = lmp.get_thermo("v_moving"), lmp.get_thermo("dt")
+        lmp.command("run 30")
+        assert dt < bearable
+        assert lmp.get_thermo("v_moving") < 1.05 * energy + 1.0
+
+
+@pytest.mark.parametrize("scheme", ["global", "block"])
+def test_water_that_is_compressed_takes_shorter_steps(scheme):
+    with instance() as lmp:
+        lmp.commands_string(
+            periodic_water(0.05, "1000 c0 20 alpha 0.02 spacing 0.05", "density calibrated")
+            + "timestep 0.01\nfix step all sph/integrate global gain 1\n"
+            + f"run_style sph/adaptive {scheme}\n"
+            + "displace_atoms all random 5e-4 5e-4 5e-4 4 units box\nrun 100"
+        )
+        longest = lmp.get_thermo("dt")
+        smaller = " ".join(f"{axis} scale 0.93" for axis in "xyz")
+        lmp.commands_string(f"change_box all {smaller} remap\nrun 0")
+        assert lmp.get_thermo("dt") < 0.7 * longest
+
+
+@pytest.mark.parametrize("scheme", ["global", "block"])
+def test_two_runs_are_one_while_particles_are_emitted(scheme):
+    """Their number follows from the motion."""
+    emit = "fix rain all sph/emit 1000 1 0.05 disc 0.15 0.15 0.6 0.1 velocity 0 0 -2\n"
+    found = []
+    for runs in ("run 60", "run 25\nrun 35"):
+        with instance() as lmp:
+            lmp.commands_string(CORNER.format(scheme=scheme, sound=20, limits="") + emit + runs)
+            assert lmp.get_natoms() > 230
+            found.append(by_id(lmp, "x"))
+    np.testing.assert_array_equal(*found)
+
+
+SLEEP = CORNER.format(scheme="block", sound=20, limits="sleep 0.3")
+WALLS = "unfix walls\nfix walls all wall/sph xlo 0 xhi {} ylo 0 yhi 0.3 zlo 0\n"
+LOWER = "region lower block INF INF INF INF INF 0.15 units box\ndelete_atoms region lower\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "falls"),
+    [(WALLS.format(0.8), 0.02), ("unfix walls\n", 0.02), (LOWER, 0.02)],
+    ids=["another wall", "no wall", "half of the water"],
+)
+def test_water_that_sleeps_wakes_in_another_scene(change, falls):
+    with instance() as lmp:
+        lmp.commands_string(SLEEP + "run 600")
+        assert lmp.extract_fix("step", 0, 1, 29) == 216
+        lmp.commands_string(change)
+        kept = lmp.get_natoms()
+        height = by_id(lmp, "x")[:, 2].mean()
+        lmp.command("run 60")
+        assert lmp.get_natoms() == kept
+        assert by_id(lmp, "x")[:, 2].mean() < height - falls
+
+
+@pytest.mark.parametrize("change", ["run 0", WALLS.format(0.3), "pair_coeff {}"])
+def test_water_that_sleeps_sleeps_on_in_the_same_scene(change):
+    change = change.format("1 1 fluid 1000 c0 20 alpha 0.5 spacing 0.05")
+    with instance() as lmp:
+        lmp.commands_string(f"{SLEEP}run 600\n{change}\nrun 20")
+        assert lmp.extract_fix("step", 0, 1, 29) == 216

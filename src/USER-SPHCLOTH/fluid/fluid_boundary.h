@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -31,6 +32,9 @@ class FluidBoundary {
  public:
   // name of a fix's extract() for the boundary that it owns
   static constexpr const char *EXTRACT = "fluid_boundary";
+
+  // a number that changes with what a command says of it
+  virtual std::uint64_t settings() const { return 0; }
 
   // positions are those of this evaluation
   virtual void begin() = 0;

@@ -29,25 +29,37 @@ BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClo
   for (int i = 0; i < atom->nlocal; i++) state.add_particle(i);
 }
 
-void BlockSteps::init(FluidState *style)
+void BlockSteps::init(FluidState *style, bool particles_changed)
 {
-  Stepper::init(style);
+  Stepper::init(style, particles_changed);
   all_selected = false;
   state.init(style);
   bins.init(style);
   fluid->set_step_hooks(this);
-  if (parts.control.watch.begin_run(parts.limits.settings())) forget_settings();
+  const std::uint64_t before = parts.control.watch.state().settings;
+  const std::uint64_t settings = parts.limits.settings();
+  if (parts.control.watch.begin_run(settings, particles_changed) && before != 0)
+    start_over(settings != before);
   parts.control.watch.demand();    // of uniform steps that come later
 }
 
-// Frequencies and sums are of other atoms, kernels or materials.
+// Steps and impulses are of another state.  Where only particles have been changed those that are
+// disturbed wake, as in a run; in another scene nothing is known to be at rest.
 
-void BlockSteps::forget_settings()
+void BlockSteps::start_over(bool other_scene)
 {
-  frequencies.forget();
-  for (int i = 0; i < atom->nlocal; i++)
-    if (double &sum = state.columns[Columns::SUM][i]; sum != KeptDensity::NONE)
+  const BlockClock before = state.clock;
+  state.clock = BlockClock();
+  state.clock.uniform = before.uniform;
+  state.clock.defers = before.defers;    // what vertices are still to get
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state.is_asleep(i) && !other_scene) continue;
+    state.add_particle(i);
+    state.columns[Columns::REACH][i] = 0.0;
+    parts.rows[i][UpdateRows::ACTIVE] = 1.0;
+    if (double &sum = state.columns[Columns::SUM][i]; other_scene && sum != KeptDensity::NONE)
       sum = KeptDensity::UNKNOWN;
+  }
 }
 
 void BlockSteps::forget_stability()
@@ -62,19 +74,9 @@ void BlockSteps::forget_stability()
 
 void BlockSteps::move()
 {
-  // The impulses of a base step may have begun before a velocity was changed, other forces do not.
-  const double half_step = 0.5 * update->dt * force->ftm2v;
-  const auto share = [&](int i) {
-    const bool changed = parts.first_kick.is_changed(i);
-    const double kick = parts.first_kick.share(i);
-    if (!changed) return kick;
-    for (int d = 0; d < 3; d++)
-      atom->v[i][d] -= half_step / atom_mass(atom, i) * state.columns.external_force(d)[i];
-    return 1.0;
-  };
   kick_and_drift(
       atom, update, force, parts.fix->groupbit, [this](int i) { return state.is_asleep(i); },
-      share);
+      [this](int i) { return parts.first_kick.share(i); });
   sleeping.wake_disturbed();
   advance_clock();
   select_active();

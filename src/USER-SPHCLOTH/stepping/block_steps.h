@@ -32,7 +32,7 @@ class BlockSteps : public Stepper, public StepHooks {
   BlockSteps(LAMMPS *, const SteppingParts &, const BlockClock &);
 
   // what fix sph/integrate calls
-  void init(FluidState *) override;
+  void init(FluidState *, bool particles_changed) override;
   bool updates_all_next() const override;
   void move() override;
   void end_step() override;
@@ -76,7 +76,7 @@ class BlockSteps : public Stepper, public StepHooks {
   KeptFrequencies frequencies;
   bool all_selected = false;    // where all particles take the same step
 
-  void forget_settings();
+  void start_over(bool other_scene);
   void advance_clock();
   void choose_bins();
   void select_active();

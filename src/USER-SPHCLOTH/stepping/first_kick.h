@@ -8,7 +8,12 @@
 #define SPHCLOTH_STEPPING_FIRST_KICK_H
 
 #include "atom.h"
+#include "domain.h"
+#include "lammps_util/lammps_version.h"
 #include "lammps_util/particle_columns.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace LAMMPS_NS {
 
@@ -28,16 +33,18 @@ class FirstKick {
     state = STAGGERED;
     return share;
   }
-  // has its velocity been given between two runs?
-  bool is_changed(int i) const { return columns[STATE][i] == CHANGED; }
-
   void add_particle(int i, bool in_run) { columns[STATE][i] = in_run ? STAGGERED : GIVEN; }
-  // has something else changed velocities since the last run?
-  void begin_run(const Atom *atom)
+  // Has something else moved particles of this rank, or changed velocities, since the last run?
+  bool begin_run(const Atom *atom, const Domain *domain)
   {
-    for (int i = 0; i < atom->nlocal; i++)
-      if (columns[STATE][i] == RECORDED)
-        columns[STATE][i] = columns[VELOCITY][i] == fingerprint(atom->v[i]) ? STAGGERED : CHANGED;
+    bool any = false;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (columns[STATE][i] != RECORDED) continue;
+      const bool same = columns[VELOCITY][i] == fingerprint(atom->v[i]);
+      columns[STATE][i] = same ? STAGGERED : GIVEN;
+      any = any || !same || has_been_moved(i, atom->x[i], domain);
+    }
+    return any;
   }
   void end_run(const Atom *atom)
   {
@@ -45,17 +52,32 @@ class FirstKick {
       if (columns[STATE][i] == STAGGERED) {
         columns[STATE][i] = RECORDED;
         columns[VELOCITY][i] = fingerprint(atom->v[i]);
+        for (int d = 0; d < 3; d++) columns[POSITION + d][i] = atom->x[i][d];
       }
   }
 
  private:
-  enum Column { STATE, VELOCITY, N_COLUMNS };
-  static constexpr double GIVEN = 0.0, STAGGERED = 1.0, RECORDED = 2.0, CHANGED = 3.0;
+  enum Column { STATE, VELOCITY, POSITION, N_COLUMNS = POSITION + 3 };
+  static constexpr double GIVEN = 0.0, STAGGERED = 1.0, RECORDED = 2.0;
 
   // other velocities have another one, but by chance
   static double fingerprint(const double *v)
   {
     return v[0] + 1.6180339887 * v[1] + 2.7182818 * v[2];
+  }
+
+  // by more than what comes from being moved by a period
+  bool has_been_moved(int i, const double *x, const Domain *domain) const
+  {
+    constexpr double ROUNDING = 1e-12;
+    double by[3], largest = 0.0, size = 0.0;
+    for (int d = 0; d < 3; d++) by[d] = x[d] - columns[POSITION + d][i];
+    release::minimum_image(domain, by);
+    for (int d = 0; d < 3; d++) {
+      largest = std::max(largest, std::fabs(by[d]));
+      size = std::max({size, std::fabs(x[d]), domain->prd[d]});
+    }
+    return largest > ROUNDING * size;
   }
 };
 

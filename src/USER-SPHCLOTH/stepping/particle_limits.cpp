@@ -4,6 +4,7 @@
 #include "stepping/particle_limits.h"
 
 #include "core/sph/mass_scaling.h"
+#include "fluid/fluid_boundary.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "lammps_util/atom_tools.h"
@@ -70,9 +71,17 @@ std::uint64_t ParticleLimits::settings() const
     for (int j = i; j <= atom->ntypes; j++)
       for (const char c : fluid->words(i, j)) hash = hash_with(hash, static_cast<unsigned char>(c));
   }
-  std::uint64_t movable = 0, of_ranks;
-  for_moving_vertices([&](int, const LimitedVertices &) { movable++; });
-  MPI_Allreduce(&movable, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
+  // sums, in which particles may stand in any order
+  std::uint64_t mine = 0, of_ranks;
+  for_moving_vertices([&](int i, const LimitedVertices &) {
+    mine += hash_with(EMPTY_HASH, static_cast<std::uint64_t>(atom->tag[i]));
+  });
+  for (int i = 0; i < atom->nlocal; i++)
+    mine += hash_with(hash_with(EMPTY_HASH, bits_of(atom_mass(atom, i))),
+                      static_cast<std::uint64_t>(atom->type[i]));
+  MPI_Allreduce(&mine, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
+  for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
+    hash = hash_with(hash, boundary->settings());
   for (const std::uint64_t number :
        {of_ranks, static_cast<std::uint64_t>(atom->natoms), bits_of(options.lambda.stability)})
     hash = hash_with(hash, number);

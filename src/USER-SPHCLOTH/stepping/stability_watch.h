@@ -23,17 +23,22 @@ class StabilityWatch {
     sphcloth::StepLimit tightest;
     tagint particle = 0;    // that has it
     int interval = 0, remaining = 0;    // steps from one search to the next; 0: never searched
-    std::uint64_t settings = 0;    // of the last run
+    std::uint64_t settings = 0;    // at the end of the last run; 0: there was none
   };
 
   // A run begins: the limit is found in its first evaluation where anything that it follows from
-  // has changed, so that several runs are one run.
-  bool begin_run(std::uint64_t settings)
+  // has changed, or particles since the last run, so that several runs are one run.
+  bool begin_run(std::uint64_t settings, bool particles_changed)
   {
-    if (settings == now.settings) return false;
+    if (settings == now.settings && !particles_changed) return false;
     now = State();
     now.settings = settings;
     return true;
+  }
+  // What has changed them in the run has been followed: find() says what they are now.
+  template <class Find> void end_run(Find find)
+  {
+    if (now.settings != 0) now.settings = find();
   }
   // is the limit to be found in the evaluation that comes next?
   bool due() const { return now.remaining == 0; }

@@ -8,7 +8,7 @@
 
 using namespace LAMMPS_NS;
 
-void Stepper::init(FluidState *style)
+void Stepper::init(FluidState *style, bool)
 {
   fluid = style;
   tell_active(false);

@@ -48,8 +48,8 @@ class Stepper : protected Pointers {
   {
   }
 
-  // before each run
-  virtual void init(FluidState *);
+  // Before each run.  Have particles been changed since the last one?  The same on all ranks.
+  virtual void init(FluidState *, bool particles_changed);
   // are all particles updated at the end of the step that comes next?
   virtual bool updates_all_next() const { return true; }
   // lines 30 to 33 of Algorithm 1, then tells the pair style which particles are updated

@@ -13,10 +13,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void UniformSteps::init(FluidState *style)
+void UniformSteps::init(FluidState *style, bool particles_changed)
 {
-  Stepper::init(style);
-  if (!constant) parts.control.watch.begin_run(parts.limits.settings());
+  Stepper::init(style, particles_changed);
+  if (!constant) parts.control.watch.begin_run(parts.limits.settings(), particles_changed);
   fluid->want_frequencies_now(!constant && parts.control.watch.due());
 }
 

@@ -372,7 +372,7 @@ void FluidEvaluation::find_frequencies()
   const Particles p = particles();
   const double *waits = hooks ? hooks->frequency_waits() : nullptr;
   stability.find_fluid(*core, p, boundaries, waits);
-  if (stability.need_vertices(*core, boundaries, waits)) {
+  if (stability.need_vertices(*core, p, boundaries, waits)) {
     stability.find_vertices(*core, p, boundaries);
     if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
   }

@@ -90,7 +90,10 @@ class FluidState : public SPHMaterials {
   const Frequencies &frequencies(int i) const { return stability[i]; }
   void set_frequencies(int i, const Frequencies &before) { stability.set(i, before); }
   // is a vertex near an active particle, which may press on it?
-  bool is_near_vertices(int i) const { return stability.is_near_vertices(*core, boundaries, i); }
+  bool is_near_vertices(int i)
+  {
+    return stability.is_near_vertices(*core, particles(), boundaries, i);
+  }
   ScaledMass &scaled_mass() { return scaled; }
   double approach_speed(int i);
   Wetting wetting(int i);

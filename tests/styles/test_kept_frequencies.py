@@ -3,6 +3,18 @@
 import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
+from scenes import (
+    cloth_box,
+    cloth_styles,
+    filled,
+    final_dump,
+    header,
+    jitter,
+    lattice,
+    neighbor,
+    sheet,
+    sph_tait,
+)
 from step_scenes import SPACING, beside_stiff_water, dt_and_limit
 
 BLOCK = "run_style sph/adaptive block\n"
@@ -41,6 +53,50 @@ def out_of_reach_of_the_sheet():
 def step_of_global(lmp):
     lmp.commands_string("run_style sph/adaptive global\nrun 1 post no")
     return dt_and_limit(lmp)[0]
+
+
+def test_they_follow_vertices_inside_the_support_on_any_number_of_ranks(tmp_path):
+    """Lists of the ranks hold different vertices a little outside, as of two fluids above these."""
+    fluids = sph_tait(
+        "1 1 fluid 1000 c0 60 alpha 0.1 nu 1e-3",
+        "3 3 fluid 800 c0 15 alpha 0.1 support 0.14",
+        "2 2 boundary",
+        options="tension yes",
+    )
+    with instance() as lmp:
+        lmp.commands_string(
+            header()
+            + cloth_box("-0.5 0.5 -0.5 0.5 -0.6 0.8", 3)
+            + lattice()
+            + filled("fine", "-0.15 0.15 -0.15 0.15 0.03 0.18")
+            + lattice(0.07)
+            + filled("coarse", "-0.49 0.49 -0.49 0.49 -0.42 -0.14", 3)
+            + "mass * 0.125\nmass 3 0.2744\ngroup fluid type 1 3\ngroup falls type 1\n"
+            + jitter(0.004, 1234, "fluid")
+            + "velocity falls set 0.5 0.3 -2 units box\n"
+            + sheet(2, 2.0, "0.7 0.7", 0.1)
+            + f"write_data {tmp_path}/scene.data nocoeff"
+        )
+    script = write(
+        tmp_path,
+        header()
+        + "read_data scene.data\ngroup cloth type 2\ngroup fluid type 1 3\n"
+        + fluids
+        + cloth_styles("1", "compliance 100")
+        + neighbor(0.03)
+        + """timestep 0.004
+fix step fluid sph/integrate global gain 1
+fix sheet cloth pbd/cloth
+fix contact fluid cloth/contact 0.015 sides no
+"""
+        + BLOCK
+        + "run 90\n"
+        + final_dump(),
+    )
+    for ranks in (1, 2):
+        run(script, ranks=ranks, dump=f"{ranks}.txt")
+    apart = last_frame(tmp_path / "1.txt") - last_frame(tmp_path / "2.txt")
+    assert np.abs(apart[:, 1:4]).max() < 1e-6 * SPACING
 
 
 def test_they_are_found_anew_where_sound_is_faster_in_the_next_run():

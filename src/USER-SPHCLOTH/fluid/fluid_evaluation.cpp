@@ -138,8 +138,12 @@ void FluidEvaluation::find_densities_and_pressures()
   ghosts.send_to_ghosts(GhostData::DENSITY);
   if (extrapolate) find_boundary_pressures(p);
   core->record(p);
-  if (hooks && hooks->correct_velocities()) core->record(p);
-  if (core->model.friction == Friction::SWITCHED) find_viscosity_shares(p);
+  const bool switched = core->model.friction == Friction::SWITCHED;
+  // shares and friction of the correction are both of the velocities before it
+  if (switched) find_viscosity_shares(p);
+  if (!hooks || !hooks->correct_velocities()) return;
+  core->record(p);
+  if (switched) find_viscosity_shares(p);
 }
 
 void FluidEvaluation::find_forces()
@@ -175,8 +179,7 @@ void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
   core->select(all);
   core->record_positions(all, box());
   core->record(all);
-  if (core->model.friction == Friction::SWITCHED)
-    core->record_viscosity_shares(all, viscosity_shares.data());
+  if (core->model.friction == Friction::SWITCHED) find_viscosity_shares(all);
   core->virials(all, receive, context);
   core->select(particles());
 }
@@ -349,7 +352,8 @@ void FluidEvaluation::find_boundary_pressures(const Particles &p)
   ghosts.send_to_ghosts(GhostData::DENSITY);
 }
 
-// Noise follows the speed of sound.  Inactive particles keep their shares until lists are built.
+// Noise follows the speed of sound.  Shares of inactive particles, which new lists forget, are not
+// to be used: an impulse has that of its active source.
 
 void FluidEvaluation::find_viscosity_shares(const Particles &p)
 {
@@ -368,7 +372,7 @@ void FluidEvaluation::find_frequencies()
   const Particles p = particles();
   const double *waits = hooks ? hooks->frequency_waits() : nullptr;
   stability.find_fluid(*core, p, boundaries, waits);
-  if (stability.need_vertices(*core, boundaries, waits)) {
+  if (stability.need_vertices(*core, p, boundaries, waits)) {
     stability.find_vertices(*core, p, boundaries);
     if (stability.any_vertices()) ghosts.send_to_ghosts(GhostData::STIFFNESS);
   }

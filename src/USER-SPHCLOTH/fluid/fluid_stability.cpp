@@ -92,14 +92,14 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
   });
 }
 
-bool FluidStability::need_vertices(const Fluid &core,
+bool FluidStability::need_vertices(Fluid &core, const Particles &p,
                                    const std::vector<FluidBoundary *> &boundaries,
                                    const double *waits)
 {
   with_vertices = has_vertices || have_vertices(boundaries);
   if (!with_vertices || !waits) return with_vertices;
   int here = 0, anywhere = 0;
-  core.for_fluid(due, [&](int i, int) { here = here || is_near_vertices(core, boundaries, i); });
+  core.for_fluid(due, [&](int i, int) { here = here || is_near_vertices(core, p, boundaries, i); });
   MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
   with_vertices = anywhere != 0;
   return with_vertices;
@@ -138,15 +138,13 @@ void FluidStability::find_rows(Fluid &core, const Particles &p,
   });
 }
 
-bool FluidStability::is_near_vertices(const Fluid &core,
+bool FluidStability::is_near_vertices(Fluid &core, const Particles &p,
                                       const std::vector<FluidBoundary *> &boundaries, int i) const
 {
   if (have_vertices_beside(boundaries, i)) return true;
   if (!has_vertices) return false;
-  const DualLists &lists = core.order();
-  const int slot = lists.slot(i);
   for (int t = 1; t <= atom->ntypes; t++)
-    if (is_vertex[t] && lists(slot, t).n > 0) return true;
+    if (is_vertex[t] && core.count_inside(p, i, t, 1) > 0) return true;
   return false;
 }
 

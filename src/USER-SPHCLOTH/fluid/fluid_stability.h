@@ -63,8 +63,8 @@ class FluidStability : protected Pointers {
   // collective: is a vertex near one of them, on any rank?  If so, of vertices.
   void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
                   const std::vector<FluidBoundary *> &, const double *waits);
-  bool need_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &,
-                     const double *waits);
+  bool need_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
+                     const std::vector<FluidBoundary *> &, const double *waits);
   void find_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
                      const std::vector<FluidBoundary *> &);
   // Ghosts of vertices have their numbers, unless there are none near; of those that are scaled
@@ -75,9 +75,10 @@ class FluidStability : protected Pointers {
   void set_fluid_sq(int i, double frequency_sq) { found[i].fluid_sq = frequency_sq; }
   // of one that waits, as it was found before
   void set(int i, const Frequencies &before) { found[i] = before; }
-  // Does a vertex, as a boundary particle, stand in the list of an active one, or is a mesh within
-  // reach of it?
-  bool is_near_vertices(const sphcloth::Fluid &, const std::vector<FluidBoundary *> &, int i) const;
+  // Is a vertex, as a boundary particle, inside the support of an active one, or a mesh within
+  // reach of it?  What a list holds beyond the support depends on the ranks.
+  bool is_near_vertices(sphcloth::Fluid &, const sphcloth::Particles &,
+                        const std::vector<FluidBoundary *> &, int i) const;
 
   const Frequencies &operator[](int i) const { return found[i]; }
   double find_sound(int i) const;

@@ -59,6 +59,14 @@ class FluidState : public SPHMaterials {
   double pressure_of(int i) const;
   // pressure over density squared, of all atoms
   const double *p_over_rho2_of_all() const { return p_over_rho2.data(); }
+  // Is an owned fluid particle without pressure, but for what rounding makes, which must not decide
+  // which step it takes?
+  bool is_in_flight(int i) const
+  {
+    const int type = atom->type[i];
+    const double rest = equation_of_state(type).rho0 + density_rounding(type);
+    return !options.tension && atom->rho[i] <= rest;
+  }
   // its maximum among the neighbors inside the support, at least 0
   double p_over_rho2_beside(int i);
 
@@ -82,7 +90,10 @@ class FluidState : public SPHMaterials {
   const Frequencies &frequencies(int i) const { return stability[i]; }
   void set_frequencies(int i, const Frequencies &before) { stability.set(i, before); }
   // is a vertex near an active particle, which may press on it?
-  bool is_near_vertices(int i) const { return stability.is_near_vertices(*core, boundaries, i); }
+  bool is_near_vertices(int i)
+  {
+    return stability.is_near_vertices(*core, particles(), boundaries, i);
+  }
   ScaledMass &scaled_mass() { return scaled; }
   double approach_speed(int i);
   Wetting wetting(int i);

@@ -94,6 +94,8 @@ class SPHMaterials : protected Pointers {
   // both until the next read()
   void cache_pair_values();
   void forget_pair_values();
+  // by how much the density of a fluid may be above that at rest though nothing compresses it
+  double density_rounding(int i) const;
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
   void set_stiffness(int i, double k, double unchanged_for)
   {

@@ -153,7 +153,7 @@ void BinChoice::begin_base_step()
   if (!base.uniform) {
     in_flight.clear();
     for (const int i : active)
-      if (fluid->p_over_rho2_of_all()[i] == 0.0) in_flight.push_back(i);
+      if (fluid->is_in_flight(i)) in_flight.push_back(i);
     const StepLimit among_neighbors = want_steps(in_flight, true);
     tightest.tighten(among_neighbors.dt, among_neighbors.by);
     base = find_base_step(tightest);

@@ -42,7 +42,7 @@ void KeptFrequencies::note()
 
 bool KeptFrequencies::may_wait(int i) const
 {
-  if (state.fluid->p_over_rho2_of_all()[i] == 0.0) return false;
+  if (state.fluid->is_in_flight(i)) return false;
   const ScaledMass &scaled = state.fluid->scaled_mass();
   if (scaled.on() && scaled.is_beside_vertices(i)) return true;
   return !state.fluid->is_near_vertices(i);

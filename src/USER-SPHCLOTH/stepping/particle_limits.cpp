@@ -160,9 +160,9 @@ inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
     by_sound = lambda.acoustic * 0.5 * s.support / s.sound;
   }
   if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
-  const bool in_flight = fluid->p_over_rho2_of_all()[i] == 0.0;
+  const bool in_flight = fluid->is_in_flight(i);
   if (in_flight && by_sound > 0.0 && s.of_vertices_sq == 0.0)
-    s.until_pressed = until_pressed(i, type.eos.rho0 - s.rho, s.drho, by_sound);
+    s.until_pressed = until_pressed(i, s.drho, by_sound);
   // what is thinner than at rest may change until it is pressed, but individual steps interpolate
   if (in_flight && !interpolates_density)
     s.drho = beyond_rest(s.drho, type.eos.rho0 - s.rho, lambda.density * s.rho);
@@ -189,10 +189,8 @@ StepLimit ParticleLimits::stable_limit(int i) const
   alone.stability = options.lambda.stability;
   StepState s{};
   const double by_sound = set_frequencies(i, s);
-  if (fluid->p_over_rho2_of_all()[i] == 0.0 && s.of_vertices_sq == 0.0)
-    s.until_pressed =
-        until_pressed(i, types[atom->type[i]].eos.rho0 - atom->rho[i], atom->drho[i], by_sound) /
-        StabilityWatch::LONGEST_WAIT;
+  if (fluid->is_in_flight(i) && s.of_vertices_sq == 0.0)
+    s.until_pressed = until_pressed(i, atom->drho[i], by_sound) / StabilityWatch::LONGEST_WAIT;
   return particle_limit(alone, s);
 }
 
@@ -200,11 +198,14 @@ StepLimit ParticleLimits::stable_limit(int i) const
 // density grows ever faster, by p/h_s^2.  Neighbors are not asked either where the particle's own
 // sound, or the ceiling, allows less.
 
-double ParticleLimits::until_pressed(int i, double gap, double density_rate, double by_sound) const
+double ParticleLimits::until_pressed(int i, double density_rate, double by_sound) const
 {
+  const FluidType &type = types[atom->type[i]];
+  const double rounding = fluid->density_rounding(atom->type[i]);
+  const double gap = std::max(type.eos.rho0 - atom->rho[i], rounding);
   const double alone = time_to_cross(gap, density_rate, 0.0);
   if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
-  const double ratio = atom->rho[i] / (0.5 * types[atom->type[i]].support);
+  const double ratio = atom->rho[i] / (0.5 * type.support);
   return time_to_cross(gap, density_rate, fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 

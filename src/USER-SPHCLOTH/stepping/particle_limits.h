@@ -115,7 +115,7 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   sphcloth::StepState vertex_state(int i) const;
   double scaled_acceleration(int i, double unscaled) const;
   double set_frequencies(int i, sphcloth::StepState &) const;
-  double until_pressed(int i, double gap, double density_rate, double by_sound) const;
+  double until_pressed(int i, double density_rate, double by_sound) const;
 };
 
 }    // namespace LAMMPS_NS

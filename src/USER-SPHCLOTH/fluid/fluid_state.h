@@ -9,6 +9,7 @@
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_lattices.h"
 #include "fluid/fluid_stability.h"
+#include "fluid/free_surface.h"
 #include "fluid/integrated_density.h"
 #include "fluid/scaled_mass.h"
 #include "fluid/sph_materials.h"
@@ -32,7 +33,7 @@ class FluidState : public SPHMaterials {
 
   FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
       SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_), stability(lmp_, *this, lattices),
-      scaled(lmp_, ghosts_), integrated(lmp_, *this, ghosts_), pair(pair_)
+      scaled(lmp_, ghosts_), integrated(lmp_, *this, ghosts_), surface(lmp_, *this), pair(pair_)
   {
   }
   FluidLattices lattices;
@@ -129,6 +130,7 @@ class FluidState : public SPHMaterials {
   FluidStability stability;
   ScaledMass scaled;
   IntegratedDensity integrated;
+  FreeSurface surface;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;

@@ -62,9 +62,16 @@ void SPHMaterials::read_options(int narg, char **arg)
       options.delta = args.at_least(keyword, 0.0);
     else if (keyword == "reinit")
       options.reinit = args.integer(keyword, 0, 1000000000);
+    else if (keyword == "surface")
+      options.surface = args.choice(keyword, {"no", "yes"});
     else
-      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit");
+      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit, surface");
   }
+  if (completes_surfaces() && integrates_density())
+    error->all(FLERR,
+               "{}: surface yes completes a density by summation, 'density continuity' has no "
+               "deficit at a free surface: leave out one of them",
+               STYLE);
 }
 
 /* ----------------------------------------------------------------------

@@ -48,7 +48,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
   void diffuse(const Particles &p, const Diffusion &diffusion) override
   {
-    records.record_gradients(diffusion.gradient, diffusion.since, p.n_all, touched());
+    records.record_gradients(diffusion.gradient, diffusion.since, 1.0, p.n_all, touched());
     diffuse_all(p, diffusion);
   }
   void smooth_densities(const Particles &, double *smooth) override;
@@ -65,6 +65,13 @@ template <class K, class P> class FluidLoops : public Fluid {
   {
     records.record_shares(share, p.n_all, touched());
   }
+  void sum_gradients(const Particles &p, double *gradient) override
+  {
+    all_sum_gradients(p, gradient);
+  }
+  void record_turns(const Particles &, const double *turn) override;
+  void turn_forces(const Particles &) override;
+  void turn_virials(const Particles &, Receiver, void *context) override;
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -91,6 +98,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Outputs OUTPUTS, bool VIRIAL, bool SOURCE> struct Sums;
   struct DifferenceSums;    // rate_loops.h
   struct VelocitySums;    // viscosity_loops.h
+  struct SurfaceSums;    // surface_loops.h
   struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;
@@ -170,6 +178,10 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   // viscosity_loops.h
   void all_viscosity_shares(const Particles &, double *share);
+
+  // surface_loops.h
+  void all_sum_gradients(const Particles &, double *gradient);
+  template <bool VIRIAL> void all_turns(const Particles &, Listener);
 
   // stiffness_loops.h
   void all_stiffness(const Particles &, const Selection &, Stiffness *);

@@ -46,4 +46,10 @@ BOOST_AUTO_TEST_CASE(inside_and_outside)
   BOOST_CHECK(table(std::nan("")).factor == 1.0);
 }
 
+// integrals over q of powers of q and 1 - q
+BOOST_AUTO_TEST_CASE(bend_of_wendland_c2)
+{
+  BOOST_CHECK_CLOSE(bend_over_slope<WendlandC2>(2), std::sqrt(13.5), 0.1);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -120,7 +120,7 @@ def test_a_drop_at_rest_keeps_its_momenta():
     fastest = np.abs(v).max()
     assert fastest > 0
     np.testing.assert_allclose(v.sum(axis=0), 0, atol=1e-9 * fastest * len(v))
-    spin = np.cross(x[:, :2], v[:, :2]).sum()
+    spin = (x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]).sum()
     assert spin == pytest.approx(0, abs=1e-9 * fastest * len(v))
 
 

@@ -434,8 +434,8 @@ int FluidEvaluation::ghost_size(GhostData what)
     case GhostData::DENSITY: return 2;
     case GhostData::SINCE:
     case GhostData::CHANGE: return 1;
-    case GhostData::GRADIENT:
-    case GhostData::TURN: return 3;
+    case GhostData::GRADIENT: return 3;
+    case GhostData::TURN: return 4;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
     default: return ScaledMass::ghost_size(what);
   }

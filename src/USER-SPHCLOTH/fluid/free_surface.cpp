@@ -4,6 +4,7 @@
 #include "fluid/free_surface.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "fluid/sph_materials.h"
 
 #include <algorithm>
@@ -16,8 +17,13 @@ void FreeSurface::begin_run()
 {
   table.reset();
   alongs.clear();
+  stiffenings.clear();
   turn.clear();
-  if (materials.completes_surfaces()) table.emplace(materials.wall_table());
+  if (!materials.completes_surfaces()) return;
+  table.emplace(materials.wall_table());
+  bend = with_kernel(materials.options.kernel, [&](auto kernel) {
+    return bend_over_slope<decltype(kernel)>(domain->dimension);
+  });
 }
 
 // Boundary particles have no turn.
@@ -26,6 +32,7 @@ void FreeSurface::begin_lists()
 {
   if (!on()) return;
   alongs.assign(atom->nmax, 1.0);
+  stiffenings.assign(atom->nmax, 1.0);
   turn.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
 }
 
@@ -38,6 +45,7 @@ void FreeSurface::complete(Fluid &core, const Particles &p)
     const double support = materials.support(type), x = support * length / p.rho[i];
     const SurfaceTable::Value h = (*table)(x);
     alongs[i] = h.factor - x * h.slope;
+    stiffenings[i] = std::fabs(alongs[i]) + bend * h.slope;
     const double by = length > 0.0 ? h.slope * support / length : 0.0;
     for (int d = 0; d < 3; d++) of[d] *= by;
     p.rho[i] *= h.factor;
@@ -49,10 +57,15 @@ void FreeSurface::set_pressure(int i, double p_over_rho2)
   for (int d = 0; d < 3; d++) turn[3 * i + d] *= p_over_rho2;
 }
 
-double *FreeSurface::pack(int i, double *buf) const { return std::copy_n(&turn[3 * i], 3, buf); }
+double *FreeSurface::pack(int i, double *buf) const
+{
+  *buf = stiffenings[i];
+  return std::copy_n(&turn[3 * i], 3, buf + 1);
+}
 
 const double *FreeSurface::unpack(int i, const double *buf)
 {
-  std::copy_n(buf, 3, &turn[3 * i]);
-  return buf + 3;
+  stiffenings[i] = *buf;
+  std::copy_n(buf + 1, 3, &turn[3 * i]);
+  return buf + 4;
 }

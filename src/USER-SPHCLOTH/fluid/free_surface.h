@@ -34,17 +34,21 @@ class FreeSurface : protected Pointers {
   // the rest is its turn.
   double along(int i) const { return alongs.empty() ? 1.0 : alongs[i]; }
   void set_pressure(int i, double p_over_rho2);
+  // Of all: by how much more the density changes with positions than the sum does, at most
+  double stiffening(int i) const { return stiffenings.empty() ? 1.0 : stiffenings[i]; }
   // of all
   const double *turns() const { return turn.data(); }
 
   double *pack(int i, double *buf) const;
   const double *unpack(int i, const double *buf);
-  double bytes() const { return sphcloth::bytes_of(alongs, turn); }
+  double bytes() const { return sphcloth::bytes_of(alongs, stiffenings, turn); }
 
  private:
   const SPHMaterials &materials;
   std::optional<sphcloth::SurfaceTable> table;
+  double bend = 0.0;    // of the kernel, see bend_over_slope()
   std::vector<double> alongs;    // h - x h'
+  std::vector<double> stiffenings;
   std::vector<double> turn;    // [n][3], h' H n, then T
 };
 

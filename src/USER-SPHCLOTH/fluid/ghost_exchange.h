@@ -7,7 +7,7 @@
 namespace LAMMPS_NS {
 
 // One number, density and pressure; for a density that is integrated three, one and one; what a
-// vertex has; a share of viscosity; three of a density that is completed at free surfaces; for mass
+// vertex has; a share of viscosity; four of a density that is completed at free surfaces; for mass
 // scaling one, four and three
 
 enum class GhostData {

@@ -257,7 +257,7 @@ static double rho0_ratio(const SPHMaterials::TypeData &a, const SPHMaterials::Ty
   return a.eos.rho0 / b.eos.rho0;
 }
 
-// Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
+// If all pairs approach each other Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
 
 double SPHMaterials::viscosity(int i, int j) const
 {

@@ -71,6 +71,23 @@ class SurfaceTable {
   }
 };
 
+// H |grad grad W n| over |grad W|, n any direction, each the root of the mean square over the
+// support: with it a density that is completed changes by no more than |h - x h'| + h' times this
+// as much as the sum does, if its neighbors are spread evenly.
+
+template <class Kernel> double bend_over_slope(int dim)
+{
+  constexpr int N = 1000;
+  double bends = 0.0, slopes = 0.0;
+  for (int k = 0; k < N; k++) {
+    const double q = (k + 0.5) / N, ring = dim == 3 ? q * q : q;
+    const double slope = Kernel::slope_over_q(q), along = q * q * Kernel::bend_over_q(q);
+    bends += ring * (slope * slope + (2.0 * slope + along) * along / dim);
+    slopes += ring * q * q * slope * slope;
+  }
+  return std::sqrt(bends / slopes);
+}
+
 }    // namespace sphcloth
 
 #endif

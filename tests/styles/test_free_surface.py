@@ -94,7 +94,9 @@ def test_forces_are_the_gradient_of_the_energy(kernel, options, dimension, floor
 
 def test_virial_is_the_derivative_of_the_energy_by_the_size():
     lmp = block("tension yes", 3, 0.93 * DX, 4, 0.006)
-    lmp.commands_string("compute virial all pressure NULL pair\nthermo_style custom step c_virial pe")
+    lmp.commands_string(
+        "compute virial all pressure NULL pair\nthermo_style custom step c_virial pe"
+    )
     lmp.commands_string("thermo_modify norm no\nrun 0")
     work = lmp.extract_compute("virial", 0, 0) * 2.0**3 * 3
     x, h, found = by_id(lmp, "x").copy(), 1e-6, []

@@ -53,11 +53,6 @@ void FluidEvaluation::begin_run()
   pressures_follow = false;
   lattices.set_expansion(nullptr);
   boundaries = find_fluid_boundaries(modify);
-  if (surface.on() && !boundaries.empty())
-    error->all(FLERR,
-               "{}: surface yes sums over particles only, fix wall/sph and meshes with 'wall yes' "
-               "are none: use boundary particles, or 'surface no'",
-               STYLE);
   find_sides();
   cache_pair_values();
   lattices.calibrate();
@@ -161,11 +156,10 @@ void FluidEvaluation::find_forces()
   if (surface.on()) core->turn_forces(particles());
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
-  if (surface.on())
-    core->for_active_fluid([this](int i, int) { atom->drho[i] *= surface.along(i); });
-  if (!lattices.adapts_density()) return;    // else, so far, the rates of the sums
-  core->for_active_fluid(
-      [this](int i, int t) { atom->drho[i] *= lattices.slope(i, t, atom->rho[i]); });
+  if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
+  core->for_active_fluid([this](int i, int t) {
+    atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.along(i);
+  });
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
@@ -181,11 +175,8 @@ void FluidEvaluation::push(FluidBoundary &boundary)
 void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 {
   Particles all = particles();
-  if (!hooks) {
-    core->virials(all, receive, context);
-    if (surface.on()) core->turn_virials(all, receive, context);
-    return;
-  }
+  if (surface.on()) core->turn_virials(all, receive, context);
+  if (!hooks) return core->virials(all, receive, context);
   all.active = nullptr;
   core->select(all);
   core->record_positions(all, box());
@@ -405,10 +396,8 @@ void FluidEvaluation::find_pressures(const Particles &p)
     double &term = p_over_rho2[i];
     term = std::max(equation_of_state(t).pressure(rho), min) / (rho * rho);
     if (adapts) term *= lattices.slope(i, t, rho);
-    if (surface.on()) {
-      surface.set_pressure(i, core->model.pressure_scale[t] * term);
-      term *= surface.along(i);
-    }
+    if (surface.on()) surface.set_pressure(i, core->model.pressure_scale[t] * term);
+    term *= surface.along(i);
     // a density that is renormalized has a gradient that is
     for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number

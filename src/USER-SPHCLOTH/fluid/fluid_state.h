@@ -32,8 +32,9 @@ class FluidState : public SPHMaterials {
   static constexpr const char *EXTRACT = "fluid_state";
 
   FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
-      SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_), stability(lmp_, *this, lattices, surface),
-      scaled(lmp_, ghosts_), integrated(lmp_, *this, ghosts_), surface(lmp_, *this), pair(pair_)
+      SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_),
+      stability(lmp_, *this, lattices, surface), scaled(lmp_, ghosts_),
+      integrated(lmp_, *this, ghosts_), surface(lmp_, *this), pair(pair_)
   {
   }
   FluidLattices lattices;

@@ -5,6 +5,8 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "error.h"
+#include "fluid/fluid_boundary.h"
 #include "fluid/sph_materials.h"
 
 #include <algorithm>
@@ -20,6 +22,10 @@ void FreeSurface::begin_run()
   stiffenings.clear();
   turn.clear();
   if (!materials.completes_surfaces()) return;
+  if (!find_fluid_boundaries(modify).empty())
+    error->all(FLERR,
+               "pair_style sph/tait: surface yes sums over particles only, fix wall/sph and meshes "
+               "with 'wall yes' are none: use boundary particles, or 'surface no'");
   table.emplace(materials.wall_table());
   bend = with_kernel(materials.options.kernel, [&](auto kernel) {
     return bend_over_slope<decltype(kernel)>(domain->dimension);

@@ -115,11 +115,11 @@ struct QuinticSpline {
   template <class Real> static Real bend_over_q(Real q)
   {
     const Real u = std::max(Real(1) - q, Real(0)), b = std::max(Real(2.0 / 3.0) - q, Real(0));
-    const Real far = std::max(q, Real(1.0 / 3.0)), u3 = u * u * u, b3 = b * b * b;
+    const Real clamped = std::max(q, Real(1.0 / 3.0)), u3 = u * u * u, b3 = b * b * b;
     const Real inner = Real(80) - Real(150) * q;
     const Real outer =
-        Real(5) * (Real(4) * (u3 - Real(6) * b3) * far + u3 * u - Real(6) * b3 * b) /
-        (far * far * far);
+        Real(5) * (Real(4) * (u3 - Real(6) * b3) * clamped + u3 * u - Real(6) * b3 * b) /
+        (clamped * clamped * clamped);
     return q < Real(1.0 / 3.0) ? inner : outer;
   }
 

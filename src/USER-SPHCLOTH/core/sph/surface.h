@@ -3,7 +3,7 @@
 //
 // Where the fluid ends at a plane at the distance d, the sum (1) is S = rho (1 - lambda(d/H)), and
 // its gradient has the length G = -rho lambda'(d/H)/H.  Their ratio does not depend on rho and
-// gives the place of the plane, so
+// shows where the plane is, so
 //   rho_i = S_i h(x_i),    x_i = H G_i/S_i,    h(-lambda'/(1 - lambda)) = 1/(1 - lambda).
 // Nearer to a surface than any particle can be inside of it, h is 2.  Inside x is 0 and h is 1, and
 // in a sheet or a drop of few particles, whose gradients cancel, the sum stays as it is.
@@ -24,7 +24,7 @@ class SurfaceTable {
     double factor, slope;    // h and its derivative, that of the interpolation
   };
 
-  explicit SurfaceTable(const WallTable &wall) : largest(place(wall, 0.0))
+  explicit SurfaceTable(const WallTable &wall) : largest(gradient_ratio(wall, 0.0))
   {
     for (int k = 0; k <= PIECES; k++) {
       const double delta = k < PIECES ? delta_of(wall, largest * k / PIECES) : 0.0;
@@ -54,7 +54,7 @@ class SurfaceTable {
   double largest;    // x at the surface itself
   std::vector<Value> nodes = std::vector<Value>(PIECES + 1);
 
-  static double place(const WallTable &wall, double delta)
+  static double gradient_ratio(const WallTable &wall, double delta)
   {
     const WallTable::Value of = wall(delta);
     return -of.slope / (1.0 - of.lambda);
@@ -65,7 +65,7 @@ class SurfaceTable {
     double low = 0.0, high = 1.0;
     for (int n = 0; n < 60; n++) {
       const double middle = 0.5 * (low + high);
-      (place(wall, middle) > x ? low : high) = middle;
+      (gradient_ratio(wall, middle) > x ? low : high) = middle;
     }
     return 0.5 * (low + high);
   }

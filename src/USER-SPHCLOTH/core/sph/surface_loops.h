@@ -39,7 +39,7 @@ template <class K, class P> struct FluidLoops<K, P>::SurfaceSums {
   SPHCLOTH_INLINE void add_turns(const Records &records, const Neighborhood &of, Columns &c)
   {
     const Terms &t = of.terms;
-    const typename Records::Gradient own = records.gradients[of.i];
+    const typename Records::Gradient turn = records.gradients[of.i];
     const Real scale = t.stiffness * (WALL ? t.rho0 : Real(1));
     const Real bend = t.f * t.inv_support * t.inv_support;
     alignas(64) Real tx[LANES], ty[LANES], tz[LANES];
@@ -54,7 +54,7 @@ template <class K, class P> struct FluidLoops<K, P>::SurfaceSums {
         },
         [&](int k, Separation r) SPHCLOTH_LAMBDA {
           const Real q = std::sqrt(r.sq()) * t.inv_support;
-          const Real dx = own.x - tx[k], dy = own.y - ty[k], dz = own.z - tz[k];
+          const Real dx = turn.x - tx[k], dy = turn.y - ty[k], dz = turn.z - tz[k];
           const Real slope = t.f * K::slope_over_q(q);
           const Real along = bend * K::bend_over_q(q) * (dx * r.x + dy * r.y + dz * r.z);
           const double weight =

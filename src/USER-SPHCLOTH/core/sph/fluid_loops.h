@@ -67,11 +67,18 @@ template <class K, class P> class FluidLoops : public Fluid {
   }
   void sum_gradients(const Particles &p, double *gradient) override
   {
-    all_sum_gradients(p, gradient);
+    SurfaceLoops{*this}.sum_gradients(p, gradient);
   }
-  void record_turns(const Particles &, const double *turn) override;
-  void turn_forces(const Particles &) override;
-  void turn_virials(const Particles &, Receiver, void *context) override;
+  void record_turns(const Particles &p, const double *turn) override
+  {
+    const double scale = 1.0 / (records.unit * records.unit);
+    records.record_gradients(turn, nullptr, scale, p.n_all, touched());
+  }
+  void turn_forces(const Particles &p) override { SurfaceLoops{*this}.forces(p); }
+  void turn_virials(const Particles &p, Receiver receive, void *context) override
+  {
+    SurfaceLoops{*this}.virials(p, {receive, context});
+  }
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
@@ -99,6 +106,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   struct DifferenceSums;    // rate_loops.h
   struct VelocitySums;    // viscosity_loops.h
   struct SurfaceSums;    // surface_loops.h
+  struct SurfaceLoops;
   struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;
@@ -178,10 +186,6 @@ template <class K, class P> class FluidLoops : public Fluid {
 
   // viscosity_loops.h
   void all_viscosity_shares(const Particles &, double *share);
-
-  // surface_loops.h
-  void all_sum_gradients(const Particles &, double *gradient);
-  template <bool VIRIAL> void all_turns(const Particles &, Listener);
 
   // stiffness_loops.h
   void all_stiffness(const Particles &, const Selection &, Stiffness *);

@@ -84,77 +84,81 @@ template <class K, class P> struct FluidLoops<K, P>::SurfaceSums {
   }
 };
 
-template <class K, class P>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_sum_gradients(const Particles &p, double *gradient)
-{
-  Columns c;
-  for (int t = 1; t <= model.n_types; t++) {
-    if (!is_fluid(t)) continue;
-    for (const int slot : selection.of(t)) {
-      const int i = lists.at(slot);
-      SurfaceSums sums;
-      for (const int other : lists.present_types()) {
-        const NeighborSpan near = lists(slot, other);
-        if (near.n == 0) continue;
-        const PairTerms &whole = model.pair(t, other);
-        const double each = is_fluid(other) ? whole.rho0_ratio : whole.rho0;
-        sums.add_gradient(records, {i, near, pair(t, other), masses(p, near, other)}, each, c);
+// virtual functions cannot be multiversioned, so these do their work
+
+template <class K, class P> struct FluidLoops<K, P>::SurfaceLoops {
+  FluidLoops &fluid;
+
+  SPHCLOTH_MULTIVERSION void sum_gradients(const Particles &p, double *gradient) const
+  {
+    Columns c;
+    for (int t = 1; t <= fluid.model.n_types; t++) {
+      if (!fluid.is_fluid(t)) continue;
+      for (const int slot : fluid.selection.of(t)) {
+        const int i = fluid.lists.at(slot);
+        SurfaceSums sums;
+        for (const int other : fluid.lists.present_types()) {
+          const NeighborSpan near = fluid.lists(slot, other);
+          if (near.n == 0) continue;
+          const PairTerms &whole = fluid.model.pair(t, other);
+          const double each = fluid.is_fluid(other) ? whole.rho0_ratio : whole.rho0;
+          sums.add_gradient(fluid.records,
+                            {i, near, fluid.pair(t, other), fluid.masses(p, near, other)}, each, c);
+        }
+        gradient[3 * i] = fluid.f_unit * sums.x.total();
+        gradient[3 * i + 1] = fluid.f_unit * sums.y.total();
+        gradient[3 * i + 2] = fluid.f_unit * sums.z.total();
       }
-      gradient[3 * i] = f_unit * sums.x.total();
-      gradient[3 * i + 1] = f_unit * sums.y.total();
-      gradient[3 * i + 2] = f_unit * sums.z.total();
     }
   }
-}
 
-template <class K, class P>
-template <bool VIRIAL>
-SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_turns(const Particles &p, Listener listener)
-{
-  Columns c;
-  for (int t = 1; t <= model.n_types; t++) {
-    const bool fluid = is_fluid(t);
-    for (const int slot : selection.of(t)) {
-      const int i = lists.at(slot);
-      SurfaceSums sums;
-      for (const int other : lists.present_types()) {
-        const NeighborSpan near =
-            VIRIAL ? lists.without_pruning(slot, other) : lists(slot, other);
-        if (near.n == 0 || !(fluid || is_fluid(other))) continue;
-        if (fluid && is_fluid(other))
-          sums.template add_turns<false, false, VIRIAL>(
-              records, {i, near, pair(t, other), masses(p, near, other)}, c);
-        else if (fluid)
-          sums.template add_turns<true, true, VIRIAL>(records, {i, near, pair(t, other), {}}, c);
+  SPHCLOTH_MULTIVERSION void forces(const Particles &p) const { add_turns<false>(p, {}); }
+  SPHCLOTH_MULTIVERSION void virials(const Particles &p, const Listener &listener) const
+  {
+    add_turns<true>(p, listener);
+  }
+
+ private:
+  template <bool VIRIAL>
+  SPHCLOTH_INLINE void add_turns(const Particles &p, const Listener &listener) const
+  {
+    Columns c;
+    for (int t = 1; t <= fluid.model.n_types; t++)
+      for (const int slot : fluid.selection.of(t)) {
+        const int i = fluid.lists.at(slot);
+        const Acceleration a = turns_on<VIRIAL>(p, slot, t, c);
+        if (VIRIAL)
+          listener.receive(listener.context, i, a);
         else
-          sums.template add_turns<true, false, VIRIAL>(
-              records, {i, near, pair(t, other), masses(p, near, other)}, c);
+          fluid.apply(p, i, fluid.is_fluid(t), a);
       }
-      const Acceleration a = sums.total(f_unit, records.unit, VIRIAL);
-      if (VIRIAL)
-        listener.receive(listener.context, i, a);
-      else
-        apply(p, i, fluid, a);
-    }
   }
-}
 
-template <class K, class P>
-void FluidLoops<K, P>::record_turns(const Particles &p, const double *turn)
-{
-  records.record_gradients(turn, nullptr, 1.0 / (records.unit * records.unit), p.n_all, touched());
-}
-
-template <class K, class P> void FluidLoops<K, P>::turn_forces(const Particles &p)
-{
-  all_turns<false>(p, {});
-}
-
-template <class K, class P>
-void FluidLoops<K, P>::turn_virials(const Particles &p, Receiver receive, void *context)
-{
-  all_turns<true>(p, {receive, context});
-}
+  template <bool VIRIAL>
+  SPHCLOTH_INLINE Acceleration turns_on(const Particles &p, int slot, int t, Columns &c) const
+  {
+    SurfaceSums sums;
+    const int i = fluid.lists.at(slot);
+    const bool is_fluid = fluid.is_fluid(t);
+    for (const int other : fluid.lists.present_types()) {
+      const NeighborSpan near =
+          VIRIAL ? fluid.lists.without_pruning(slot, other) : fluid.lists(slot, other);
+      const bool of_fluid = fluid.is_fluid(other);
+      if (near.n == 0 || !(is_fluid || of_fluid)) continue;
+      const Terms &terms = fluid.pair(t, other);
+      const Records &records = fluid.records;
+      if (!of_fluid)
+        sums.template add_turns<true, true, VIRIAL>(records, {i, near, terms, {}}, c);
+      else if (is_fluid)
+        sums.template add_turns<false, false, VIRIAL>(
+            records, {i, near, terms, fluid.masses(p, near, other)}, c);
+      else
+        sums.template add_turns<true, false, VIRIAL>(
+            records, {i, near, terms, fluid.masses(p, near, other)}, c);
+    }
+    return sums.total(fluid.f_unit, fluid.records.unit, VIRIAL);
+  }
+};
 
 }    // namespace sphcloth
 

@@ -158,7 +158,7 @@ void FluidEvaluation::find_forces()
   for (FluidBoundary *boundary : boundaries) push(*boundary);
   if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
   core->for_active_fluid([this](int i, int t) {
-    atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.along(i);
+    atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.factor(i);
   });
 }
 

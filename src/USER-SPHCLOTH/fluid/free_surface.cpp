@@ -18,14 +18,15 @@ using namespace sphcloth;
 void FreeSurface::begin_run()
 {
   table.reset();
+  factors.clear();
   alongs.clear();
   stiffenings.clear();
   turn.clear();
   if (!materials.completes_surfaces()) return;
   if (!find_fluid_boundaries(modify).empty())
     error->all(FLERR,
-               "pair_style sph/tait: surface yes sums over particles only, fix wall/sph and meshes "
-               "with 'wall yes' are none: use boundary particles, or 'surface no'");
+               "pair_style sph/tait: surface is 'yes', but fix wall/sph and meshes with 'wall yes' "
+               "complete sums on their own: use boundary particles instead, or 'surface no'");
   table.emplace(materials.wall_table());
   bend = with_kernel(materials.options.kernel, [&](auto kernel) {
     return bend_over_slope<decltype(kernel)>(domain->dimension);
@@ -37,6 +38,7 @@ void FreeSurface::begin_run()
 void FreeSurface::begin_lists()
 {
   if (!on()) return;
+  factors.assign(atom->nmax, 1.0);
   alongs.assign(atom->nmax, 1.0);
   stiffenings.assign(atom->nmax, 1.0);
   turn.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
@@ -50,6 +52,7 @@ void FreeSurface::complete(Fluid &core, const Particles &p)
     const double length = std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
     const double support = materials.support(type), x = support * length / p.rho[i];
     const SurfaceTable::Value h = (*table)(x);
+    factors[i] = h.factor;
     alongs[i] = h.factor - x * h.slope;
     stiffenings[i] = std::fabs(alongs[i]) + bend * h.slope;
     const double by = length > 0.0 ? h.slope * support / length : 0.0;

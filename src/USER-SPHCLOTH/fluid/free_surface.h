@@ -33,6 +33,9 @@ class FreeSurface : protected Pointers {
   // Of an owned particle, once its p/rho^2 is known: what acts along the line of two particles;
   // the rest is its turn.
   double along(int i) const { return alongs.empty() ? 1.0 : alongs[i]; }
+  // Of an owned particle, its density over the sum; the rates of the two have the same ratio where
+  // the distance to the surface stays
+  double factor(int i) const { return factors.empty() ? 1.0 : factors[i]; }
   void set_pressure(int i, double p_over_rho2);
   // Of all: by how much more the density changes with positions than the sum does, at most
   double stiffening(int i) const { return stiffenings.empty() ? 1.0 : stiffenings[i]; }
@@ -41,12 +44,13 @@ class FreeSurface : protected Pointers {
 
   double *pack(int i, double *buf) const;
   const double *unpack(int i, const double *buf);
-  double bytes() const { return sphcloth::bytes_of(alongs, stiffenings, turn); }
+  double bytes() const { return sphcloth::bytes_of(factors, alongs, stiffenings, turn); }
 
  private:
   const SPHMaterials &materials;
   std::optional<sphcloth::SurfaceTable> table;
   double bend = 0.0;    // of the kernel, see bend_over_slope()
+  std::vector<double> factors;    // h
   std::vector<double> alongs;    // h - x h'
   std::vector<double> stiffenings;
   std::vector<double> turn;    // [n][3], h' H n, then T

@@ -144,8 +144,8 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                label, individual ? "individual" : "sleep");
   if (fluid.completes_surfaces())
     error->all(FLERR,
-               "{}: surface yes of pair_style sph/tait turns forces off the lines of two "
-               "particles, which need steps of one length: use the scheme constant or global, or "
+               "{}: surface of pair_style sph/tait is 'yes', which turns forces off the lines of "
+               "two particles and needs steps of one length: use the scheme constant or global, or "
                "'surface no'",
                label);
   if (fluid.switches_viscosity() && individual)

@@ -23,6 +23,7 @@ KERNEL = """
 #include "core/sph/force_loops.h"
 #include "core/sph/rate_loops.h"
 #include "core/sph/stiffness_loops.h"
+#include "core/sph/surface_loops.h"
 #include "core/sph/viscosity_loops.h"
 template class sphcloth::FluidLoops<sphcloth::WendlandC2, sphcloth::MixedPrecision>;
 """

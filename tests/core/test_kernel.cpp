@@ -41,12 +41,17 @@ template <class K> void check_kernel()
       const double slope = (value<K>(s, r + d) - value<K>(s, r - d)) / (2.0 * d);
       BOOST_CHECK_SMALL(r * s.f * K::slope_over_q(r * s.inv_support) / peak - slope / peak, 1e-7);
       BOOST_CHECK(K::slope_over_q(r * s.inv_support) < 0.0);
+      const double q = r / 0.37, e = 1e-6;
+      const double bend = (K::slope_over_q(q + e) - K::slope_over_q(q - e)) / (2.0 * e * q);
+      BOOST_CHECK_SMALL(K::bend_over_q(q) - bend, 1e-4 * (1.0 + std::fabs(bend)));
     }
     BOOST_CHECK(K::shape(1.0) == 0.0);
     BOOST_CHECK(K::slope_over_q(1.0) == 0.0);
     BOOST_CHECK(K::shape(1.3) == 0.0);
     BOOST_CHECK(K::slope_over_q(1.3) == 0.0);
     BOOST_CHECK(std::isfinite(K::slope_over_q(0.0)));
+    BOOST_CHECK(std::isfinite(K::bend_over_q(0.0)));
+    BOOST_CHECK(K::bend_over_q(1.0) == 0.0 && K::bend_over_q(1.3) == 0.0);
   }
 }
 

@@ -52,6 +52,17 @@ def test_period_of_the_standing_wave() -> None:
     assert shallow.period == pytest.approx(2.0 / math.sqrt(9.81 * 0.01), rel=1e-3)
 
 
+def test_viscosity_makes_the_period_of_a_standing_wave_longer() -> None:
+    wave = StandingWave(1.0, 2.0, 9.81)
+    assert wave.viscous(0.0) == 0
+    assert wave.viscous(1e-6) == pytest.approx(0, abs=1e-8)
+    # of small viscosities the first term is sqrt(2) (nu k^2/omega)^(3/2)
+    share = 1e-3
+    viscosity = share * 2 * math.pi / wave.period / wave.number**2
+    assert wave.viscous(viscosity) == pytest.approx(math.sqrt(2) * share**1.5, rel=0.05)
+    assert wave.viscous(4 * viscosity) > 7 * wave.viscous(viscosity)
+
+
 def test_mode_of_the_standing_wave_is_incompressible_and_slips_along_the_bottom() -> None:
     wave, step = StandingWave(1.3, 2.1, 9.81), 1e-6
     at = np.array([[0.3, 0.7], [0.3 + step, 0.7], [0.3, 0.7 + step], [0.4, 0.0], [0.0, 1.3]])

@@ -61,6 +61,21 @@ class StandingWave:
         """
         return (self.number * amplitude) ** 2 / 8
 
+    def viscous(self, viscosity: float) -> float:
+        """Return the relative change of the period without damping by a viscosity in m^2/s.
+
+        That of deep water with a free surface and no other friction, the root n of
+        (n + 2 nu k^2)^2 + omega^2 = 4 nu^2 k^3 sqrt(k^2 + n/nu) with a period of 2 pi/abs(n):
+        Lamb, Hydrodynamics (1932), section 349.
+        """
+        if viscosity == 0.0:
+            return 0.0
+        square, omega = viscosity * self.number**2, 2 * math.pi / self.period
+        # y = sqrt(1 + n/(nu k^2)), which has a positive real part where motion decays downwards
+        roots = np.roots([1, 0, 2, -4, 1 + (omega / square) ** 2])
+        rate = square * (roots[roots.real > 0] ** 2 - 1)
+        return omega / abs(complex(rate[0])) - 1
+
     def mode(self, positions: NDArray) -> NDArray[np.float64]:
         """Return the velocity for a vertical surface speed of 1 at x = 0, shape (N, 2)."""
         x, y = self.number * positions[:, 0], self.number * positions[:, 1]

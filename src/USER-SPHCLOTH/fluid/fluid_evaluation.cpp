@@ -49,6 +49,7 @@ void FluidEvaluation::begin_run()
   hooks = nullptr;
   stability.forget();
   scaled.forget();
+  surface.begin_run();
   pressures_follow = false;
   lattices.set_expansion(nullptr);
   boundaries = find_fluid_boundaries(modify);
@@ -136,8 +137,10 @@ void FluidEvaluation::find_densities_and_pressures()
   find_densities(p);
   find_pressures(p);
   ghosts.send_to_ghosts(GhostData::DENSITY);
+  if (surface.on()) ghosts.send_to_ghosts(GhostData::TURN);
   if (extrapolate) find_boundary_pressures(p);
   core->record(p);
+  if (surface.on()) core->record_turns(p, surface.turns());
   const bool switched = core->model.friction == Friction::SWITCHED;
   // shares and friction of the correction are both of the velocities before it
   if (switched) find_viscosity_shares(p);
@@ -154,11 +157,13 @@ void FluidEvaluation::find_forces()
     core->impulses(particles(), *impulses);
   else
     core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
+  if (surface.on()) core->turn_forces(particles());
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
-  if (!lattices.adapts_density()) return;    // else, so far, the rates of the sums
-  core->for_active_fluid(
-      [this](int i, int t) { atom->drho[i] *= lattices.slope(i, t, atom->rho[i]); });
+  if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
+  core->for_active_fluid([this](int i, int t) {
+    atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.factor(i);
+  });
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
@@ -174,6 +179,7 @@ void FluidEvaluation::push(FluidBoundary &boundary)
 void FluidEvaluation::find_virials(Fluid::Receiver receive, void *context)
 {
   Particles all = particles();
+  if (surface.on()) core->turn_virials(all, receive, context);
   if (!hooks) return core->virials(all, receive, context);
   all.active = nullptr;
   core->select(all);
@@ -200,6 +206,7 @@ void FluidEvaluation::begin_lists()
   mass_or_volume.resize(atom->nmax);
   p_over_rho2.assign(atom->nmax, 0.0);
   if (integrates_density()) integrated.begin_lists(hooks);
+  surface.begin_lists();
   if (core->model.outputs == Outputs::RATE_AND_APPROACH) approach.resize(atom->nmax);
   if (core->model.friction == Friction::SWITCHED) viscosity_shares.assign(atom->nmax, 1.0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -338,6 +345,7 @@ void FluidEvaluation::find_densities(const Particles &p)
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
       core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
+    if (surface.on()) surface.complete(*core, p);
     if (!lattices.adapts_density()) return;
     return core->for_active_fluid(
         [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });
@@ -392,6 +400,8 @@ void FluidEvaluation::find_pressures(const Particles &p)
     double &term = p_over_rho2[i];
     term = std::max(equation_of_state(t).pressure(rho), min) / (rho * rho);
     if (adapts) term *= lattices.slope(i, t, rho);
+    if (surface.on()) surface.set_pressure(i, core->model.pressure_scale[t] * term);
+    term *= surface.along(i);
     // a density that is renormalized has a gradient that is
     for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number
@@ -418,6 +428,7 @@ int FluidEvaluation::ghost_size(GhostData what)
     case GhostData::SINCE:
     case GhostData::CHANGE: return 1;
     case GhostData::GRADIENT: return 3;
+    case GhostData::TURN: return 4;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
     default: return ScaledMass::ghost_size(what);
   }
@@ -435,6 +446,7 @@ double *FluidEvaluation::pack(GhostData what, int i, double *buf) const
     case GhostData::SINCE:
     case GhostData::CHANGE:
     case GhostData::GRADIENT: return integrated.pack(what, i, buf);
+    case GhostData::TURN: return surface.pack(i, buf);
     case GhostData::STIFFNESS: return stability.pack(i, buf);
     default: return buf + scaled.pack(what, i, buf);
   }
@@ -459,6 +471,7 @@ void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf
         break;
       case GhostData::SINCE:
       case GhostData::GRADIENT: buf = integrated.unpack(what, i, buf); break;
+      case GhostData::TURN: buf = surface.unpack(i, buf); break;
       case GhostData::STIFFNESS: buf = stability.unpack(i, buf); break;
       default: buf += scaled.unpack(what, i, buf);
     }
@@ -485,5 +498,6 @@ void FluidEvaluation::add(GhostData what, int n, const int *list, const double *
 double FluidEvaluation::bytes() const
 {
   return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
+      surface.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, approach, viscosity_shares, active_fluid);
 }

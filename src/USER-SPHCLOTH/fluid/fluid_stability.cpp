@@ -8,6 +8,7 @@
 #include "domain.h"
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_lattices.h"
+#include "fluid/free_surface.h"
 #include "fluid/sph_materials.h"
 #include "fluid/vertex_mobility.h"
 #include "lammps_util/atom_tools.h"
@@ -69,8 +70,8 @@ double FluidStability::find_sound(int i, double rho) const
 {
   const int type = atom->type[i];
   const Tait &eos = materials.equation_of_state(type);
-  const double sound =
-      eos.sound_speed() * eos.stiffening(rho) * std::sqrt(atom_mass(atom, i)) / rho;
+  const double sound = surface.stiffening(i) * eos.sound_speed() * eos.stiffening(rho) *
+      std::sqrt(atom_mass(atom, i)) / rho;
   // gradients are those of the density sum
   return materials.calibrates() ? sound * of_fluids.slope_of(type, rho) : sound;
 }

@@ -17,6 +17,7 @@ namespace LAMMPS_NS {
 
 class FluidBoundary;
 class FluidLattices;
+class FreeSurface;
 class SPHMaterials;
 class VertexMobility;
 
@@ -33,8 +34,8 @@ class FluidStability : protected Pointers {
   static constexpr int GHOST_SIZE = 7;    // numbers of a vertex
 
   FluidStability(class LAMMPS *lmp_, const SPHMaterials &materials_,
-                 const FluidLattices &of_fluids_) :
-      Pointers(lmp_), materials(materials_), of_fluids(of_fluids_)
+                 const FluidLattices &of_fluids_, const FreeSurface &surface_) :
+      Pointers(lmp_), materials(materials_), of_fluids(of_fluids_), surface(surface_)
   {
   }
 
@@ -92,6 +93,7 @@ class FluidStability : protected Pointers {
  private:
   const SPHMaterials &materials;
   const FluidLattices &of_fluids;
+  const FreeSurface &surface;
   const VertexMobility *mobility = nullptr;
   bool now = true, new_lists = true, has_vertices = false, with_vertices = false;
   sphcloth::Selection due;    // those that do not wait

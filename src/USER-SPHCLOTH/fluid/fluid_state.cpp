@@ -160,6 +160,7 @@ double FluidState::pressure_of(int i) const
   double p = p_over_rho2[i] * rho * rho;
   if (is_fluid(type)) {
     if (lattices.adapts_density()) p /= lattices.slope(i, type, rho);
+    p /= surface.along(i);
   } else if (calibrates())
     p /= lattices.slope_at_rest();
   if (is_fluid(type))

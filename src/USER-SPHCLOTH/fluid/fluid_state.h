@@ -9,6 +9,7 @@
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_lattices.h"
 #include "fluid/fluid_stability.h"
+#include "fluid/free_surface.h"
 #include "fluid/integrated_density.h"
 #include "fluid/scaled_mass.h"
 #include "fluid/sph_materials.h"
@@ -31,8 +32,9 @@ class FluidState : public SPHMaterials {
   static constexpr const char *EXTRACT = "fluid_state";
 
   FluidState(class LAMMPS *lmp_, Pair *pair_, GhostExchange &ghosts_) :
-      SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_), stability(lmp_, *this, lattices),
-      scaled(lmp_, ghosts_), integrated(lmp_, *this, ghosts_), pair(pair_)
+      SPHMaterials(lmp_), lattices(lmp_, *this), ghosts(ghosts_),
+      stability(lmp_, *this, lattices, surface), scaled(lmp_, ghosts_),
+      integrated(lmp_, *this, ghosts_), surface(lmp_, *this), pair(pair_)
   {
   }
   FluidLattices lattices;
@@ -140,6 +142,7 @@ class FluidState : public SPHMaterials {
   FluidStability stability;
   ScaledMass scaled;
   IntegratedDensity integrated;
+  FreeSurface surface;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
   std::vector<FluidBoundary *> boundaries;

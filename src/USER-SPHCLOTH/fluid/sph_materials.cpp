@@ -8,6 +8,7 @@
 #include "domain.h"
 #include "error.h"
 #include "lammps_util/arg_reader.h"
+#include "lammps_util/restart_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,9 +63,16 @@ void SPHMaterials::read_options(int narg, char **arg)
       options.delta = args.at_least(keyword, 0.0);
     else if (keyword == "reinit")
       options.reinit = args.integer(keyword, 0, 1000000000);
+    else if (keyword == "surface")
+      options.surface = args.choice(keyword, {"no", "yes"});
     else
-      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit");
+      args.unknown(keyword, "kernel, tension, precision, density, delta, reinit, surface");
   }
+  if (completes_surfaces() && integrates_density())
+    error->all(FLERR,
+               "{}: surface is 'yes', which completes a sum, but 'density continuity' has no "
+               "deficit at a free surface: leave out one of them",
+               STYLE);
 }
 
 /* ----------------------------------------------------------------------
@@ -250,7 +258,7 @@ static double rho0_ratio(const SPHMaterials::TypeData &a, const SPHMaterials::Ty
   return a.eos.rho0 / b.eos.rho0;
 }
 
-// Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
+// If all pairs approach each other Monaghan's alpha acts like nu = alpha c0 h_s / (2 (d + 2)).
 
 double SPHMaterials::viscosity(int i, int j) const
 {
@@ -407,13 +415,24 @@ WallImpact SPHMaterials::wall_impact() const
    restart and data files
 ------------------------------------------------------------------------- */
 
-void SPHMaterials::write_options(FILE *fp) const { fwrite(&options, sizeof(Options), 1, fp); }
+void SPHMaterials::write_options(FILE *fp) const
+{
+  const RecordHead head{RECORD_MARK, sizeof(Options)};
+  fwrite(&head, sizeof(head), 1, fp);
+  fwrite(&options, sizeof(Options), 1, fp);
+}
 
 void SPHMaterials::read_options(FILE *fp)
 {
-  if (comm->me == 0) utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
+  RecordHead head;
+  if (comm->me == 0) {
+    utils::sfread(FLERR, &head, sizeof(head), 1, fp, nullptr, error);
+    utils::sfread(FLERR, &options, sizeof(Options), 1, fp, nullptr, error);
+  }
+  MPI_Bcast(&head, sizeof(head), MPI_BYTE, 0, world);
   MPI_Bcast(&options, sizeof(Options), MPI_BYTE, 0, world);
-  if (std::find(std::begin(ALL_KERNELS), std::end(ALL_KERNELS), options.kernel) ==
+  if (head.mark != RECORD_MARK || head.bytes != sizeof(Options) ||
+      std::find(std::begin(ALL_KERNELS), std::end(ALL_KERNELS), options.kernel) ==
           std::end(ALL_KERNELS) ||
       !(options.support > 0.0))
     error->all(FLERR,

@@ -35,10 +35,12 @@ class SPHMaterials : protected Pointers {
     Density density = Density::SUMMATION;
     double delta = 0.1;    // diffusion of the density in its rate
     int reinit = 0;    // steps between re-initializations of that density, 0: never
+    int surface = 0;    // 1: the sum is completed at free surfaces
   } options;
   void read_options(int narg, char **arg);
   bool integrates_density() const { return options.density == Density::CONTINUITY; }
   bool diffuses() const { return integrates_density() && options.delta > 0.0; }
+  bool completes_surfaces() const { return options.surface; }
   bool calibrates() const { return options.density == Density::CALIBRATED; }
 
   // of a boundary: none of its own; as much as each fluid particle; the mean of the fluid around it

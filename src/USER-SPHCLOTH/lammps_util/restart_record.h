@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a fix keeps in restart files: plain records behind their length and a mark.  LAMMPS hands
-// them back by ID and style, without their length; these two tell records of another release.
+// What a style keeps in restart files: plain records behind their length and a mark.  LAMMPS hands
+// those of a fix back by ID and style, without their length; these two tell records of another
+// release.
 
 #ifndef SPHCLOTH_LAMMPS_UTIL_RESTART_RECORD_H
 #define SPHCLOTH_LAMMPS_UTIL_RESTART_RECORD_H

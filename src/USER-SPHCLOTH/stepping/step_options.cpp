@@ -142,6 +142,12 @@ void StepOptions::check(SteppingScheme scheme_in_force, const OutputTimes &times
                "{}: a speed of sound that follows the flow changes where all particles are updated "
                "together, with {} they never are: use another scheme, or a constant 'c0 C'",
                label, individual ? "individual" : "sleep");
+  if (fluid.completes_surfaces())
+    error->all(FLERR,
+               "{}: surface of pair_style sph/tait is 'yes', which turns forces off the lines of "
+               "two particles and needs steps of one length: use the scheme constant or global, or "
+               "'surface no'",
+               label);
   if (fluid.switches_viscosity() && individual)
     error->all(FLERR,
                "{}: individual steps leave some of the partners of a particle without a share in "

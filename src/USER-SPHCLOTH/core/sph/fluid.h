@@ -8,7 +8,7 @@
 //
 // This is what the pair style sees; the loops, one set per kernel and precision, are in
 // core/sph/fluid_loops.h, their sums in density_loops.h, force_loops.h,
-// rate_loops.h, stiffness_loops.h and viscosity_loops.h.
+// rate_loops.h, stiffness_loops.h, surface_loops.h and viscosity_loops.h.
 
 #ifndef SPHCLOTH_CORE_SPH_FLUID_H
 #define SPHCLOTH_CORE_SPH_FLUID_H
@@ -246,6 +246,15 @@ class Fluid {
   virtual void viscosity_shares(const Particles &, double *share) = 0;
   virtual void record_viscosity_shares(const Particles &, const double *share) = 0;
 
+  // Of a density that is completed at free surfaces: the gradient of the sum of every active fluid
+  // particle; and, from T of all, [n_all][3], of core/sph/surface_loops.h, what it adds to the
+  // forces on all, and their virials
+  using Receiver = void (*)(void *context, int i, const Acceleration &);
+  virtual void sum_gradients(const Particles &, double *gradient) = 0;
+  virtual void record_turns(const Particles &, const double *turn) = 0;
+  virtual void turn_forces(const Particles &) = 0;
+  virtual void turn_virials(const Particles &, Receiver, void *context) = 0;
+
   // (2): adds force and, if wanted, d rho/dt of all active owned particles, and finds `approach`
   virtual void forces(const Particles &, Target) = 0;
 
@@ -273,7 +282,6 @@ class Fluid {
                             const double *normals, VertexPairs &) = 0;
 
   // the virials of the same forces: receive(context, i, ...)
-  using Receiver = void (*)(void *context, int i, const Acceleration &);
   virtual void virials(const Particles &, Receiver, void *context) = 0;
 
   // how often a loop has evaluated a neighbor of a particle since it was asked last

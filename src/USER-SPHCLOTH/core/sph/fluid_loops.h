@@ -48,7 +48,7 @@ template <class K, class P> class FluidLoops : public Fluid {
   void density_rates(const Particles &, const double *gradient, double back, double *rate) override;
   void diffuse(const Particles &p, const Diffusion &diffusion) override
   {
-    records.record_gradients(diffusion.gradient, diffusion.since, p.n_all, touched());
+    records.record_gradients(diffusion.gradient, diffusion.since, 1.0, p.n_all, touched());
     diffuse_all(p, diffusion);
   }
   void smooth_densities(const Particles &, double *smooth) override;
@@ -64,6 +64,20 @@ template <class K, class P> class FluidLoops : public Fluid {
   void record_viscosity_shares(const Particles &p, const double *share) override
   {
     records.record_shares(share, p.n_all, touched());
+  }
+  void sum_gradients(const Particles &p, double *gradient) override
+  {
+    SurfaceLoops{*this}.sum_gradients(p, gradient);
+  }
+  void record_turns(const Particles &p, const double *turn) override
+  {
+    const double scale = 1.0 / (records.unit * records.unit);
+    records.record_gradients(turn, nullptr, scale, p.n_all, touched());
+  }
+  void turn_forces(const Particles &p) override { SurfaceLoops{*this}.forces(p); }
+  void turn_virials(const Particles &p, Receiver receive, void *context) override
+  {
+    SurfaceLoops{*this}.virials(p, {receive, context});
   }
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
@@ -91,6 +105,8 @@ template <class K, class P> class FluidLoops : public Fluid {
   template <Outputs OUTPUTS, bool VIRIAL, bool SOURCE> struct Sums;
   struct DifferenceSums;    // rate_loops.h
   struct VelocitySums;    // viscosity_loops.h
+  struct SurfaceSums;    // surface_loops.h
+  struct SurfaceLoops;
   struct Listener {    // what gets the virials
     Receiver receive = nullptr;
     void *context = nullptr;

@@ -5,6 +5,7 @@
 #include "core/sph/force_loops.h"
 #include "core/sph/rate_loops.h"
 #include "core/sph/stiffness_loops.h"
+#include "core/sph/surface_loops.h"
 #include "core/sph/viscosity_loops.h"
 
 template std::unique_ptr<sphcloth::Fluid>

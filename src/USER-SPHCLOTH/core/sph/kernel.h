@@ -4,6 +4,7 @@
 // Every kernel is written in q = r/H, so that
 //   W(r)           = norm(d) / H^d     * shape(q)
 //   (1/r) dW/dr    = norm(d) / H^(d+2) * slope_over_q(q)      (<= 0)
+//   (1/r) d/dr (1/r dW/dr) = norm(d) / H^(d+4) * bend_over_q(q)
 // and grad W = (1/r) dW/dr * r_vec needs no division by r.  Integral of W over d dimensions is 1;
 // outside the support, q >= 1, both are 0.
 //
@@ -24,6 +25,9 @@ namespace sphcloth {
 
 inline constexpr double PI = 3.14159265358979323846;
 
+// bend_over_q() grows as 1/q with some kernels; it is multiplied by q^2
+template <class Real> inline constexpr Real NEAREST = Real(1e-6);
+
 struct WendlandC2 {
   static constexpr const char *NAME = "wendland/c2";
   static constexpr double norm(int dim) { return dim == 3 ? 21.0 / (2.0 * PI) : 7.0 / PI; }
@@ -36,6 +40,11 @@ struct WendlandC2 {
   {
     const Real u = std::max(Real(1) - q, Real(0));
     return Real(-20) * u * u * u;
+  }
+  template <class Real> static Real bend_over_q(Real q)
+  {
+    const Real u = std::max(Real(1) - q, Real(0));
+    return Real(60) * u * u / std::max(q, NEAREST<Real>);
   }
 };
 
@@ -52,6 +61,11 @@ struct WendlandC4 {
     const Real u = std::max(Real(1) - q, Real(0)), u2 = u * u;
     return Real(-56.0 / 3.0) * u2 * u2 * u * (Real(1) + Real(5) * q);
   }
+  template <class Real> static Real bend_over_q(Real q)
+  {
+    const Real u = std::max(Real(1) - q, Real(0)), u2 = u * u;
+    return Real(560) * u2 * u2;
+  }
 };
 
 struct CubicSpline {
@@ -66,6 +80,13 @@ struct CubicSpline {
   {
     const Real u = std::max(Real(1) - q, Real(0));
     return q < Real(0.5) ? Real(18) * q - Real(12) : Real(-6) * u * u / q;
+  }
+  template <class Real> static Real bend_over_q(Real q)
+  {
+    const Real u = std::max(Real(1) - q, Real(0));
+    const Real outer = std::max(q, Real(0.5));
+    return q < Real(0.5) ? Real(18) / std::max(q, NEAREST<Real>)
+                         : Real(6) * u * (Real(1) + q) / (outer * outer * outer);
   }
 };
 
@@ -89,6 +110,16 @@ struct QuinticSpline {
     const Real inner = Real(-5) * (q * q * (Real(10) * q - Real(8)) + Real(8.0 / 9.0));
     const Real outer =
         Real(-5) * (u * u * u * u - Real(6) * b * b * b * b) / std::max(q, Real(1.0 / 3.0));
+    return q < Real(1.0 / 3.0) ? inner : outer;
+  }
+  template <class Real> static Real bend_over_q(Real q)
+  {
+    const Real u = std::max(Real(1) - q, Real(0)), b = std::max(Real(2.0 / 3.0) - q, Real(0));
+    const Real clamped = std::max(q, Real(1.0 / 3.0)), u3 = u * u * u, b3 = b * b * b;
+    const Real inner = Real(80) - Real(150) * q;
+    const Real outer =
+        Real(5) * (Real(4) * (u3 - Real(6) * b3) * clamped + u3 * u - Real(6) * b3 * b) /
+        (clamped * clamped * clamped);
     return q < Real(1.0 / 3.0) ? inner : outer;
   }
 

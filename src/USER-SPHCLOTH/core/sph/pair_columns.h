@@ -105,7 +105,8 @@ template <class P> class PairColumns {
   double unit = 1.0;    // of lengths
   AlignedVector<Site> sites;
   AlignedVector<Motion> motions;
-  AlignedVector<Gradient> gradients;    // of the density, empty unless it diffuses
+  // of the density, empty unless it diffuses; or T of core/sph/surface_loops.h
+  AlignedVector<Gradient> gradients;
   AlignedVector<Real> shares;    // of the artificial viscosity, empty unless it is switched
   mutable double n_evaluated = 0.0;    // pairs, by the loop over neighbors
 
@@ -137,15 +138,16 @@ template <class P> class PairColumns {
       for (int i = 0; i < p.n_all; i++) record_one(p, role, scale, i);
   }
 
-  // since may be null.  Of some particles, null: of all n
-  void record_gradients(const double *gradient, const double *since, int n,
+  // Times scale in these units, since may be null.  Of some particles, null: of all n
+  void record_gradients(const double *gradient, const double *since, double scale, int n,
                         const std::vector<int> *some)
   {
     gradients.resize(n + LANES);
+    const double by = scale * unit;
     const auto record_one = [&](int i) {
       const double *of = gradient + 3 * i;
-      gradients[i] = {static_cast<Real>(of[0] * unit), static_cast<Real>(of[1] * unit),
-                      static_cast<Real>(of[2] * unit),
+      gradients[i] = {static_cast<Real>(of[0] * by), static_cast<Real>(of[1] * by),
+                      static_cast<Real>(of[2] * by),
                       since ? static_cast<Real>(since[i]) : Real(0)};
     };
     if (some)

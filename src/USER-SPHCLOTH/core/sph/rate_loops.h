@@ -126,7 +126,7 @@ void FluidLoops<K, P>::density_rates(const Particles &p, const double *gradient,
                                      double *rate)
 {
   if (!gradient) return all_density_rates<false>(p, back, rate);
-  records.record_gradients(gradient, nullptr, p.n_all, touched());
+  records.record_gradients(gradient, nullptr, 1.0, p.n_all, touched());
   all_density_rates<true>(p, back, rate);
 }
 

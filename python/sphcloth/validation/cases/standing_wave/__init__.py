@@ -38,6 +38,9 @@ PARAMETERS = (
     Parameter("settle", 3.0, "sqrt(H/g)", "time of damping before the wave", 1.0, 100.0),
     Parameter("periods", 3.0, "T", "time of the wave", 1.0, 100.0, quick=2.0),
     WALL,
+    Parameter(
+        "surface", "no", "1", "whether a sum is completed at the surface", choices=("no", "yes")
+    ),
     *numerics(alpha=0.1, courant=0.5, density="continuity"),
 )
 
@@ -46,6 +49,7 @@ QUANTITIES = (
     Quantity("period_measured", "s", "the period itself, without the damping"),
     Quantity("period_reference", "s", "linear theory"),
     Quantity("second_order", "1", "relative change of the period by this steepness, in theory"),
+    Quantity("viscous", "1", "relative change of the period by this viscosity, in theory"),
     Quantity("damping", "1/s", "rate at which the amplitude falls"),
     Quantity("residual", "1", "rms of what the damped cosine leaves over the first amplitude"),
     *order_quantities("of the period"),
@@ -91,6 +95,7 @@ def measure(values: Mapping[str, Value], runner: Runner) -> dict[str, float]:
         "period_measured": seen[-1].period,
         "period_reference": wave.period,
         "second_order": wave.second_order(values["steepness"] / wave.number),
+        "viscous": wave.viscous(_viscosity(values)),
         "damping": seen[-1].fit[1],
         "residual": seen[-1].residual,
         **refined.orders(errors),
@@ -125,6 +130,13 @@ def _run(
             "surge": values["steepness"] / wave.number * 2 * math.pi / wave.period,
         },
     )
+
+
+def _viscosity(values: Mapping[str, Value]) -> float:
+    """Return the kinematic viscosity that alpha is, in m^2/s; half of the pairs approach."""
+    smoothing = values["support"] * values["depth"] / values["layers"] / 2
+    sound = values["sound"] * math.sqrt(values["gravity"] * values["depth"])
+    return values["alpha"] * sound * smoothing / (4 * (2 + 2))
 
 
 def _columns(values: Mapping[str, Value], layers: int) -> int:

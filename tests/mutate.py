@@ -149,7 +149,7 @@ BUGS = [
         "Vec3(-holders.force_on_holder(i))", "holders.force_on_holder(i)",
         "tests/styles/test_cloth_held.py"),
     Bug("pair: ghosts without density and pressure", "fluid/fluid_evaluation.cpp",
-        "  ghosts.send_to_ghosts(GhostData::DENSITY);\n  if (extrapolate)", "  if (extrapolate)",
+        "  ghosts.send_to_ghosts(GhostData::DENSITY);\n  if (surface", "  if (surface",
         RANKS),
     Bug("pair: one mass for all of a type", "fluid/fluid_evaluation.cpp",
         "if (mass[t] != mass_or_volume[i]) mass[t] = 0.0;", "",

@@ -68,6 +68,15 @@ def test_inside_nothing_changes():
     np.testing.assert_allclose(by_id(whole, "rho")[inside], by_id(plain, "rho")[inside], rtol=1e-9)
 
 
+@pytest.mark.parametrize("options", ["", "density calibrated"])
+def test_pressures_are_those_of_the_densities(options):
+    more = "compute state all sph/atom pressure\n"
+    lmp = block(f"tension yes {options}", by=0.006, more=more)
+    found = lmp.numpy.extract_compute("state", 1, 1)[np.argsort(lmp.numpy.extract_atom("id"))]
+    exact = C0**2 * RHO0 / 7 * ((by_id(lmp, "rho") / RHO0) ** 7 - 1)
+    np.testing.assert_allclose(found, exact, rtol=1e-9)
+
+
 def energy(lmp):
     lmp.command("run 0 post no")
     return lmp.get_thermo("pe")

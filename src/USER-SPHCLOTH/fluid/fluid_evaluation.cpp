@@ -360,16 +360,13 @@ void FluidEvaluation::find_boundary_pressures(const Particles &p)
   ghosts.send_to_ghosts(GhostData::DENSITY);
 }
 
-// Noise follows the speed of sound.  Shares of inactive particles, which new lists forget, are not
-// to be used: an impulse has that of its active source.
+// Shares of inactive particles, which new lists forget, are not to be used: an impulse has that of
+// its active source.
 
 void FluidEvaluation::find_viscosity_shares(const Particles &p)
 {
   for (int t = 1; t <= atom->ntypes; t++)
-    if (is_fluid(t))
-      core->model.viscosity_switch[t] = {
-          type(t).floor,
-          ViscositySwitch::NOISE * equation_of_state(t).sound_speed() / (0.5 * support(t))};
+    if (is_fluid(t)) core->model.viscosity_switch[t] = viscosity_switch(t);
   core->viscosity_shares(p, viscosity_shares.data());
   ghosts.send_to_ghosts(GhostData::VISCOSITY);
   core->record_viscosity_shares(p, viscosity_shares.data());

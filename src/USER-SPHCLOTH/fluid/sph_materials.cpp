@@ -390,13 +390,6 @@ double SPHMaterials::stored_energy(const Tait &eos, double rho) const
   return rho < eos.rho0 && !options.tension ? 0.0 : eos.energy(rho);
 }
 
-// A sum of rounded terms, in another order on another rank, with a margin of 10 or more
-
-double SPHMaterials::density_rounding(int i) const
-{
-  return (options.precision == Precision::DOUBLE ? 1e-9 : 1e-6) * types[i].eos.rho0;
-}
-
 WallTable SPHMaterials::wall_table() const
 {
   return with_kernel(options.kernel, [&](auto kernel) {

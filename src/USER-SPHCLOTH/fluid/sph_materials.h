@@ -96,8 +96,19 @@ class SPHMaterials : protected Pointers {
   // both until the next read()
   void cache_pair_values();
   void forget_pair_values();
-  // by how much the density of a fluid may be above that at rest though nothing compresses it
-  double density_rounding(int i) const;
+  // noise follows the speed of sound
+  sphcloth::ViscositySwitch viscosity_switch(int i) const
+  {
+    const TypeData &its = types[i];
+    const double smoothing = 0.5 * support(i);
+    return {its.floor, sphcloth::ViscositySwitch::NOISE * its.eos.sound_speed() / smoothing};
+  }
+  // By how much the density of a fluid may be above that at rest though nothing compresses it: a
+  // sum of rounded terms, in another order on another rank, with a margin of 10 or more
+  double density_rounding(int i) const
+  {
+    return (options.precision == sphcloth::Precision::DOUBLE ? 1e-9 : 1e-6) * types[i].eos.rho0;
+  }
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
   void set_stiffness(int i, double k, double unchanged_for)
   {

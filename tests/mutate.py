@@ -264,7 +264,7 @@ BUGS = [
     Bug("steps: the first kick is whole", "stepping/first_kick.h",
         "state == RECORDED ? 1.0 : 0.5", "1.0", FIRST_KICK),
     Bug("steps: velocities that were set count as half a step old", "stepping/first_kick.h",
-        "? STAGGERED : CHANGED", "? STAGGERED : STAGGERED", FIRST_KICK),
+        "same ? STAGGERED : GIVEN", "STAGGERED", FIRST_KICK),
     Bug("stability: half of the friction", "core/timestep/step_limits.h",
         "const double half = 0.5 * friction", "const double half = 0.25 * friction", CORE),
     Bug("air: lift points to the other side", "core/air/drag_law.h",

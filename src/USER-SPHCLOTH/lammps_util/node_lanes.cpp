@@ -115,10 +115,10 @@ void NodeLanes::open_lanes(const std::vector<int> &ranks)
   }
 }
 
-void NodeLanes::begin_lane(End &end, SharedMemory memory, std::size_t capacity) const
+void NodeLanes::begin_lane(End &end, SharedMemory shared, std::size_t capacity) const
 {
   end.lane.reset();
-  end.memory = std::move(memory);
+  end.memory = std::move(shared);
   if (end.memory.is_open()) end.lane.emplace(end.memory.address(), capacity, wait);
 }
 
@@ -133,6 +133,7 @@ SharedLane *NodeLanes::lane_of(int rank, End Pair::*which)
 double NodeLanes::bytes() const
 {
   double sum = 0.0;
-  for (const auto &[rank, pair] : pairs) sum += pair.out.memory.bytes() + pair.in.memory.bytes();
+  for (const auto &[rank, pair] : pairs)
+    sum += static_cast<double>(pair.out.memory.bytes() + pair.in.memory.bytes());
   return sum;
 }

@@ -109,8 +109,8 @@ void FixSPHIntegrate::init()
   int changed;
   MPI_Allreduce(&changed_here, &changed, 1, MPI_INT, MPI_MAX, world);
   stepper->init(fluid, changed != 0);
-  if (scheme == SteppingScheme::CONSTANT || scheme == SteppingScheme::INDIVIDUAL)
-    control.watch.demand();    // of a global step that comes later
+  // of a global step that comes later
+  if (scheme != SteppingScheme::GLOBAL) control.watch.demand();
   fluid->take_pair_evaluations();    // before this run
   check_group();
 }

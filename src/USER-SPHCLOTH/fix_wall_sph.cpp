@@ -41,8 +41,7 @@ FixWallSPH::FixWallSPH(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} wall/sph", id)), fluid(nullptr), slip(false),
     any_moves(false), reflection(1.0), summed(false)
 {
-  for (int k = 1; k < narg; k++)
-    for (const char *c = arg[k]; *c; c++) words = hash_with(words, static_cast<unsigned char>(*c));
+  for (int k = 1; k < narg; k++) words_hash = hash_with(words_hash, std::string_view(arg[k]));
   ArgReader args(lmp, label, narg, arg, 3);
   read_walls(args);
   while (args.more()) {

@@ -43,7 +43,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   double compute_vector(int) override;
   void *extract(const char *, int &) override;
 
-  std::uint64_t settings() const override { return words; }
+  std::uint64_t settings() const override { return words_hash; }
   void begin() override;
   double density(int i, double of_particles) override;
   double density_rate(int i, double of_particles, double back) override;
@@ -60,7 +60,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void add_to(sphcloth::ConcentrationGradient &, int i);
 
  private:
-  std::uint64_t words = EMPTY_HASH;    // of the command
+  std::uint64_t words_hash = EMPTY_HASH;    // of the command
   struct Record;    // in restart files
 
   struct Wall {

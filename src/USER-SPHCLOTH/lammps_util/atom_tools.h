@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -28,6 +29,12 @@ inline constexpr std::uint64_t EMPTY_HASH = 0xcbf29ce484222325U;
 inline std::uint64_t hash_with(std::uint64_t hash, std::uint64_t number)
 {
   return (hash ^ number) * 0x100000001b3U;
+}
+inline std::uint64_t hash_with(std::uint64_t hash, std::string_view words)
+{
+  for (const char c : words)
+    hash = hash_with(hash, static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+  return hash;
 }
 
 // A number that changes when the first n atoms, or their places in the arrays, do.

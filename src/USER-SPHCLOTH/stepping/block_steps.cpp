@@ -40,7 +40,6 @@ void BlockSteps::init(FluidState *style, bool particles_changed)
   const std::uint64_t settings = parts.limits.settings();
   if (parts.control.watch.begin_run(settings, particles_changed) && before != 0)
     start_over(settings != before);
-  parts.control.watch.demand();    // of uniform steps that come later
 }
 
 // Steps and impulses are of another state.  Where only particles have been changed those that are

@@ -69,7 +69,7 @@ std::uint64_t ParticleLimits::settings() const
   for (int i = 1; i <= atom->ntypes; i++) {
     if (atom->mass) hash = hash_with(hash, bits_of(atom->mass[i]));
     for (int j = i; j <= atom->ntypes; j++)
-      for (const char c : fluid->words(i, j)) hash = hash_with(hash, static_cast<unsigned char>(c));
+      hash = hash_with(hash, std::string_view(fluid->words(i, j)));
   }
   // sums, in which particles may stand in any order
   std::uint64_t mine = 0, of_ranks;

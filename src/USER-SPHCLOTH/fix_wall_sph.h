@@ -88,16 +88,24 @@ class FixWallSPH : public Fix, public FluidBoundary {
   std::vector<NumberOrVariable *> positions;
   bool slip, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
-  std::array<double, 3> open_low, open_high;    // out of reach of all walls
+  std::array<int, 6> wall_at;    // by face; -1: none
+  std::array<double, 3> open_low, open_high;    // out of reach of the walls across each axis
   sphcloth::WallTable table;
   sphcloth::WallImpact impact;
   std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
 
-  sphcloth::JointWalls near;    // of the particle that was asked for last
-  // All walls of each particle that was found in reach in this evaluation, and where by particle
-  enum { UNKNOWN = -1, OUT_OF_REACH = -2 };
+  struct OfType {    // of a type of fluid, in this evaluation
+    double support, rho0, stiffness, nu, impact;
+  };
+  std::vector<OfType> types;    // [ntypes + 1]
+
+  sphcloth::JointWalls near;    // in reach of the particle that was asked for last
+  // Those of each particle in this evaluation, and where by particle
+  struct Place {
+    int first, n;    // n < 0: not asked for yet
+  };
   std::vector<sphcloth::NearWall> found, measured;
-  std::vector<int> found_at;
+  std::vector<Place> found_at;
   std::vector<Press> presses;    // kept only for fix_modify virial yes
   std::vector<double> mine, all;    // force on each wall, x, y, z, then the energy; of all ranks
   bool summed;
@@ -106,10 +114,14 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void read_velocity(ArgReader &);
   void check_face(const Wall &) const;
   void locate(Wall &, double);
+  void take_materials();
   void find_open_space();
   bool query(int i);
-  bool measure(int i, double back = 0.0);
+  bool measure(int i, double back);
+  void measure(int i, double back, std::vector<sphcloth::NearWall> &into) const;
+  void measure(int i, int k, double back, std::vector<sphcloth::NearWall> &into) const;
   double slope(int, std::size_t) const;
+  double impact_rate(int i, double impact) const;
   double departure(int, std::size_t) const;
   void push(int i, double p_over_rho2, double times, bool first);
   double output(int);

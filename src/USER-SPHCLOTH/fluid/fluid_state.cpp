@@ -164,7 +164,7 @@ double FluidState::pressure_of(int i) const
   } else if (calibrates())
     p /= lattices.slope_at_rest();
   if (is_fluid(type))
-    for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
+    for (FluidBoundary *boundary : renormalizing) p /= boundary->inverse_gamma(i);
   return p;
 }
 

@@ -145,7 +145,7 @@ class FluidState : public SPHMaterials {
   FreeSurface surface;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
-  std::vector<FluidBoundary *> boundaries;
+  std::vector<FluidBoundary *> boundaries, renormalizing;    // all; the last of them
   SideSource *sides = nullptr;    // fluid on two of them does not interact; null without sheets
   StepHooks *hooks = nullptr;
   bool is_evaluated = false;

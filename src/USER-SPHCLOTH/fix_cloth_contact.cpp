@@ -16,7 +16,6 @@
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/lammps_version.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -46,6 +45,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   options.read(args);
+  counts.cloth_gap = options.cloth_rules.thickness;    // none is nearer before the first step
   if (options.walls) walls = std::make_unique<MeshBoundary>(lmp, label, groupbit);
   restart_peratom = !options.obstacle_groups.empty();
   last_positions.create(3, atom->nmax);

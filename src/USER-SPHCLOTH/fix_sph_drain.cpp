@@ -41,7 +41,10 @@ FixSPHDrain::FixSPHDrain(LAMMPS *lmp_, int narg, char **arg) :
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword != "region") args.unknown(keyword, "region");
-    region_name = args.word("region");
+    const std::string name = args.word("region");
+    if (!region_name.empty())
+      args.fail("region", name, "there is one already: give the union of several");
+    region_name = name;
     if (!domain->get_region_by_id(region_name))
       args.fail("region", region_name, "define it with the region command first");
   }

@@ -6,7 +6,6 @@
 #include "fix_sph_emit.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -63,6 +62,8 @@ void FixSPHEmit::read_options(ArgReader &args)
   start = physical_time(update);
   while (args.more()) {
     const std::string keyword = args.word("keyword");
+    if ((keyword == "disc" || keyword == "rectangle") && extent[0] > 0.0)
+      args.fail("opening", keyword, "there is one already: give one disc or one rectangle");
     if (keyword == "disc") {
       disc = true;
       center = vector("disc center");
@@ -189,12 +190,11 @@ void FixSPHEmit::pre_exchange()
 void FixSPHEmit::emit_layer(double age)
 {
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
-  const tagint last = largest_id(atom, world);
-
+  const tagint first = first_free_id(lmp, label, wanted);
   bigint mine[2] = {0, warned ? 0 : count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
-    add_particle(center + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
+    add_particle(center + pattern[k] + age * velocity, first + static_cast<tagint>(k));
   for (int i = before; i < atom->nlocal; i++) modify->create_attribute(i);
 
   mine[0] = atom->nlocal - before;

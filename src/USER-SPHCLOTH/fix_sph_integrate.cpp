@@ -130,16 +130,12 @@ void FixSPHIntegrate::use_scheme(SteppingScheme wanted, const BlockClock &clock)
 
 void FixSPHIntegrate::check_group()
 {
-  int wrong = 0, any_wrong = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
-  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
-  if (any_wrong)
+  if (const int type = fluid->boundary_type_in(groupbit))
     error->all(
         FLERR,
         "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
         "walls out",
-        label, group->names[igroup], any_wrong);
+        label, group->names[igroup], type);
 }
 
 // The step of the script is the ceiling.  How far ghosts reach, and by that the order of sums,

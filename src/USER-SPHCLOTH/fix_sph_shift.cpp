@@ -93,13 +93,9 @@ void FixSPHShift::init()
   cloth_bits = 0;
   for (const Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) cloth_bits |= fix->groupbit;
 
-  int wrong = 0, any_wrong = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
-  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
-  if (any_wrong)
+  if (const int type = fluid->boundary_type_in(groupbit))
     error->all(FLERR, "{}: group {} holds type {}, a boundary type: give a group of fluid", label,
-               group->names[igroup], any_wrong);
+               group->names[igroup], type);
 }
 
 /* ----------------------------------------------------------------------

@@ -16,7 +16,6 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "timer.h"
-#include "update.h"
 
 #include <algorithm>
 #include <array>

@@ -172,6 +172,7 @@ bool FixSPHEmit::layer_is_due() const
 
 void FixSPHEmit::setup_pre_exchange()
 {
+  largest_id = first_free_id(lmp, label, 0, largest_id) - 1;
   while (layer_is_due()) emit_layer(physical_time(update) - due());
 }
 
@@ -190,7 +191,9 @@ void FixSPHEmit::pre_exchange()
 void FixSPHEmit::emit_layer(double age)
 {
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
-  const tagint first = first_free_id(lmp, label, wanted);
+  for (Fix *fix : modify->get_fix_by_style("^sph/emit$"))
+    largest_id = std::max(largest_id, dynamic_cast<FixSPHEmit *>(fix)->largest_id);
+  const tagint first = first_free_id(lmp, label, wanted, largest_id);
   bigint mine[2] = {0, warned ? 0 : count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
@@ -210,6 +213,7 @@ void FixSPHEmit::emit_layer(double age)
   for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
   emitted += all[0];
   layers++;
+  largest_id = first + static_cast<tagint>(all[0]) - 1;
 }
 
 // owned particles that are where a layer appears; the layer before is a spacing further
@@ -263,7 +267,7 @@ double FixSPHEmit::compute_vector(int n)
 }
 
 struct FixSPHEmit::Record {
-  bigint emitted, layers;
+  bigint emitted, layers, largest_id;
   double start, momentum[3], time;    // start and time: physical
 };
 
@@ -272,6 +276,7 @@ void FixSPHEmit::write_restart(FILE *fp)
   if (comm->me) return;
   write_record(fp, Record{emitted,
                           layers,
+                          largest_id,
                           start,
                           {momentum[0], momentum[1], momentum[2]},
                           physical_time(update)});
@@ -282,6 +287,7 @@ void FixSPHEmit::restart(char *buf)
   const auto record = read_record<Record>(buf, label, error);
   emitted = record.emitted;
   layers = record.layers;
+  largest_id = static_cast<tagint>(record.largest_id);
   // reset_timestep may have come before this fix
   start = record.start + (physical_time(update) - record.time);
   std::copy(record.momentum, record.momentum + 3, momentum);

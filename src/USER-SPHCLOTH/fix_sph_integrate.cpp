@@ -105,10 +105,10 @@ void FixSPHIntegrate::init()
   if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
   if (scales) fluid->scaled_mass().want(groupbit, springs);
   control.init(fluid, limits.shortest_sound_time());
-  const int changed_here = first_kick.begin_run(atom, domain);
-  int changed;
-  MPI_Allreduce(&changed_here, &changed, 1, MPI_INT, MPI_MAX, world);
-  stepper->init(fluid, changed != 0);
+  const int change_here = static_cast<int>(first_kick.begin_run(atom, domain));
+  int change;
+  MPI_Allreduce(&change_here, &change, 1, MPI_INT, MPI_MAX, world);
+  stepper->init(fluid, static_cast<Change>(change));
   // of a global step that comes later
   if (scheme != SteppingScheme::GLOBAL) control.watch.demand();
   fluid->take_pair_evaluations();    // before this run

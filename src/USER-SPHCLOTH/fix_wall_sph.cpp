@@ -211,7 +211,7 @@ void FixWallSPH::find_open_space()
 
 void FixWallSPH::locate(Wall &wall, double elapsed)
 {
-  const double before = wall.position;
+  const double before = wall.last_position = wall.position;
   if (wall.at_edge)
     wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
   else if (wall.given.is_variable())
@@ -226,14 +226,14 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
 bool FixWallSPH::query(int i)
 {
   if (i >= static_cast<int>(found_at.size())) return measure(i, 0.0);
-  Place &place = found_at[i];
-  if (place.n < 0) {
-    place.first = static_cast<int>(found.size());
+  Range &range = found_at[i];
+  if (range.n < 0) {
+    range.first = static_cast<int>(found.size());
     measure(i, 0.0, found);
-    place.n = static_cast<int>(found.size()) - place.first;
+    range.n = static_cast<int>(found.size()) - range.first;
   }
-  if (place.n == 0) return false;
-  near = {&found[place.first], static_cast<std::size_t>(place.n), profiles[atom->type[i]]};
+  if (range.n == 0) return false;
+  near = {&found[range.first], static_cast<std::size_t>(range.n), profiles[atom->type[i]]};
   return true;
 }
 
@@ -251,25 +251,24 @@ void FixWallSPH::measure(int i, double back, std::vector<NearWall> &into) const
 {
   if (!(atom->mask[i] & groupbit)) return;
   const double *x = atom->x[i];
+  const int type = atom->type[i];
+  const auto measure_face = [&](int face) {
+    const int k = wall_at[face];
+    if (k < 0) return;
+    double distance = walls[k].distance(x);
+    if (back != 0.0) distance -= back * departure(i, k);
+    const double delta = distance / types[type].support;
+    if (delta < -1.0)
+      rank_error(lmp, FLERR,
+                 "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
+                 "start it in front, or lower the time step",
+                 label, atom->tag[i], FACES[face]);
+    if (delta < 1.0) into.emplace_back(k, delta, table, profiles[type]);
+  };
   for (int d = 0; d < 3; d++) {
-    if (back != 0.0 || !(x[d] > open_low[d])) measure(i, wall_at[2 * d], back, into);
-    if (back != 0.0 || !(x[d] < open_high[d])) measure(i, wall_at[2 * d + 1], back, into);
+    if (back != 0.0 || !(x[d] > open_low[d])) measure_face(2 * d);
+    if (back != 0.0 || !(x[d] < open_high[d])) measure_face(2 * d + 1);
   }
-}
-
-void FixWallSPH::measure(int i, int k, double back, std::vector<NearWall> &into) const
-{
-  if (k < 0) return;
-  const double support = types[atom->type[i]].support;
-  double distance = walls[k].distance(atom->x[i]);
-  if (back != 0.0) distance -= back * departure(i, k);
-  const double delta = distance / support;
-  if (delta < -1.0)
-    rank_error(lmp, FLERR,
-               "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
-               "start it in front, or lower the time step",
-               label, atom->tag[i], FACES[walls[k].face]);
-  if (delta < 1.0) into.emplace_back(k, delta, table, profiles[atom->type[i]]);
 }
 
 double FixWallSPH::density(int i, double of_particles)
@@ -284,30 +283,6 @@ double FixWallSPH::density_rate(int i, double of_particles, double back)
   double rate = 0.0;
   for (std::size_t n = 0; n < near.size(); n++) rate += slope(i, n) * departure(i, near[n].wall);
   return of_particles + rate;
-}
-
-// d rho_i / d distance from near[n], beside the others
-
-double FixWallSPH::slope(int i, std::size_t n) const
-{
-  const OfType &type = types[atom->type[i]];
-  return type.rho0 * near.slope(n) / type.support;
-}
-
-// velocity of particle i away from wall k
-
-double FixWallSPH::departure(int i, std::size_t k) const
-{
-  const int axis = walls[k].axis();
-  return walls[k].inwards() * (atom->v[i][axis] - walls[k].velocity[axis]);
-}
-
-// alpha c0 h_s rho0/rho D/H^2, D the value of the table
-
-double FixWallSPH::impact_rate(int i, double of_table) const
-{
-  const OfType &type = types[atom->type[i]];
-  return type.impact / atom->rho[i] * of_table / (2.0 * type.support);
 }
 
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
@@ -372,12 +347,15 @@ double FixWallSPH::approach(int i)
   return fastest;
 }
 
+// where it is or where it has been
+
 bool FixWallSPH::moves_beside(int i)
 {
-  if (!any_moves || !query(i)) return false;
-  for (std::size_t n = 0; n < near.size(); n++)
-    if (walls[near[n].wall].moves()) return true;
-  return false;
+  if (!any_moves || !(atom->mask[i] & groupbit)) return false;
+  const double *x = atom->x[i], support = types[atom->type[i]].support;
+  return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
+    return wall.moves() && std::min(wall.distance(x), wall.last_distance(x)) < support;
+  });
 }
 
 // Behind a wall the spring adds the square of its own frequency along the axis of the wall.

@@ -165,6 +165,26 @@ def test_a_body_takes_what_the_drops_give(tmp_path):
     assert np.abs(momentum() + under_way - before).max() < 1e-11 * np.abs(before).max()
 
 
+def test_a_body_takes_what_the_drops_give_when_steps_change(tmp_path):
+    """A force of LAMMPS's Verlet acts for half of its step and half of the next, an impulse once."""
+    fixes = "fix r obstacle rigid single\nfix c water cloth/contact 0.01 obstacle obstacle"
+    lmp = instance()
+    lmp.commands_string(scene(tmp_path, ball(), fixes, drops=RAIN.format(speed=-3), mass=0.2))
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+
+    def momentum():
+        return (mass[:, None] * by_id(lmp, "v")).sum(axis=0)
+
+    lmp.command("run 0")
+    before, forces = momentum(), []
+    for dt in 8 * (5e-4, 1e-3, 2e-4):
+        lmp.commands_string(f"timestep {dt}\nrun 10")
+        forces.append([lmp.extract_fix("c", 0, 1, n) for n in (7, 8, 9)])
+        under_way = 0.5 * dt * np.array(forces[-1])
+        assert np.abs(momentum() + under_way - before).max() < 1e-11 * np.abs(before).max()
+    assert np.count_nonzero(forces) > 10
+
+
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_ranks(tmp_path, ranks):
     fixes = (

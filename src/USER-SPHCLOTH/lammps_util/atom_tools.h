@@ -80,12 +80,12 @@ inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_
   return any;
 }
 
-// collective: the first of the IDs of n new atoms
+// collective: the first of the IDs of n new atoms, above those that are there or have been
 
-inline tagint first_free_id(LAMMPS *lmp, const std::string &label, bigint n)
+inline tagint first_free_id(LAMMPS *lmp, const std::string &label, bigint n, tagint been = 0)
 {
   const Atom *atom = lmp->atom;
-  tagint mine = 0, all = 0;
+  tagint mine = been, all = 0;
   for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
   if (n > MAXTAGINT - all)

@@ -82,6 +82,8 @@ std::uint64_t ParticleLimits::settings() const
   MPI_Allreduce(&mine, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
   for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
     hash = hash_with(hash, boundary->settings());
+  for (const Fix *contact : modify->get_fix_by_style("^cloth/contact$"))
+    hash = hash_with(hash, std::string_view(contact->id));
   for (const std::uint64_t number :
        {of_ranks, static_cast<std::uint64_t>(atom->natoms), bits_of(options.lambda.stability)})
     hash = hash_with(hash, number);

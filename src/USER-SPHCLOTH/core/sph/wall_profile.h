@@ -98,9 +98,10 @@ struct NearWall {
   }
 };
 
-// What several walls, an array, add together; those out of reach add nothing.  Half-spaces add the part of the kernel that they
-// miss together; with a profile, whose values may exceed 1, only a bounded part g = f/(1 + f^2) of
-// each overlaps with that of the others, so that each keeps a share of its force above 0.
+// What several walls, an array, add together; those out of reach add nothing.  Half-spaces add the
+// part of the kernel that they miss together; with a profile, whose values may exceed 1, only a
+// bounded part g = f/(1 + f^2) of each overlaps with that of the others, so that each keeps a share
+// of its force above 0.
 
 class JointWalls {
  public:

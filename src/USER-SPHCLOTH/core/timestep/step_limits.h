@@ -164,9 +164,10 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
   if constexpr (!MOTION_ALONE) {
     // in free flight there is no sound, until the particle is compressed; half of the way to there
     // leaves time for what the flight does not know
-    limit.tighten(with(lambda.acoustic,
-                       std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
-                  Limit::ACOUSTIC);
+    limit.tighten(
+        with(lambda.acoustic,
+             std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
+        Limit::ACOUSTIC);
     const double omega_sq = s.of_fluid_sq + s.of_vertices_sq;
     limit.tighten(
         with(lambda.stability,
@@ -246,8 +247,8 @@ particle_limits(const StepCoefficients &lambda, const StepStates &states, int n,
 
 // where lambda.motion_alone(), of states of which the motion is set
 
-SPHCLOTH_MULTIVERSION inline void
-motion_limits(const StepCoefficients &lambda, const StepStates &states, int n, StepLimits &limits)
+SPHCLOTH_MULTIVERSION inline void motion_limits(const StepCoefficients &lambda,
+                                                const StepStates &states, int n, StepLimits &limits)
 {
 #pragma omp simd
   for (int k = 0; k < n; k++) {

@@ -147,7 +147,7 @@ def copy_companions(script: Path, folder: Path) -> None:
 def companions(script: Path) -> list[Path]:
     """Return the files beside a script that it names in a command that reads files."""
     words = set()
-    for line in script.read_text(encoding="utf-8").splitlines():
+    for line in script.read_text(encoding="utf-8", errors="replace").splitlines():
         command, *arguments = line.split() or [""]
         if command in READERS:
             words.update(arguments)

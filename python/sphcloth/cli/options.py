@@ -44,6 +44,20 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     return ungrouped
 
 
+def given(group: object) -> list[str]:
+    """Return the options of a group whose values are not the defaults, as on the command line."""
+    hints = get_type_hints(type(group), include_extras=True)
+    named = []
+    for field in fields(group):
+        if getattr(group, field.name) != field.default:
+            # typer takes the first name for a default until it builds the command
+            option = hints[field.name].__metadata__[0]
+            names = [option.default, *(option.param_decls or ())]
+            usual = f"--{field.name.replace('_', '-')}"
+            named.append(next((name for name in names if str(name).startswith("--")), usual))
+    return named
+
+
 def _options(group: type) -> list[inspect.Parameter]:
     """Return a parameter for each field of a dataclass."""
     hints = get_type_hints(group, include_extras=True)

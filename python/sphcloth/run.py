@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import signal
 import subprocess
@@ -19,7 +18,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.log import error_lines
-from sphcloth.programs import lammps_on
+from sphcloth.programs import endings_interrupt, kill, lammps_on
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 from sphcloth.summary import summarize
 from sphcloth.trajectory import has_frame
@@ -195,18 +194,6 @@ def _started(command: list[str], out: Path) -> Iterator[subprocess.Popen[bytes]]
                 kill(process)
 
 
-@contextmanager
-def endings_interrupt() -> Iterator[None]:
-    """Let whatever else asks us to end count as a Ctrl-C: LAMMPS would run on unseen."""
-    endings = (signal.SIGTERM, signal.SIGHUP)
-    handlers = {ending: signal.signal(ending, signal.default_int_handler) for ending in endings}
-    try:
-        yield
-    finally:
-        for ending, handler in handlers.items():
-            signal.signal(ending, handler)
-
-
 def start_lammps(command: list[str], out: Path) -> subprocess.Popen[bytes]:
     """Start LAMMPS in a session of its own: a Ctrl-C reaches it through us alone, and once."""
     with (out / SCREEN).open("wb") as screen:
@@ -268,12 +255,6 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
         process.wait(GRACE_SECONDS)
     except (subprocess.TimeoutExpired, KeyboardInterrupt):
         kill(process)
-
-
-def kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill the launcher and all that it started."""
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
 
 
 def wait_for_lammps(command: list[str], out: Path, timeout: float) -> int | None:

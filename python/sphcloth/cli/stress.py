@@ -62,6 +62,7 @@ def stress(
     ] = False,
 ) -> None:
     """Run the extremes, or random scenes; exit code 1 if one does not do what it must."""
+    from sphcloth.programs import endings_interrupt
     from sphcloth.stress import command
 
     console = Console()
@@ -73,7 +74,8 @@ def stress(
             idle = "--quick" if quick else f"--ranks {ranks}"
             raise UserError(f"{idle}: a random scene draws its size and ranks: leave it out")
         first, scenes = 1 if seed is None else seed, 20 if count is None else count
-        found = command.stress_random(first, scenes, scheme, out, json_file, console)
+        with endings_interrupt():
+            found = command.stress_random(first, scenes, scheme, out, json_file, console)
         raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
     for option, value in (("--seed", seed), ("--count", count)):
         if value is not None:
@@ -81,5 +83,6 @@ def stress(
                 f"{option} {value}: only random scenes have it: sphcloth stress random, or leave "
                 "it out"
             )
-    found = command.stress(case, scheme, ranks, quick, out, json_file, console)
+    with endings_interrupt():
+        found = command.stress(case, scheme, ranks, quick, out, json_file, console)
     raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)

@@ -26,15 +26,13 @@ from sphcloth.errors import UserError
 from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
 from sphcloth.plugin import PLUGIN, lammps_release, plugin_folder
-from sphcloth.programs import installed_version
+from sphcloth.programs import endings_interrupt, installed_version, kill
 from sphcloth.results import write_json
 from sphcloth.run import (
     LOG,
     check_no_link,
     companions,
     copy_companions,
-    endings_interrupt,
-    kill,
     lammps_command,
     last_words,
     start_lammps,

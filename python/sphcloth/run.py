@@ -19,6 +19,7 @@ from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.log import error_lines
 from sphcloth.programs import endings_interrupt, kill, lammps_on
+from sphcloth.results import make_folder
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 from sphcloth.summary import summarize
 from sphcloth.trajectory import has_frame
@@ -72,7 +73,7 @@ def run_example(
     example = find_example(name)
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     check_no_link(out / "pictures")
     log, dump = out / LOG, out / f"{name}.lammpstrj"
     if resume:

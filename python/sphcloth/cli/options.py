@@ -11,8 +11,19 @@ from typing import Annotated, get_type_hints
 
 import typer
 
+
+def _prepared(context: typer.Context, path: Path | None) -> Path | None:
+    """Find a file that cannot be written before anything is computed for it."""
+    from sphcloth.results import prepare_file
+
+    if path is not None and not context.resilient_parsing:
+        prepare_file(path, "--json")
+    return path
+
+
 JsonFile = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write the result here too.", callback=_prepared),
 ]
 Ranks = Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")]
 

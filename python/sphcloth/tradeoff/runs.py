@@ -27,7 +27,7 @@ from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
 from sphcloth.plugin import PLUGIN, lammps_release, plugin_folder
 from sphcloth.programs import endings_interrupt, installed_version, kill
-from sphcloth.results import write_json
+from sphcloth.results import make_folder, write_json
 from sphcloth.run import (
     LOG,
     check_no_link,
@@ -128,6 +128,7 @@ class Workshop:
 
     def open(self, fresh: bool) -> None:
         """Refuse a folder that is a link, and forget what is in it if asked to."""
+        make_folder(self.out.parent)
         check_no_link(self.out)
         if fresh:
             shutil.rmtree(self.out, ignore_errors=True)

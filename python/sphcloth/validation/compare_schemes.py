@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.results import finite, write_json
+from sphcloth.results import finite, make_folder, write_json
 from sphcloth.validation.case import Case
 from sphcloth.validation.schemes import SCHEMES
 from sphcloth.validation.validate import Result, all_cases, validate
@@ -78,7 +78,7 @@ def compare_schemes(
     densities = {"density": "summation"} if by_rates else {}
     same = densities | dict(settings)
     case.values(same, quick)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     results: dict[str, Result | str] = {}
     for scheme in SCHEMES:
         chosen = same | {"scheme": scheme}

@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from sphcloth import results
@@ -89,14 +90,14 @@ class Findings:
         """Print versions and checks as tables, then the remedies, the first failure's first."""
         versions = Table("component", "version", title="versions")
         for name, version in self.versions.items():
-            versions.add_row(name, version)
+            versions.add_row(name, escape(version))
         checks = Table("check", "", "found", title="checks")
         for check in self.checks:
-            checks.add_row(check.name, check.mark, check.detail)
+            checks.add_row(check.name, check.mark, escape(check.detail))
         console.print(versions, checks)
         for check in sorted(self.checks, key=lambda check: check.passed):
             if check.remedy:
-                console.print(f"{check.mark} {check.name}: {check.remedy}")
+                console.print(f"{check.mark} {check.name}: {escape(check.remedy)}")
 
 
 def examine() -> Findings:

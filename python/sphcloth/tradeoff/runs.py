@@ -236,7 +236,7 @@ class Workshop:
     def _run_missing(self, missing: list[Setting], timeout: float) -> None:
         crew = self.crew(timeout)
         bar = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(bar_width=20),
             MofNCompleteColumn(),
             console=self.console,

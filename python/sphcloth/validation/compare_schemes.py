@@ -86,7 +86,7 @@ def compare_schemes(
             results[scheme] = validate(case, chosen, ranks, quick, out / scheme, console)
         except UserError as error:
             results[scheme] = str(error)
-            console.print(f"{scheme}: {error}", highlight=False)
+            console.print(f"{scheme}: {error}", markup=False, highlight=False)
     written = {
         scheme: finite(asdict(each)) if isinstance(each, Result) else each
         for scheme, each in results.items()
@@ -107,7 +107,8 @@ def show(comparisons: Sequence[Comparison], console: Console) -> None:
     for comparison in comparisons:
         for scheme, result in comparison.results.items():
             if isinstance(result, str):
-                console.print(f"{comparison.case.name}, {scheme}: {result}", highlight=False)
+                told = f"{comparison.case.name}, {scheme}: {result}"
+                console.print(told, markup=False, highlight=False)
 
 
 def _value(result: Result | str, name: str) -> str:

@@ -17,17 +17,17 @@ using namespace LAMMPS_NS;
 // what is in the lee as it is
 static constexpr double MOVES = 0.5;
 
-// The picture is that of the positions that are kept, so that nothing depends on when lists are built
-// or a run begins.
+// The picture is that of the positions that are kept: nothing depends on when lists are built or a
+// run begins.
 
 void WindShade::find(const std::vector<AirMesh *> &meshes)
 {
   const Vec3 direction = mean_direction(meshes);
-  if (!looked && !found_with.isZero(0.0)) look(meshes);
+  if (!is_known && !found_with.isZero(0.0)) find_shares(meshes);
   if (still_holds(meshes, direction)) return;
   found_with = direction;
   record(meshes);
-  look(meshes);
+  find_shares(meshes);
 }
 
 void WindShade::record(const std::vector<AirMesh *> &meshes)
@@ -47,9 +47,9 @@ WindShade::Vec3 WindShade::displacement(const AirMesh &mesh, int slot) const
   return moved;
 }
 
-void WindShade::look(const std::vector<AirMesh *> &meshes)
+void WindShade::find_shares(const std::vector<AirMesh *> &meshes)
 {
-  looked = true;
+  is_known = true;
   const bool blows = !found_with.isZero(0.0);
   if (blows) {
     gather(meshes);

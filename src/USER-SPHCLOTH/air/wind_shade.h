@@ -27,7 +27,7 @@ class WindShade : protected Pointers {
   }
 
   // after each list build, which renumbers triangles
-  void lists_have_changed() { looked = false; }
+  void lists_have_changed() { is_known = false; }
 
   // Of meshes whose motion and wind are known on ghosts, too; collective.  The wind is seen along
   // its mean over their vertices; without one there is no lee.  What was found stays until cloth
@@ -49,7 +49,7 @@ class WindShade : protected Pointers {
   ParticleColumns &columns;
   const int first;
   Vec3 found_with = Vec3::Zero();
-  bool looked = false;    // with the present lists
+  bool is_known = false;    // with the present lists
   std::vector<Vec3> seen;    // of a mesh, by slot
   std::vector<Point> points_here, points;    // vertices of this rank then, with ghosts; of all
   std::vector<Corners> corners_here, corners;    // of triangles
@@ -59,7 +59,7 @@ class WindShade : protected Pointers {
   bool still_holds(const std::vector<AirMesh *> &, const Vec3 &direction) const;
   void record(const std::vector<AirMesh *> &);
   Vec3 displacement(const AirMesh &, int slot) const;
-  void look(const std::vector<AirMesh *> &);
+  void find_shares(const std::vector<AirMesh *> &);
   void gather(const std::vector<AirMesh *> &);
 };
 

@@ -82,7 +82,7 @@ BUGS = [
     Bug("sources: layers are not moved by their age", "fix_sph_emit.cpp",
         "center + pattern[k] + age * velocity", "center + pattern[k]", SOURCES),
     Bug("sources: each rank gives IDs of its own", "fix_sph_emit.cpp",
-        "last = largest_id(atom, world)", "last = emitted * (1 + comm->me)",
+        "first_free_id(lmp, label, wanted, largest_id)", "1 + emitted * (1 + comm->me)",
         f"{SOURCES}::test_pouring_on_two_ranks_and_after_a_restart"),
     Bug("drain: only the last removal is counted", "fix_sph_drain.cpp",
         "taken[k] += all[1 + k]", "taken[k] = all[1 + k]", SOURCES),

@@ -47,8 +47,13 @@ UNITS = {
     "core/contact/center_distances.h": (CORE_TESTS / "test_center_distances.cpp",),
     "core/contact/seen_triangles.h": (CORE_TESTS / "test_seen_triangles.cpp",),
 }
-# a function inside such a loop, in which the compiler's report places it
-INLINED = {"core/timestep/step_limits.h": "StepState operator[](int k) const"}
+# functions inside such loops, loop by loop, in which the compiler's report places them
+INLINED = {
+    "core/timestep/step_limits.h": (
+        "StepState operator[](int k) const",
+        "StepState motion(int k) const",
+    )
+}
 FLAGS = (
     *("-std=c++17", "-O3", "-DNDEBUG", "-march=x86-64-v3", "-DSPHCLOTH_SINGLE_TARGET"),
     *("-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-fopt-info-vec-optimized"),
@@ -71,6 +76,13 @@ def marked_loops(text: str) -> list[range]:
             end += 1
         loops.append(range(n + 1, end + 2))
     return loops
+
+
+def function_lines(text: str, name: str) -> range:
+    """Return the lines of a member function of a class, from 1 on."""
+    begin = text.index(name)
+    end = text.index("\n  }\n", begin)
+    return range(text[:begin].count("\n") + 1, text[:end].count("\n") + 2)
 
 
 def includes() -> list[str]:
@@ -113,12 +125,12 @@ def vector_lines(unit: Path | str, name: str) -> set[int]:
 def test_marked_loops_are_vectors(name: str) -> None:
     lines = set().union(*(vector_lines(unit, name) for unit in UNITS[name]))
     text = (SOURCE / name).read_text()
-    loops = marked_loops(text)
+    loops = [{*loop} for loop in marked_loops(text)]
     if name in INLINED:
-        line = text[: text.index(INLINED[name])].count("\n") + 1
-        loops = [range(line, loop[-1] + 1) for loop in loops]
-    scalar = [loop[0] for loop in loops if not lines & {*loop}]
-    assert not scalar, f"{name}: not compiled as vectors: the loops of lines {scalar}"
+        inlined = [function_lines(text, each) for each in INLINED[name]]
+        loops = [loop.union(inside) for loop, inside in zip(loops, inlined, strict=True)]
+    scalar = [max(loop) for loop in loops if not lines & loop]
+    assert not scalar, f"{name}: not compiled as vectors: the loops that end in lines {scalar}"
 
 
 def test_every_marked_loop_is_looked_at() -> None:

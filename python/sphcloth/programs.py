@@ -5,7 +5,11 @@ from __future__ import annotations
 import ctypes
 import os
 import shutil
+import signal
+import subprocess
 import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
 
@@ -66,6 +70,51 @@ def shorten_sleep() -> None:
     Ranks that wait sleep a nanosecond at a time, to which Linux adds 50 us.
     """
     ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, TIMER_SLACK_NS, 0, 0, 0)
+
+
+@contextmanager
+def endings_interrupt() -> Iterator[None]:
+    """Let whatever else asks us to end count as a Ctrl-C: LAMMPS would run on unseen."""
+    endings = (signal.SIGTERM, signal.SIGHUP)
+    handlers = {ending: signal.signal(ending, signal.default_int_handler) for ending in endings}
+    try:
+        yield
+    finally:
+        for ending, handler in handlers.items():
+            signal.signal(ending, handler)
+
+
+def kill(process: subprocess.Popen[bytes]) -> None:
+    """Kill a launcher that leads a session, and all that it started."""
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def finish(
+    command: Sequence[str], folder: Path | None = None, timeout: float | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a program to its end and return what it printed; nothing of it is left, however we end.
+
+    Raises:
+        OSError: it cannot be started.
+        subprocess.TimeoutExpired: it took longer than timeout in s.
+    """
+    with subprocess.Popen(
+        command,
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        encoding="utf-8",
+        errors="replace",
+    ) as process:
+        try:
+            printed = process.communicate(timeout=timeout)
+        except BaseException:
+            kill(process)
+            raise
+    return subprocess.CompletedProcess(command, process.returncode, *printed)
 
 
 def installed_version(distribution: str) -> str:

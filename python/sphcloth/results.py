@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
+from sphcloth.errors import UserError
 from sphcloth.programs import installed_version
 
 # a parameter of a script
@@ -25,9 +27,36 @@ def versions(*packages: str) -> dict[str, str]:
 
 
 def write_json(path: Path, values: object, *, allow_nan: bool = True) -> None:
-    """Write values as JSON; ValueError for one that is no number, unless they are allowed."""
+    """Write values as JSON; ValueError for one that is no number, unless they are allowed.
+
+    Raises:
+        UserError: the file cannot be written.
+    """
     text = json.dumps(values, indent=2, allow_nan=allow_nan)
-    path.write_text(text + "\n", encoding="utf-8")
+    try:
+        path.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def make_folder(path: Path, given: str | None = None) -> None:
+    """Make a folder for output; UserError, with the option given, where that is impossible."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(
+            f"{given or f'--out {path}'}: folder {path} cannot be made ({error.strerror}): "
+            "choose another name"
+        ) from None
+
+
+def prepare_file(path: Path, option: str) -> None:
+    """Make the folder of a file that will be written; UserError where it cannot be written."""
+    if path.is_dir():
+        raise UserError(f"{option} {path} is a folder: give the name of a file")
+    make_folder(path.parent, f"{option} {path}")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise UserError(f"{option} {path} cannot be written: choose another place")
 
 
 def finite(values: object) -> object:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import signal
 import subprocess
@@ -19,7 +18,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.log import error_lines
-from sphcloth.programs import lammps_on
+from sphcloth.programs import endings_interrupt, kill, lammps_on
+from sphcloth.results import make_folder
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 from sphcloth.summary import summarize
 from sphcloth.trajectory import has_frame
@@ -73,7 +73,7 @@ def run_example(
     example = find_example(name)
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     check_no_link(out / "pictures")
     log, dump = out / LOG, out / f"{name}.lammpstrj"
     if resume:
@@ -147,7 +147,7 @@ def copy_companions(script: Path, folder: Path) -> None:
 def companions(script: Path) -> list[Path]:
     """Return the files beside a script that it names in a command that reads files."""
     words = set()
-    for line in script.read_text(encoding="utf-8").splitlines():
+    for line in script.read_text(encoding="utf-8", errors="replace").splitlines():
         command, *arguments = line.split() or [""]
         if command in READERS:
             words.update(arguments)
@@ -193,18 +193,6 @@ def _started(command: list[str], out: Path) -> Iterator[subprocess.Popen[bytes]]
         finally:
             if process.poll() is None:
                 kill(process)
-
-
-@contextmanager
-def endings_interrupt() -> Iterator[None]:
-    """Let whatever else asks us to end count as a Ctrl-C: LAMMPS would run on unseen."""
-    endings = (signal.SIGTERM, signal.SIGHUP)
-    handlers = {ending: signal.signal(ending, signal.default_int_handler) for ending in endings}
-    try:
-        yield
-    finally:
-        for ending, handler in handlers.items():
-            signal.signal(ending, handler)
 
 
 def start_lammps(command: list[str], out: Path) -> subprocess.Popen[bytes]:
@@ -268,12 +256,6 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
         process.wait(GRACE_SECONDS)
     except (subprocess.TimeoutExpired, KeyboardInterrupt):
         kill(process)
-
-
-def kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill the launcher and all that it started."""
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
 
 
 def wait_for_lammps(command: list[str], out: Path, timeout: float) -> int | None:

@@ -8,6 +8,7 @@
 #include "fix_cloth_contact.h"
 #include "fix_sph_integrate.h"
 #include "fluid/fluid_state.h"
+#include "fluid/side_source.h"
 #include "force.h"
 #include "lammps_util/arg_reader.h"
 #include "memory.h"
@@ -73,7 +74,12 @@ void ComputeSPHAtom::find_styles()
                  "{}: sides are known to fix cloth/contact alone: add that fix, or leave the "
                  "keyword out",
                  label);
-    sheets = dynamic_cast<FixClothContact *>(contacts[0]);
+    sheets = nullptr;    // of several, the one that parts the fluid
+    for (Fix *contact : contacts) {
+      int dim = 0;
+      if (!sheets || contact->extract(SideSource::EXTRACT, dim))
+        sheets = dynamic_cast<FixClothContact *>(contact);
+    }
   }
   if (!asks_for(Column::DT) && !asks_for(Column::ACTIVE)) return;
   const auto fixes = modify->get_fix_by_style("^sph/integrate$");

@@ -4,7 +4,6 @@
 #include "create_cloth.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -237,7 +236,7 @@ CreateCloth::Vec3 CreateCloth::position(int k) const
 
 void CreateCloth::create_vertices()
 {
-  first_id = largest_id(atom, world) + 1;
+  first_id = first_free_id(lmp, STYLE, static_cast<bigint>(sheet.vertices.size()));
 
   const int before = atom->nlocal;
   for (int k = 0; k < static_cast<int>(sheet.vertices.size()); k++) {

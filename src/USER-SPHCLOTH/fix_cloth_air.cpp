@@ -29,7 +29,7 @@ using namespace FixConst;
 
 FixClothAir::FixClothAir(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/air", id)), options(lmp, label),
-    water(lmp), shade(lmp)
+    water(lmp), shade(lmp, motion, SEEN)
 {
   vector_flag = 1;
   size_vector = 6;
@@ -40,7 +40,7 @@ FixClothAir::FixClothAir(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   options.read(args);
-  motion.create(N_COLUMNS, atom->nmax);
+  motion.create(options.shaded ? N_COLUMNS : SEEN, atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothAir::set_arrays(i);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -112,7 +112,7 @@ void FixClothAir::post_neighbor()
     cloth.mesh->rebuild();
     if (cloth.added) cloth.added->rebuild();
   }
-  shade.forget();
+  shade.lists_have_changed();
 }
 
 // Wind and water of the time of the positions: at the start of the next step some have moved.
@@ -242,7 +242,7 @@ double FixClothAir::compute_vector(int n)
 
 void FixClothAir::set_arrays(int i)
 {
-  for (int k = 0; k < N_COLUMNS; k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
+  for (int k = 0; k < motion.count(); k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
 }
 
 int FixClothAir::pack_exchange(int i, double *buf)
@@ -260,29 +260,34 @@ int FixClothAir::unpack_exchange(int i, double *buf)
 
 int FixClothAir::pack_restart(int i, double *buf)
 {
-  buf[0] = 1 + N_COLUMNS;
+  buf[0] = 1 + motion.count();
   motion.pack(i, buf + 1);
-  return 1 + N_COLUMNS;
+  return 1 + motion.count();
 }
 
 void FixClothAir::unpack_restart(int i, int nth)
 {
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
-  motion.unpack(i, record + 1);
+  // the lee may have been found before, and not be asked for now, or the other way round
+  const int n = std::min(static_cast<int>(*record) - 1, motion.count());
+  for (int k = 0; k < n; k++) motion[k][i] = record[1 + k];
 }
 
 struct FixClothAir::Record {
-  double last_dt, work, carried[3];
+  double last_dt, work, carried[3], lee_of[3];
 };
 
 void FixClothAir::write_restart(FILE *fp)
 {
-  shade.forget();
   double all;
   MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  const Vec3 &carried = options.wind.carried;
-  if (comm->me == 0) write_record(fp, Record{last_dt, all, {carried[0], carried[1], carried[2]}});
+  Record record{last_dt, all, {}, {}};
+  for (int d = 0; d < 3; d++) {
+    record.carried[d] = options.wind.carried[d];
+    record.lee_of[d] = shade.direction()[d];
+  }
+  if (comm->me == 0) write_record(fp, record);
 }
 
 void FixClothAir::restart(char *buf)
@@ -291,6 +296,7 @@ void FixClothAir::restart(char *buf)
   last_dt = record.last_dt;
   work = comm->me == 0 ? record.work : 0.0;
   options.wind.carried = Vec3(record.carried[0], record.carried[1], record.carried[2]);
+  shade.restore(Vec3(record.lee_of[0], record.lee_of[1], record.lee_of[2]));
   keep_restored_time(update);
 }
 

@@ -50,8 +50,8 @@ class FixClothAir : public Fix {
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override { return 1 + N_COLUMNS; }
-  int maxsize_restart() override { return 1 + N_COLUMNS; }
+  int size_restart(int) override { return 1 + motion.count(); }
+  int maxsize_restart() override { return 1 + motion.count(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;
@@ -72,8 +72,9 @@ class FixClothAir : public Fix {
   WindShade shade;
   std::vector<Cloth> cloths;
   // of the last step, per atom: mean velocity of a vertex, and what it gained of that by all but
-  // the air; not a number before the first
-  enum Column { VELOCITY, GAIN = 3, N_COLUMNS = 6 };
+  // the air; not a number before the first; and, with shaded, its position when the
+  // lee was found
+  enum Column { VELOCITY, GAIN = 3, SEEN = 6, N_COLUMNS = 9 };
   ParticleColumns motion;
   double last_dt = 0.0;
 

@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
+#include "fix_sph_integrate.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
 #include "group.h"
@@ -46,10 +47,11 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   options.read(args);
+  counts.cloth_gap = options.cloth_rules.thickness;    // none is nearer before the first step
   if (options.walls) walls = std::make_unique<MeshBoundary>(lmp, label, groupbit);
   restart_peratom = !options.obstacle_groups.empty();
   last_positions.create(3, atom->nmax);
-  if (!options.obstacle_groups.empty()) impulses.create(3, atom->nmax);
+  if (!options.obstacle_groups.empty()) impulses.create(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
   atom->add_callback(Atom::GROW);
   if (restart_peratom) atom->add_callback(Atom::RESTART);
@@ -87,6 +89,8 @@ void FixClothContact::init()
                label);
   for (int obstacle : options.obstacle_groups) add_obstacle(obstacle);
   make_contacts();
+  const auto integrating = modify->get_fix_by_style("^sph/integrate$");
+  stepping = integrating.empty() ? nullptr : dynamic_cast<FixSPHIntegrate *>(integrating[0]);
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
@@ -293,7 +297,7 @@ void FixClothContact::find_sides()
 void FixClothContact::initial_integrate(int)
 {
   for (MeshContact *contact : contacts) contact->mesh().moved.clear();
-  impulses.clear();
+  impulses.begin_step(atom->nlocal, update->dt);
   counts.cloth_gap = options.cloth_rules.thickness;
   counts.passed_on = counts.missed = 0.0;
 }
@@ -327,6 +331,9 @@ void FixClothContact::post_integrate()
     if (const double share = missed_share(counts, world); share > 0.0)
       for (FixPBDCloth *cloth : cloths) cloth->missed_in_contact(share);
   if (!excess_velocities.empty()) subtract_excess_velocities();
+  if (stepping && stepping->lets_sleep())
+    for (MeshContact *contact : contacts)
+      for (const int i : contact->mesh().moved) stepping->note_contact(i);
   store_positions();
 }
 
@@ -362,11 +369,10 @@ void FixClothContact::post_force(int)
 
 void FixClothContact::pre_reverse(int, int)
 {
-  const double by = 1.0 / (update->dt * force->ftm2v);
   for (const auto &obstacle : obstacles)
     for (int i = 0; i < atom->nlocal; i++)
       if (obstacle->has_vertex(i))
-        for (int d = 0; d < 3; d++) atom->f[i][d] += by * impulses[d][i];
+        for (int d = 0; d < 3; d++) atom->f[i][d] += impulses.force(d, i, force->ftm2v);
 }
 
 int FixClothContact::side_of(int i) const
@@ -406,8 +412,7 @@ double FixClothContact::compute_vector(int n)
   mine[13] = counts.cloth_frozen;
   mine[14] = counts.cloth_gap;
   if (n >= 7 && n < 10 && !impulses.empty())
-    for (int i = 0; i < atom->nlocal; i++)
-      mine[n] += impulses[n - 7][i] / (update->dt * force->ftm2v);
+    for (int i = 0; i < atom->nlocal; i++) mine[n] += impulses.force(n - 7, i, force->ftm2v);
   MPI_Op op = MPI_SUM;
   if (n == 3 || n == 10) op = MPI_MAX;
   if (n == 14) op = MPI_MIN;
@@ -463,15 +468,20 @@ int FixClothContact::unpack_exchange(int i, double *buf)
 
 int FixClothContact::pack_restart(int i, double *buf)
 {
-  buf[0] = 4;
+  buf[0] = 1 + impulses.count();
   impulses.pack(i, buf + 1);
-  return 4;
+  return 1 + impulses.count();
 }
 
 void FixClothContact::unpack_restart(int i, int nth)
 {
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
+  if (static_cast<int>(*record) != 1 + impulses.count())
+    error->one(FLERR,
+               "{}: its record in the restart file is damaged, or of another release of sphcloth: "
+               "take another file, or give the fix another ID to begin anew",
+               label);
   impulses.unpack(i, record + 1);
 }
 

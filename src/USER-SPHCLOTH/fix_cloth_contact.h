@@ -17,6 +17,7 @@ FixStyle(cloth/contact,FixClothContact);
 #include "contact/contact_surface.h"
 #include "contact/joined_contact.h"
 #include "contact/obstacle.h"
+#include "contact/obstacle_impulses.h"
 #include "fluid/mesh_boundary.h"
 #include "fluid/side_source.h"
 #include "lammps_util/ghost_reach.h"
@@ -33,6 +34,7 @@ FixStyle(cloth/contact,FixClothContact);
 namespace LAMMPS_NS {
 
 class FixPBDCloth;
+class FixSPHIntegrate;
 
 class FixClothContact : public Fix, public SideSource {
  public:
@@ -68,8 +70,8 @@ class FixClothContact : public Fix, public SideSource {
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override { return 4; }
-  int maxsize_restart() override { return 4; }
+  int size_restart(int) override { return 1 + impulses.count(); }
+  int maxsize_restart() override { return 1 + impulses.count(); }
   double memory_usage() override;
 
   int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
@@ -109,10 +111,11 @@ class FixClothContact : public Fix, public SideSource {
   const ContactRules &rules;    // of particles
   GhostReach ghosts;
   ContactCounts counts;    // of this rank, since the fix was made
-  // x, y, z of owned atoms: positions at the end of the last step; impulses on obstacles in this
-  // step, mass times velocity, if there are any; and velocity minus displacement over the step, if
-  // densities follow displacements
-  ParticleColumns last_positions, impulses, excess_velocities;
+  // x, y, z of owned atoms: positions at the end of the last step; and velocity minus displacement
+  // over the step, if densities follow displacements
+  ParticleColumns last_positions, excess_velocities;
+  ObstacleImpulses impulses;    // if there are obstacles
+  FixSPHIntegrate *stepping = nullptr;    // null: nothing sleeps
   std::vector<FixPBDCloth *> cloths;    // those before this fix
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;

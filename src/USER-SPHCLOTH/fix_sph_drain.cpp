@@ -9,11 +9,13 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_sph_integrate.h"
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
+#include "modify.h"
 #include "region.h"
 
 #include <algorithm>
@@ -41,7 +43,10 @@ FixSPHDrain::FixSPHDrain(LAMMPS *lmp_, int narg, char **arg) :
   while (args.more()) {
     const std::string keyword = args.word("keyword");
     if (keyword != "region") args.unknown(keyword, "region");
-    region_name = args.word("region");
+    const std::string name = args.word("region");
+    if (!region_name.empty())
+      args.fail("region", name, "there is one already: give the union of several");
+    region_name = name;
     if (!domain->get_region_by_id(region_name))
       args.fail("region", region_name, "define it with the region command first");
   }
@@ -60,7 +65,7 @@ void FixSPHDrain::init()
     region->init();
   }
   check_group();
-  pre_exchange();
+  remove();
 }
 
 void FixSPHDrain::check_group()
@@ -100,10 +105,23 @@ bool FixSPHDrain::leaves(int i) const
   return region && region->match(x[0], x[1], x[2]);
 }
 
+// Water that sleeps beside what leaves may have rested on it.
+
 void FixSPHDrain::pre_exchange()
+{
+  const std::vector<Position> removed = remove();
+  for (Fix *fix : modify->get_fix_by_style("^sph/integrate$"))
+    if (auto *steps = dynamic_cast<FixSPHIntegrate *>(fix); steps->lets_sleep())
+      steps->wake_beside(allgather(removed, comm->nprocs, world));
+}
+
+// by this rank; collective
+
+std::vector<FixSPHDrain::Position> FixSPHDrain::remove()
 {
   if (region) region->prematch();
   double mine[5] = {}, all[5];    // count, mass, momentum
+  std::vector<Position> removed;
   for (int i = 0; i < atom->nlocal;) {
     if (!(atom->mask[i] & groupbit) || !leaves(i)) {
       i++;
@@ -113,16 +131,18 @@ void FixSPHDrain::pre_exchange()
     mine[0] += 1.0;
     mine[1] += mass;
     for (int d = 0; d < 3; d++) mine[2 + d] += mass * atom->v[i][d];
+    removed.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
     atom->avec->copy(atom->nlocal - 1, i, 1);
     atom->nlocal--;
   }
   MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
-  if (all[0] == 0.0) return;
+  if (all[0] == 0.0) return removed;
   const auto gone = static_cast<bigint>(all[0]);
   drained += gone;
   atom->natoms -= gone;
   for (int k = 0; k < 4; k++) taken[k] += all[1 + k];
   refresh_map(atom);
+  return removed;
 }
 
 struct FixSPHDrain::Record {

@@ -12,7 +12,9 @@ FixStyle(sph/drain,FixSPHDrain);
 
 #include "fix.h"
 
+#include <array>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -30,6 +32,7 @@ class FixSPHDrain : public Fix {
 
  private:
   struct Record;    // in restart files
+  using Position = std::array<double, 3>;
 
   std::string label, region_name;
   class Region *region;
@@ -38,6 +41,7 @@ class FixSPHDrain : public Fix {
 
   void check_group();
   bool leaves(int) const;
+  std::vector<Position> remove();
 };
 
 }    // namespace LAMMPS_NS

@@ -6,7 +6,6 @@
 #include "fix_sph_emit.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -63,6 +62,8 @@ void FixSPHEmit::read_options(ArgReader &args)
   start = physical_time(update);
   while (args.more()) {
     const std::string keyword = args.word("keyword");
+    if ((keyword == "disc" || keyword == "rectangle") && extent[0] > 0.0)
+      args.fail("opening", keyword, "there is one already: give one disc or one rectangle");
     if (keyword == "disc") {
       disc = true;
       center = vector("disc center");
@@ -171,6 +172,7 @@ bool FixSPHEmit::layer_is_due() const
 
 void FixSPHEmit::setup_pre_exchange()
 {
+  largest_id = first_free_id(lmp, label, 0, largest_id) - 1;
   while (layer_is_due()) emit_layer(physical_time(update) - due());
 }
 
@@ -189,12 +191,13 @@ void FixSPHEmit::pre_exchange()
 void FixSPHEmit::emit_layer(double age)
 {
   const bigint wanted = std::min<bigint>(pattern.size(), total - emitted);
-  const tagint last = largest_id(atom, world);
-
+  for (Fix *fix : modify->get_fix_by_style("^sph/emit$"))
+    largest_id = std::max(largest_id, dynamic_cast<FixSPHEmit *>(fix)->largest_id);
+  const tagint first = first_free_id(lmp, label, wanted, largest_id);
   bigint mine[2] = {0, warned ? 0 : count_in_the_way(age)}, all[2];
   const int before = atom->nlocal;
   for (bigint k = 0; k < wanted; k++)
-    add_particle(center + pattern[k] + age * velocity, last + 1 + static_cast<tagint>(k));
+    add_particle(center + pattern[k] + age * velocity, first + static_cast<tagint>(k));
   for (int i = before; i < atom->nlocal; i++) modify->create_attribute(i);
 
   mine[0] = atom->nlocal - before;
@@ -210,6 +213,7 @@ void FixSPHEmit::emit_layer(double age)
   for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
   emitted += all[0];
   layers++;
+  largest_id = first + static_cast<tagint>(all[0]) - 1;
 }
 
 // owned particles that are where a layer appears; the layer before is a spacing further
@@ -263,7 +267,7 @@ double FixSPHEmit::compute_vector(int n)
 }
 
 struct FixSPHEmit::Record {
-  bigint emitted, layers;
+  bigint emitted, layers, largest_id;
   double start, momentum[3], time;    // start and time: physical
 };
 
@@ -272,6 +276,7 @@ void FixSPHEmit::write_restart(FILE *fp)
   if (comm->me) return;
   write_record(fp, Record{emitted,
                           layers,
+                          largest_id,
                           start,
                           {momentum[0], momentum[1], momentum[2]},
                           physical_time(update)});
@@ -282,6 +287,7 @@ void FixSPHEmit::restart(char *buf)
   const auto record = read_record<Record>(buf, label, error);
   emitted = record.emitted;
   layers = record.layers;
+  largest_id = static_cast<tagint>(record.largest_id);
   // reset_timestep may have come before this fix
   start = record.start + (physical_time(update) - record.time);
   std::copy(record.momentum, record.momentum + 3, momentum);

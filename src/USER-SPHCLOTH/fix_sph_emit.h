@@ -59,6 +59,7 @@ class FixSPHEmit : public Fix {
   double layer_time;            // between layers: spacing / speed
   bigint layers;                // poured so far
   double momentum[3];           // that came in with the particles
+  tagint largest_id = 0;        // of atoms so far, also of those that have left
   std::vector<Vec3> pattern;    // one layer, relative to the center
   Vec3 sides[2];                // unit vectors along those of a rectangle
   bool warned = false;

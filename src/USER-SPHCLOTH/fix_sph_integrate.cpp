@@ -105,10 +105,10 @@ void FixSPHIntegrate::init()
   if (scales == springs.empty()) springs.create(scales ? 1 : 0, atom->nmax);
   if (scales) fluid->scaled_mass().want(groupbit, springs);
   control.init(fluid, limits.shortest_sound_time());
-  const int changed_here = first_kick.begin_run(atom, domain);
-  int changed;
-  MPI_Allreduce(&changed_here, &changed, 1, MPI_INT, MPI_MAX, world);
-  stepper->init(fluid, changed != 0);
+  const int change_here = static_cast<int>(first_kick.begin_run(atom, domain));
+  int change;
+  MPI_Allreduce(&change_here, &change, 1, MPI_INT, MPI_MAX, world);
+  stepper->init(fluid, static_cast<Change>(change));
   // of a global step that comes later
   if (scheme != SteppingScheme::GLOBAL) control.watch.demand();
   fluid->take_pair_evaluations();    // before this run
@@ -130,16 +130,12 @@ void FixSPHIntegrate::use_scheme(SteppingScheme wanted, const BlockClock &clock)
 
 void FixSPHIntegrate::check_group()
 {
-  int wrong = 0, any_wrong = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
-  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
-  if (any_wrong)
+  if (const int type = fluid->boundary_type_in(groupbit))
     error->all(
         FLERR,
         "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
         "walls out",
-        label, group->names[igroup], any_wrong);
+        label, group->names[igroup], type);
 }
 
 // The step of the script is the ceiling.  How far ghosts reach, and by that the order of sums,

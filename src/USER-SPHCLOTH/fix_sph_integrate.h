@@ -73,6 +73,13 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   // the step that this particle allows, whatever the others need
   double own_step(int i) const;
   bool is_active(int i) const { return rows[i][UpdateRows::ACTIVE] != 0.0; }
+  bool is_asleep(int i) const { return stepper && stepper->is_asleep(i); }
+  bool lets_sleep() const { return stepper && stepper->lets_sleep(); }
+  void note_contact(int i) { stepper->note_contact(i); }
+  void wake_beside(const std::vector<std::array<double, 3>> &removed)
+  {
+    stepper->wake_beside(removed);
+  }
   SteppingScheme stepping_scheme() const override { return scheme; }
 
   // chooses the first step, when all forces are set up

@@ -10,6 +10,7 @@
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_sph_integrate.h"
 #include "fix_wall_sph.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
@@ -90,16 +91,14 @@ void FixSPHShift::init()
                label);
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
+  const auto integrating = modify->get_fix_by_style("^sph/integrate$");
+  steps = integrating.empty() ? nullptr : dynamic_cast<FixSPHIntegrate *>(integrating[0]);
   cloth_bits = 0;
   for (const Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) cloth_bits |= fix->groupbit;
 
-  int wrong = 0, any_wrong = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit && !fluid->is_fluid(atom->type[i])) wrong = atom->type[i];
-  MPI_Allreduce(&wrong, &any_wrong, 1, MPI_INT, MPI_MAX, world);
-  if (any_wrong)
+  if (const int type = fluid->boundary_type_in(groupbit))
     error->all(FLERR, "{}: group {} holds type {}, a boundary type: give a group of fluid", label,
-               group->names[igroup], any_wrong);
+               group->names[igroup], type);
 }
 
 /* ----------------------------------------------------------------------
@@ -211,7 +210,7 @@ void FixSPHShift::initial_integrate(int)
   counts[SHIFTED] = counts[LEFT] = counts[CUT] = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (left[i])
+    if (left[i] || (steps && steps->is_asleep(i)))
       counts[LEFT]++;
     else
       shift(i);

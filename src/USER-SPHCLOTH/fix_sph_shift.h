@@ -21,6 +21,7 @@ FixStyle(sph/shift,FixSPHShift);
 namespace LAMMPS_NS {
 
 class ArgReader;
+class FixSPHIntegrate;
 class FixWallSPH;
 class FluidState;
 
@@ -47,6 +48,7 @@ class FixSPHShift : public Fix {
   std::string label;
   FluidState *fluid;
   FixWallSPH *walls;    // null without plane walls
+  FixSPHIntegrate *steps = nullptr;    // by which sleeping water is known; null without
   sphcloth::ShiftCoefficients coefficients;
   Speed speed;
   bool correct_velocity;

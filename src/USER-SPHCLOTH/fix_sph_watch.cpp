@@ -351,13 +351,7 @@ std::vector<FixSPHWatch::Suspect> FixSPHWatch::suspects(Limit limit) const
       mine.push_back({value, atom->tag[i], {x[0], x[1], x[2]}});
   }
   keep_worst(mine);
-  int bytes = static_cast<int>(mine.size() * sizeof(Suspect));
-  std::vector<int> sizes(comm->nprocs), first(comm->nprocs, 0);
-  MPI_Allgather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  for (int p = 1; p < comm->nprocs; p++) first[p] = first[p - 1] + sizes[p - 1];
-  std::vector<Suspect> all((first.back() + sizes.back()) / sizeof(Suspect));
-  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), sizes.data(), first.data(), MPI_BYTE,
-                 world);
+  std::vector<Suspect> all = allgather(mine, comm->nprocs, world);
   keep_worst(all);
   return all;
 }

@@ -127,6 +127,7 @@ void FixWallSPH::init()
   table = fluid->wall_table();
   impact = fluid->wall_impact();
   profiles = fluid->lattices.wall_profiles(table, reflection);
+  take_materials();
   found_at.clear();
   for (Wall &wall : walls) {
     check_face(wall);
@@ -167,29 +168,42 @@ void FixWallSPH::begin()
   NumberOrVariable::evaluate(lmp, label, igroup, {positions.data(), positions.size()});
   for (Wall &wall : walls) locate(wall, elapsed);
   any_moves = std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.moves(); });
+  take_materials();
   find_open_space();
   std::fill(mine.begin(), mine.end(), 0.0);
   presses.clear();
   found.clear();
-  found_at.assign(atom->nlocal, UNKNOWN);
+  found_at.assign(atom->nlocal, {0, -1});
   summed = false;
 }
 
-// the space out of reach of all walls, so that most particles need no distances
+void FixWallSPH::take_materials()
+{
+  types.assign(atom->ntypes + 1, OfType());
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!fluid->is_fluid(t)) continue;
+    const Tait &eos = fluid->equation_of_state(t);
+    types[t] = {fluid->support(t), eos.rho0, eos.k, slip ? 0.0 : fluid->type(t).nu,
+                fluid->alpha(t, t) * eos.sound_speed() * eos.rho0};
+  }
+}
+
+// the space out of reach of each wall, so that most particles need no distances
 
 void FixWallSPH::find_open_space()
 {
   double longest = 0.0;
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (fluid->is_fluid(t)) longest = std::max(longest, fluid->support(t));
+  for (const OfType &type : types) longest = std::max(longest, type.support);
+  wall_at.fill(-1);
   open_low.fill(-std::numeric_limits<double>::max());
   open_high.fill(std::numeric_limits<double>::max());
-  for (const Wall &wall : walls) {
-    double &low = open_low[wall.axis()], &high = open_high[wall.axis()];
+  for (int k = 0; k < static_cast<int>(walls.size()); k++) {
+    const Wall &wall = walls[k];
+    wall_at[wall.face] = k;
     if (wall.face % 2 == 0)
-      low = std::max(low, wall.position + longest);
+      open_low[wall.axis()] = wall.position + longest;
     else
-      high = std::min(high, wall.position - longest);
+      open_high[wall.axis()] = wall.position - longest;
   }
 }
 
@@ -197,7 +211,7 @@ void FixWallSPH::find_open_space()
 
 void FixWallSPH::locate(Wall &wall, double elapsed)
 {
-  const double before = wall.position;
+  const double before = wall.last_position = wall.position;
   if (wall.at_edge)
     wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
   else if (wall.given.is_variable())
@@ -207,21 +221,19 @@ void FixWallSPH::locate(Wall &wall, double elapsed)
   if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
 }
 
-// false if no wall is in reach of particle i; otherwise `near` has them all
+// false if no wall is in reach of particle i; otherwise `near` has those that are
 
 bool FixWallSPH::query(int i)
 {
-  if (i >= static_cast<int>(found_at.size())) return measure(i);
-  int &at = found_at[i];
-  if (at == UNKNOWN) {
-    at = OUT_OF_REACH;
-    if (!measure(i)) return false;
-    at = static_cast<int>(found.size());
-    found.insert(found.end(), measured.begin(), measured.end());
-    return true;
+  if (i >= static_cast<int>(found_at.size())) return measure(i, 0.0);
+  Range &range = found_at[i];
+  if (range.n < 0) {
+    range.first = static_cast<int>(found.size());
+    measure(i, 0.0, found);
+    range.n = static_cast<int>(found.size()) - range.first;
   }
-  if (at == OUT_OF_REACH) return false;
-  near = {&found[at], walls.size(), profiles[atom->type[i]]};
+  if (range.n == 0) return false;
+  near = {&found[range.first], static_cast<std::size_t>(range.n), profiles[atom->type[i]]};
   return true;
 }
 
@@ -229,69 +241,48 @@ bool FixWallSPH::query(int i)
 
 bool FixWallSPH::measure(int i, double back)
 {
-  if (!(atom->mask[i] & groupbit)) return false;
-  const double *x = atom->x[i];
-  bool open = back == 0.0;
-  for (int d = 0; d < 3; d++) open = open && x[d] > open_low[d] && x[d] < open_high[d];
-  if (open) return false;
-
-  const double support = fluid->support(atom->type[i]);
-  const WallProfile &profile = profiles[atom->type[i]];
-  bool any = false;
   measured.clear();
-  for (std::size_t k = 0; k < walls.size(); k++) {
+  measure(i, back, measured);
+  near = {measured.data(), measured.size(), profiles[atom->type[i]]};
+  return !measured.empty();
+}
+
+void FixWallSPH::measure(int i, double back, std::vector<NearWall> &into) const
+{
+  if (!(atom->mask[i] & groupbit)) return;
+  const double *x = atom->x[i];
+  const int type = atom->type[i];
+  const auto measure_face = [&](int face) {
+    const int k = wall_at[face];
+    if (k < 0) return;
     double distance = walls[k].distance(x);
     if (back != 0.0) distance -= back * departure(i, k);
-    const double delta = distance / support;
+    const double delta = distance / types[type].support;
     if (delta < -1.0)
       rank_error(lmp, FLERR,
                  "{}: particle {} is behind the wall {}, deeper than the support of the kernel: "
                  "start it in front, or lower the time step",
-                 label, atom->tag[i], FACES[walls[k].face]);
-    measured.emplace_back(table(delta), profile);
-    any = any || delta < 1.0;
+                 label, atom->tag[i], FACES[face]);
+    if (delta < 1.0) into.emplace_back(k, delta, table, profiles[type]);
+  };
+  for (int d = 0; d < 3; d++) {
+    if (back != 0.0 || !(x[d] > open_low[d])) measure_face(2 * d);
+    if (back != 0.0 || !(x[d] < open_high[d])) measure_face(2 * d + 1);
   }
-  near = {measured.data(), walls.size(), profile};
-  return any;
 }
 
 double FixWallSPH::density(int i, double of_particles)
 {
   if (!query(i)) return of_particles;
-  return of_particles + fluid->equation_of_state(atom->type[i]).rho0 * near.lambda();
+  return of_particles + types[atom->type[i]].rho0 * near.lambda();
 }
 
 double FixWallSPH::density_rate(int i, double of_particles, double back)
 {
   if (!measure(i, back)) return of_particles;
   double rate = 0.0;
-  for (std::size_t k = 0; k < walls.size(); k++) rate += slope(i, k) * departure(i, k);
+  for (std::size_t n = 0; n < near.size(); n++) rate += slope(i, n) * departure(i, near[n].wall);
   return of_particles + rate;
-}
-
-// d rho_i / d distance from wall k, beside the others
-
-double FixWallSPH::slope(int i, std::size_t k) const
-{
-  const int type = atom->type[i];
-  return fluid->equation_of_state(type).rho0 * near.slope(k) / fluid->support(type);
-}
-
-// velocity of particle i away from wall k
-
-double FixWallSPH::departure(int i, std::size_t k) const
-{
-  const int axis = walls[k].axis();
-  return walls[k].inwards() * (atom->v[i][axis] - walls[k].velocity[axis]);
-}
-
-// alpha c0 h_s rho0/rho D/H^2, D the value of the table
-
-static double impact_rate(const SPHMaterials &fluid, int type, double rho, double impact)
-{
-  const Tait &eos = fluid.equation_of_state(type);
-  return fluid.alpha(type, type) * eos.sound_speed() * eos.rho0 / rho * impact /
-      (2.0 * fluid.support(type));
 }
 
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
@@ -312,57 +303,58 @@ void FixWallSPH::prolong(double times)
 void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
 {
   if (!query(i)) return;
-  const int type = atom->type[i];
-  const Tait &eos = fluid->equation_of_state(type);
-  const double support = fluid->support(type), nu = slip ? 0.0 : fluid->type(type).nu;
+  const OfType &type = types[atom->type[i]];
+  const double support = type.support;
   const double mass = atom_mass(atom, i), to_force = mass / force->ftm2v;
-  const double *x = atom->x[i], *v = atom->v[i];
+  const double *v = atom->v[i];
 
-  for (std::size_t k = 0; k < walls.size(); k++) {
+  for (std::size_t n = 0; n < near.size(); n++) {
+    const int k = near[n].wall;
     const Wall &wall = walls[k];
     const int axis = wall.axis();
-    const double delta = wall.distance(x) / support;
-    if (delta >= 1.0) continue;
-    const double share = near.half_space_share(k), denser = slope(i, k);
+    const double delta = near[n].delta, share = near.half_space_share(n), denser = slope(i, n);
     const double strain = stop_strain(delta);
-    const double stop = eos.k * strain / (STOPPING_DEPTH * support);
-    const double friction = nu > 0.0 ? nu * share * 2.0 * eos.rho0 / atom->rho[i] *
-            wall_friction(near.half_space(k), delta, support)
-                                     : 0.0;
+    const double stop = type.stiffness * strain / (STOPPING_DEPTH * support);
+    const double friction = type.nu > 0.0 ? type.nu * share * 2.0 * type.rho0 / atom->rho[i] *
+            wall_friction(near[n].half_space, delta, support)
+                                          : 0.0;
 
     // per mass, away from the wall
     const double speed = departure(i, k);
-    const double slowing =
-        speed < 0.0 ? -speed * share * impact_rate(*fluid, type, atom->rho[i], impact(delta)) : 0.0;
+    const double slowing = speed < 0.0 ? -speed * share * impact_rate(i, impact(delta)) : 0.0;
     const double pressure = times * (stop + slowing) - reflection * p_over_rho2 * denser;
-    for (int d = 0; d < 3; d++) {
-      const double accel = d == axis ? wall.inwards() * pressure
-                                     : -times * friction * (v[d] - wall.velocity[d]);
+    const auto push_along = [&](int d, double accel) {
       atom->f[i][d] += to_force * accel;
       mine[3 * k + d] -= to_force * accel;
-    }
+    };
+    push_along(axis, wall.inwards() * pressure);
+    if (friction > 0.0)
+      for (const int d : {(axis + 1) % 3, (axis + 2) % 3})
+        push_along(d, -times * friction * (v[d] - wall.velocity[d]));
     if (!first) continue;
     atom->drho[i] += denser * speed;
     if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
-    mine.back() += 0.5 * mass * eos.k * strain * strain * force->mvv2e;
+    mine.back() += 0.5 * mass * type.stiffness * strain * strain * force->mvv2e;
   }
 }
 
 double FixWallSPH::approach(int i)
 {
   if (!query(i)) return 0.0;
-  const double support = fluid->support(atom->type[i]);
   double fastest = 0.0;
-  for (std::size_t k = 0; k < walls.size(); k++)
-    if (walls[k].distance(atom->x[i]) < support) fastest = std::max(fastest, -departure(i, k));
+  for (std::size_t n = 0; n < near.size(); n++)
+    fastest = std::max(fastest, -departure(i, near[n].wall));
   return fastest;
 }
 
+// where it is or where it has been
+
 bool FixWallSPH::moves_beside(int i)
 {
-  if (!any_moves || !query(i)) return false;
+  if (!any_moves || !(atom->mask[i] & groupbit)) return false;
+  const double *x = atom->x[i], support = types[atom->type[i]].support;
   return std::any_of(walls.begin(), walls.end(), [&](const Wall &wall) {
-    return wall.moves() && wall.distance(atom->x[i]) < fluid->support(atom->type[i]);
+    return wall.moves() && std::min(wall.distance(x), wall.last_distance(x)) < support;
   });
 }
 
@@ -371,44 +363,43 @@ bool FixWallSPH::moves_beside(int i)
 void FixWallSPH::add_stiffness(int i, Stiffness &s)
 {
   if (!query(i)) return;
-  const int type = atom->type[i];
-  const Tait &eos = fluid->equation_of_state(type);
-  const double support = fluid->support(type), rho = atom->rho[i];
-  const double nu = slip ? 0.0 : fluid->type(type).nu;
-  for (std::size_t k = 0; k < walls.size(); k++) {
-    const double delta = walls[k].distance(atom->x[i]) / support;
-    if (delta >= 1.0) continue;
-    const double share = near.half_space_share(k);
-    s.gradient[walls[k].axis()] += std::sqrt(reflection) * walls[k].inwards() * slope(i, k);
-    if (profiles[type].changes()) {
+  const int t = atom->type[i];
+  const OfType &type = types[t];
+  const Tait &eos = fluid->equation_of_state(t);
+  const double support = type.support, rho = atom->rho[i];
+  for (std::size_t n = 0; n < near.size(); n++) {
+    const Wall &wall = walls[near[n].wall];
+    const double delta = near[n].delta, share = near.half_space_share(n);
+    s.gradient[wall.axis()] += std::sqrt(reflection) * wall.inwards() * slope(i, n);
+    if (profiles[t].changes()) {
       // what pressure on a curved function adds, in the units of the others
-      const double sound = eos.sound_speed(rho), bend = near.curvature(k) / (support * support);
-      s.spring[walls[k].axis()] +=
-          std::max(0.0, reflection * fluid->acting_pressure(eos, rho) * eos.rho0 * bend) /
-          (atom_mass(atom, i) * sound * sound * fluid->lattices.slope_of(type, rho));
+      const double sound = eos.sound_speed(rho), bend = near.curvature(n) / (support * support);
+      s.spring[wall.axis()] +=
+          std::max(0.0, reflection * fluid->acting_pressure(eos, rho) * type.rho0 * bend) /
+          (atom_mass(atom, i) * sound * sound * fluid->lattices.slope_of(t, rho));
     }
     if (delta < 0.0) {
       const double of_spring = rho / (STOPPING_DEPTH * support);
-      s.spring[walls[k].axis()] += of_spring * of_spring / atom_mass(atom, i);
+      s.spring[wall.axis()] += of_spring * of_spring / atom_mass(atom, i);
     }
-    s.friction +=
-        nu * share * 2.0 * eos.rho0 / rho * wall_friction(near.half_space(k), delta, support) +
-        share * impact_rate(*fluid, type, rho, impact(delta));
+    s.friction += type.nu * share * 2.0 * type.rho0 / rho *
+            wall_friction(near[n].half_space, delta, support) +
+        share * impact_rate(i, impact(delta));
   }
 }
 
 void FixWallSPH::add_to(ConcentrationGradient &concentration, int i)
 {
   if (!query(i)) return;
-  const double support = fluid->support(atom->type[i]);
+  const double support = types[atom->type[i]].support;
   const int dim = domain->dimension;
   concentration.cover += near.half_spaces_lambda();
-  for (std::size_t k = 0; k < walls.size(); k++) {
-    const int axis = walls[k].axis();
-    const double share = near.half_space_share(k), delta = walls[k].distance(atom->x[i]) / support;
-    concentration.gradient[axis] += walls[k].inwards() * share * near.half_space(k).slope / support;
-    concentration.cover +=
-        share * (wall_cover(near.half_space(k), delta, dim) - near.half_space(k).lambda);
+  for (std::size_t n = 0; n < near.size(); n++) {
+    const Wall &wall = walls[near[n].wall];
+    const WallTable::Value &half_space = near[n].half_space;
+    const double share = near.half_space_share(n);
+    concentration.gradient[wall.axis()] += wall.inwards() * share * half_space.slope / support;
+    concentration.cover += share * (wall_cover(half_space, near[n].delta, dim) - half_space.lambda);
   }
 }
 

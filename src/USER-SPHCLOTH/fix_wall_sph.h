@@ -10,6 +10,7 @@ FixStyle(wall/sph,FixWallSPH);
 #ifndef LMP_FIX_WALL_SPH_H
 #define LMP_FIX_WALL_SPH_H
 
+#include "atom.h"
 #include "fix.h"
 
 #include "core/sph/plane_wall.h"
@@ -67,7 +68,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
     int face;             // 0 to 5: xlo, xhi, ylo, yhi, zlo, zhi
     bool at_edge;         // of the box, wherever that is
     NumberOrVariable given;
-    double position;
+    double position, last_position;
     double velocity[3];    // along the plane as given, across it from the motion of the plane
 
     int axis() const { return face / 2; }
@@ -75,6 +76,7 @@ class FixWallSPH : public Fix, public FluidBoundary {
     bool moves() const { return velocity[0] != 0.0 || velocity[1] != 0.0 || velocity[2] != 0.0; }
     double inwards() const { return face % 2 == 0 ? 1.0 : -1.0; }
     double distance(const double *x) const { return inwards() * (x[axis()] - position); }
+    double last_distance(const double *x) const { return inwards() * (x[axis()] - last_position); }
   };
 
   struct Press {    // of a wall on a particle
@@ -88,16 +90,24 @@ class FixWallSPH : public Fix, public FluidBoundary {
   std::vector<NumberOrVariable *> positions;
   bool slip, any_moves;
   double reflection;    // 1, and the pressure behind the plane over the particle's own
-  std::array<double, 3> open_low, open_high;    // out of reach of all walls
+  std::array<int, 6> wall_at;    // by face; -1: none
+  std::array<double, 3> open_low, open_high;    // out of reach of the walls across each axis
   sphcloth::WallTable table;
   sphcloth::WallImpact impact;
   std::vector<sphcloth::WallProfile> profiles;    // [ntypes + 1]
 
-  sphcloth::JointWalls near;    // of the particle that was asked for last
-  // All walls of each particle that was found in reach in this evaluation, and where by particle
-  enum { UNKNOWN = -1, OUT_OF_REACH = -2 };
+  struct OfType {    // of a type of fluid, in this evaluation
+    double support, rho0, stiffness, nu, impact;
+  };
+  std::vector<OfType> types;    // [ntypes + 1]
+
+  sphcloth::JointWalls near;    // in reach of the particle that was asked for last
+  // Those of each particle in this evaluation, and where by particle
+  struct Range {
+    int first, n;    // n < 0: not asked for yet
+  };
   std::vector<sphcloth::NearWall> found, measured;
-  std::vector<int> found_at;
+  std::vector<Range> found_at;
   std::vector<Press> presses;    // kept only for fix_modify virial yes
   std::vector<double> mine, all;    // force on each wall, x, y, z, then the energy; of all ranks
   bool summed;
@@ -106,11 +116,29 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void read_velocity(ArgReader &);
   void check_face(const Wall &) const;
   void locate(Wall &, double);
+  void take_materials();
   void find_open_space();
   bool query(int i);
-  bool measure(int i, double back = 0.0);
-  double slope(int, std::size_t) const;
-  double departure(int, std::size_t) const;
+  bool measure(int i, double back);
+  void measure(int i, double back, std::vector<sphcloth::NearWall> &into) const;
+  // d rho_i / d distance from near[n], beside the others
+  double slope(int i, std::size_t n) const
+  {
+    const OfType &type = types[atom->type[i]];
+    return type.rho0 * near.slope(n) / type.support;
+  }
+  // velocity of particle i away from wall k
+  double departure(int i, std::size_t k) const
+  {
+    const int axis = walls[k].axis();
+    return walls[k].inwards() * (atom->v[i][axis] - walls[k].velocity[axis]);
+  }
+  // alpha c0 h_s rho0/rho D/H^2, D the value of the table
+  double impact_rate(int i, double of_table) const
+  {
+    const OfType &type = types[atom->type[i]];
+    return type.impact / atom->rho[i] * of_table / (2.0 * type.support);
+  }
   void push(int i, double p_over_rho2, double times, bool first);
   double output(int);
 };

@@ -17,7 +17,6 @@
 #include "neighbor.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;

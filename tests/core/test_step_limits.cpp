@@ -205,9 +205,10 @@ BOOST_AUTO_TEST_CASE(whole_steps_of_equation_15_are_rounded_down_at_least_one)
 
 BOOST_AUTO_TEST_CASE(limits_of_many_particles_at_once_are_those_of_each)
 {
-  StepCoefficients lambda = by_sound(), stable, off = by_sound();
+  StepCoefficients lambda = by_sound(), stable, off = by_sound(), motion;
   off.velocity = off.force = off.acoustic = off.viscous = off.density = 0.0;
   lambda.relative = 0.3;
+  motion.stability = 0.0;
   constexpr int N = StepStates::MAX - 3;    // does not fill the last vector
   StepStates states;
   for (int k = 0; k < N; k++) {
@@ -227,10 +228,12 @@ BOOST_AUTO_TEST_CASE(limits_of_many_particles_at_once_are_those_of_each)
     states.set(k, s);
   }
   std::set<Limit> by;
-  for (const StepCoefficients &of : {lambda, stable, off}) {
+  for (const StepCoefficients &of : {lambda, stable, off, motion}) {
+    BOOST_CHECK(of.motion_alone() == (of.stability == 0.0 && of.acoustic == 0.0));
     StepLimits limits;
     limits.dt[N] = -1.0;
-    particle_limits(of, states, N, limits);
+    of.motion_alone() ? motion_limits(of, states, N, limits)
+                      : particle_limits(of, states, N, limits);
     for (int k = 0; k < N; k++) {
       const StepLimit one = particle_limit(of, states[k]);
       BOOST_CHECK(limits[k].dt == one.dt);

@@ -14,10 +14,6 @@ namespace {
 constexpr double DT = 1e-3;
 
 double hardness(double strain) { return std::pow(1.0 + 9.0 * std::pow(strain, 4), -2); }
-double strain_of(double hardness)
-{
-  return std::pow((1.0 / std::sqrt(hardness) - 1.0) / 9.0, 0.25);
-}
 
 // under a load, over the one that strains the unloaded spring by as much as is allowed
 double strain_under(double load)

@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(edges_of_two_walls)
         inside += norm * WendlandC2::shape(q);
         if (x >= 0 && y >= 0) here += norm * WendlandC2::shape(q);
       }
-    const std::vector<NearWall> both(2, {table(0.5 / support), profile});
+    const std::vector<NearWall> both(2, {0, 0.5 / support, table, profile});
     const JointWalls walls(both.data(), 2, profile);
     std::printf("  edge, support %.0f: density %.4f\n", support, (here + walls.lambda()) / inside);
     BOOST_CHECK_SMALL((here + walls.lambda()) / inside - 1.0, 0.02);
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(edges_of_two_walls)
         const double h = 1e-6;
         const auto at = [&](double delta, auto asked) {
           const std::array<NearWall, 3> near{
-              {{table(delta), profile}, {table(b), profile}, {table(0.3), profile}}};
+              {{0, delta, table, profile}, {1, b, table, profile}, {2, 0.3, table, profile}}};
           return asked(JointWalls(near.data(), near.size(), profile));
         };
         const auto lambda = [&](double delta) {

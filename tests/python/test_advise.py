@@ -11,7 +11,7 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from sphcloth.advice.command import Advice, advise
-from sphcloth.advice.commands import Commands
+from sphcloth.advice.commands import Commands, Fluid
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.probe import Probe
 from sphcloth.advice.unused import unused
@@ -234,7 +234,7 @@ def test_viscosity_that_does_nothing(tmp_path: Path) -> None:
     """Water that flies freely has no use for it; water that collapses has."""
     flying = {"walls": "ylo -0.15", "more": "nu 1e-9", "steps": "60"}
     found = topics(water(tmp_path, **flying))
-    assert found["viscosity"] == "pair_coeff 1 1 fluid 1000.0 c0 50.0 nu 1e-9 alpha 0 nu 0"
+    assert found["viscosity"] == "pair_coeff 1 1 fluid 1000.0 c0 50.0"
     assert "viscosity" not in topics(water(tmp_path, more="alpha 0.3"))
 
 
@@ -312,7 +312,7 @@ def test_a_scene_without_our_water_is_refused(tmp_path: Path) -> None:
 
 def test_the_command_line(tmp_path: Path) -> None:
     script, out = write(tmp_path, WATER, COLUMN, walls="xlo 0.0 xhi 7.9 ylo 0.0"), tmp_path / "a"
-    arguments = ["advise", str(script), "--var", "n=30", "--json", str(out), "--ranks", "2"]
+    arguments = ["advise", str(script), "--set", "n=30", "--json", str(out), "--ranks", "2"]
     shown = CliRunner().invoke(app, arguments)
     assert shown.exit_code == 0, shown.output
     assert "not needed" in shown.output and "wall xhi" in shown.output
@@ -321,6 +321,36 @@ def test_the_command_line(tmp_path: Path) -> None:
     assert found["unused"][0]["line"] == "fix tank water wall/sph xlo 0.0 ylo 0.0"
     missing = CliRunner().invoke(app, ["advise", str(tmp_path / "none")])
     assert isinstance(missing.exception, UserError) and "no script" in str(missing.exception)
+
+
+def test_settings_are_called_set_as_in_other_commands(tmp_path: Path) -> None:
+    shown = CliRunner().invoke(app, ["advise", "--help"], env={"COLUMNS": "200"}).output
+    assert "--set" in shown and "--var" not in shown
+    script = write(tmp_path, WATER, COLUMN)
+    for option in ("--set", "--var"):
+        done = CliRunner().invoke(app, ["advise", str(script), option, "n=5", "--probe-steps", "9"])
+        assert "probe of" in done.output and "5 steps" in done.output
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [("--speed", "nan"), ("--speed", "-1"), ("--probe-time", "inf"), ("--stretch", "inf")],
+)
+def test_numbers_are_finite_and_above_zero(tmp_path: Path, option: str, value: str) -> None:
+    done = CliRunner().invoke(app, ["advise", str(write(tmp_path, WATER, COLUMN)), option, value])
+    assert isinstance(done.exception, UserError)
+    assert str(done.exception) == f"{option} {value}: give a finite number above 0"
+
+
+def test_a_script_may_hold_any_bytes(tmp_path: Path) -> None:
+    script = write(tmp_path, WATER, COLUMN, steps="5")
+    script.write_bytes(b"# \xe9crit \xe0 la main\n" + script.read_bytes())
+    assert ask(script).run.steps == 5
+
+
+def test_the_command_without_viscosity_repeats_no_word() -> None:
+    words = "1 1 fluid 1000 c0 50 alpha 0.1 nu 1e-6 switch 0.2 spacing 0.05"
+    assert Fluid.of(words.split(), 0.1).inviscid == "pair_coeff 1 1 fluid 1000 c0 50 spacing 0.05"
 
 
 def test_a_finished_run_tells_the_same_from_its_log() -> None:

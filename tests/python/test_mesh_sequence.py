@@ -189,6 +189,7 @@ def test_only_one_frame_is_in_memory(scene: Path, tmp_path: Path) -> None:
         (["--data", "balls.data", "--out", "o", "--every", "0"], "must be 1 or more"),
         (["--data", "none.data", "--out", "o"], "no data file"),
         (["--data", "balls.data", "--out", "balls.data"], "cannot be made"),
+        (["--data", "balls.data", "--out", "o", "--areal-mass", "1"], "no use for --areal-mass"),
     ],
 )
 def test_mistakes_are_one_line(

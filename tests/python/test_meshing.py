@@ -457,6 +457,11 @@ def test_a_bad_file_is_one_line_and_exit_code_2(
         (["--areal-mass", "1", "--data", "x", "--molecule", "./x"], "is written twice"),
         (["--areal-mass", "1", "--molecule", "x", "--groups", "y"], "--groups needs --data"),
         (["--from-dump", "x"], "takes no mesh files"),
+        (["--areal-mass", "1", "--data", "x", "--format", "foo"], "--format is for --from-dump"),
+        (["--areal-mass", "1", "--data", "x", "--out", "y"], "--out is for --from-dump"),
+        (["--areal-mass", "1", "--data", "x", "--first", "1"], "--first is for --from-dump"),
+        (["--areal-mass", "1", "--data", "x", "--vertex-type", "9" * 14], "up to 1000"),
+        (["--areal-mass", "1", "--data", "x", "--pin", "z>0", "--pin-type", "1001"], "up to 1000"),
     ],
 )
 def test_a_wrong_option_is_one_line_and_exit_code_2(

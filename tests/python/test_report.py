@@ -98,6 +98,14 @@ def test_each_result_is_on_the_page(results: Path, tmp_path: Path) -> None:
     assert "other.json" not in page
 
 
+def test_a_name_in_brackets_is_no_markup(
+    results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["report", str(results), "--out", "[/r].html"])
+    assert done.exit_code == 0 and "[/r].html: " in done.output
+
+
 def test_nothing_is_fetched_and_no_text_is_code(results: Path, tmp_path: Path) -> None:
     page = make(results, tmp_path / "page.html")
     assert EVIL not in page and "<img src=x" not in page

@@ -273,7 +273,7 @@ def test_settings_change_the_physics_and_the_reference(tmp_path: Path) -> None:
     result = run_hydrostatic(tmp_path, sound="20", height="0.5", gravity="2.0", time="1")
     metrics = result.metrics
     assert metrics["settlement_reference"].value == pytest.approx(1.242e-3, abs=1e-6)
-    assert metrics["settlement"].value == pytest.approx(1.242e-3, rel=0.6)
+    assert metrics["settlement"].value == pytest.approx(1.242e-3, rel=0.3)
     assert metrics["pressure"].value < 0.1
 
 

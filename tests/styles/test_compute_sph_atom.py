@@ -164,6 +164,7 @@ def test_ranks(tmp_path):
 
 ERRORS = {
     "none": ("compute c all sph/atom", r"compute c sph/atom: keyword is missing"),
+    "empty": ('compute c all sph/step ""', r"compute c sph/step: unknown keyword ''"),
     "unknown": ("compute c all sph/atom rho", r"unknown keyword 'rho'.*density, pressure"),
     "no pair": (
         "unfix step\ncompute c all sph/atom density\npair_style zero 0.1\npair_coeff * *\nrun 0",

@@ -122,6 +122,24 @@ def test_what_moves_or_turns_into_the_lee_is_found_in_time():
             assert low < by * lmp.extract_fix("air", 0, 1, 2, 0) < high, steps
 
 
+@pytest.mark.parametrize(
+    ("skin", "runs"),
+    [(0.01, "run 60"), (0.3, "run 60"), (0.05, "run 60 every 7 'write_restart lee'")],
+)
+def test_the_lee_does_not_depend_on_lists_and_on_what_is_written(tmp_path, monkeypatch, skin, runs):
+    """Sheets that drift apart across the wind: the shares of the lee change in the meantime."""
+    monkeypatch.chdir(tmp_path)
+    air = f"fix air cloth cloth/air {COEFFICIENTS} wind 6 0 9 shaded yes\n"
+    free = two_sheets(0.3, shift=0.15).replace(" pin pins\n", "\n") + air
+    found = []
+    for width, commands in ((0.05, "run 60"), (skin, runs)):
+        with instance() as lmp:
+            lmp.commands_string(f"{free}neighbor {width} bin\ntimestep 2e-3\n{commands}")
+            found.append((by_id(lmp, "x"), by_id(lmp, "v")))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(other, one, rtol=0, atol=1e-12 * np.abs(one).max())
+
+
 def test_a_restart_file_from_within_a_run_continues_with_the_same_lee(tmp_path):
     """It is written between two searches, and no list is built there."""
     make = two_sheets(0.1, shift=0.2).replace("pin all pins", "").replace("pin pins", "")

@@ -255,6 +255,14 @@ def test_a_fix_that_is_not_there_is_an_error(free_sheet, style):
     bare.close()
 
 
+def test_no_cloth_is_near_before_the_first_step():
+    lmp = instance()
+    gap = "compute gap all cloth/contact cloth/gap\nthermo_style custom step c_gap\nrun 0"
+    lmp.commands_string(FREE_SHEET + gap)
+    assert lmp.extract_compute("gap", 0, 0) == 0.03
+    lmp.close()
+
+
 def test_clear_takes_the_compute_along():
     lmp = instance()
     ask = "compute x all sph/step updates compression\nthermo_style custom step c_x[*]\n"

@@ -165,6 +165,47 @@ def test_a_body_takes_what_the_drops_give(tmp_path):
     assert np.abs(momentum() + under_way - before).max() < 1e-11 * np.abs(before).max()
 
 
+@pytest.mark.parametrize("scheme", ["global", "block"])
+def test_a_body_takes_what_the_drops_give_when_steps_change(tmp_path, scheme):
+    """A force of LAMMPS's Verlet acts for half of its step and half of the next, an impulse once.
+
+    A particle that is braked elsewhere lets steps grow.
+    """
+    drops = (
+        RAIN.format(speed=-3)
+        + "\ncreate_atoms 2 single 0.9 0.9 0.9 units box\n"
+        + "region corner sphere 0.9 0.9 0.9 0.01 units box\ngroup braked region corner\n"
+        + "velocity braked set 6 0 0 units box"
+    )
+    fixes = (
+        "fix r obstacle rigid single\nfix c water cloth/contact 0.01 obstacle obstacle\n"
+        "fix brake braked addforce -3.75 0 0"
+    )
+    lmp = instance()
+    lmp.commands_string(
+        scene(tmp_path, ball(), fixes, drops=drops, mass=0.2)
+        + f"unfix step\nfix step water sph/integrate global max 1e-3 velocity 0.01\n"
+        + f"run_style sph/adaptive {scheme}\nrun 0"
+    )
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+
+    def momentum():
+        return (mass[:, None] * by_id(lmp, "v"))[by_id(lmp, "x")[:, 2] < 0.89].sum(axis=0)
+
+    def is_free():
+        return max(abs(lmp.extract_fix("c", 0, 1, n)) for n in (7, 8, 9)) < 1e-30
+
+    before = momentum()
+    lmp.command("run 400")
+    assert by_id(lmp, "v")[by_id(lmp, "type") == 1][:, 2].mean() < -0.05
+    for _ in range(100):
+        lmp.command("run 1")
+        if is_free():
+            break
+    assert is_free()
+    assert np.abs(momentum() - before).max() < 1e-11 * np.abs(before).max()
+
+
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_ranks(tmp_path, ranks):
     fixes = (

@@ -78,6 +78,49 @@ def test_the_count_is_exact_and_ids_are_unique():
     assert lmp.extract_fix("pour", 0, 1, 3) == pytest.approx(-2.0 * 101 * 0.1209)
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            "fix x water sph/emit 9 1 0.05 disc 0 0 0 0.1 rectangle 0 0 0 0.1 0.1 velocity 0 0 -1",
+            r"fix x sph/emit: opening is 'rectangle': there is one already",
+        ),
+        (
+            "region sea block INF INF INF INF INF -0.4\nfix x water sph/drain region sea region sea",
+            r"fix x sph/drain: region is 'sea': there is one already",
+        ),
+    ],
+)
+def test_there_is_one_opening_and_one_region(words, message):
+    lmp = instance()
+    with pytest.raises(Exception, match=message):
+        lmp.commands_string(POUR.format(n=9, dt=1e-3, opening="disc 0 0 0.8 0.12") + words)
+
+
+def test_ids_of_what_has_left_are_not_given_again():
+    """Neither by the source of what has left nor by another."""
+    lmp = instance()
+    opening = "rectangle -0.2 0 -0.45 0.1 0.1"
+    lmp.commands_string(
+        POUR.format(n=4, dt=1e-3, opening=opening)
+        + "fix other water sph/emit 4 1 0.05 rectangle 0.2 0 0.5 0.1 0.1 velocity 0 0 -2 start 0.06\n"
+        + "fix out water sph/drain\nrun 50"
+    )
+    assert lmp.get_natoms() == 0
+    lmp.command("run 20")
+    assert sorted(lmp.numpy.extract_atom("id")) == [5, 6, 7, 8]
+
+
+def test_ids_that_end_are_named():
+    lmp = instance()
+    lmp.commands_string(POUR.format(n=1000, dt=1e-3, opening="disc 0 0 0.8 0.12"))
+    assert lmp.create_atoms(1, [2**31 - 9], [1], [0.0, 0.0, -0.3]) == 1
+    with pytest.raises(
+        Exception, match=r"fix pour sph/emit: the largest atom ID is 2147483639, too"
+    ):
+        lmp.command("run 0")
+
+
 def test_what_leaves_is_counted_with_its_mass_and_momentum():
     lmp = pour(n=40, extra="fix out water sph/drain\n")
     lmp.command("run 1500")

@@ -94,6 +94,19 @@ WALLS = {
 }
 
 
+def test_the_side_is_that_of_the_contact_which_parts():
+    """Also where a contact that does not part the fluid is defined before it."""
+    lmp = instance()
+    lmp.commands_string(
+        POOLS.format(fill="\n".join(FILL.values()), sheet=SHEET)
+        + "group none empty\nfix sheet cloth pbd/cloth pin pins\n"
+        + "fix other none cloth/contact 0.005 sides no\n"
+        + "fix contact fluid cloth/contact 0.005\ncompute side all sph/atom side\nrun 0"
+    )
+    fluid = by_id(lmp, "type") < 3
+    assert (compute(lmp, "side")[fluid] != 0).any()
+
+
 @pytest.mark.parametrize("sides", ["yes", "no"])
 def test_a_thin_plate_parts_the_pools_as_a_cloth_does(sides):
     """Density and forces of the water on both sides of an obstacle are those at a pinned cloth."""

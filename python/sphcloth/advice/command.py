@@ -125,7 +125,7 @@ def _trials(run: Evidence) -> Iterator[tuple[str, str, list[str], str]]:
         yield "bending", "cloth", ["dihedral_coeff * 0"], "dihedral_style none"
     viscous = [fluid for fluid in commands.fluids.values() if fluid.alpha or fluid.nu]
     if viscous:
-        inviscid = [f"pair_coeff {' '.join(fluid.words)} alpha 0 nu 0" for fluid in viscous]
+        inviscid = [fluid.inviscid for fluid in viscous]
         yield "viscosity", "water", inviscid, inviscid[0]
 
 

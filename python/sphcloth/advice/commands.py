@@ -15,6 +15,9 @@ from sphcloth.mesh import ClothMesh
 # what fix sph/integrate prints at the end of a run
 STEPS_BY_LIMIT = "sph/integrate: steps by limit:"
 
+# keywords of a fluid, each with one value
+VISCOSITY = ("alpha", "nu", "switch")
+
 
 @dataclass(frozen=True)
 class Fluid:
@@ -38,6 +41,17 @@ class Fluid:
     alpha: float
     nu: float
     support: float
+
+    @property
+    def inviscid(self) -> str:
+        """The command without viscosity, which a fluid has only where it is given."""
+        kept, words = [], iter(self.words)
+        for word in words:
+            if word in VISCOSITY:
+                next(words)
+            else:
+                kept.append(word)
+        return f"pair_coeff {' '.join(kept)}"
 
     @classmethod
     def of(cls, words: Sequence[str], support: float) -> Fluid:

@@ -9,13 +9,12 @@ from __future__ import annotations
 import re
 import shutil
 import statistics
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from sphcloth.errors import UserError
-from sphcloth.programs import lammps_on
+from sphcloth.programs import finish, lammps_on
 
 
 @dataclass(frozen=True)
@@ -123,7 +122,7 @@ class Runner:
         given = {**self.shared, **variables}
         words = [word for name, value in given.items() for word in ("-var", name, str(value))]
         command = [*lammps, "-in", self.script, "-log", "none", *words]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        done = finish(command, self.folder)
         if done.returncode:
             raise UserError(f"LAMMPS failed: {(done.stdout + done.stderr).strip()[-300:]}")
         return done.stdout

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
+import warnings
 
 import typer
 from rich.console import Console
+from rich.text import Text
 
 from sphcloth.cli import (
     advise,
@@ -46,8 +48,18 @@ app.command(epilog=stress.EXAMPLES)(stress.stress)
 
 def main() -> None:
     """Run the command line; a mistake of the user's is one line and exit code 2."""
+    warnings.showwarning = _show_warning
     try:
         app()
     except UserError as error:
-        Console(stderr=True).print(f"[bold red]error:[/] {error}", highlight=False)
+        _say("error:", "bold red", str(error))
         sys.exit(2)
+
+
+def _show_warning(message: Warning | str, *_where: object) -> None:
+    _say("warning:", "yellow", str(message))
+
+
+def _say(head: str, style: str, words: str) -> None:
+    """Print a line to the error output; the words are the user's, and no markup."""
+    Console(stderr=True).print(Text.assemble((head, style), f" {words}"), soft_wrap=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -9,13 +10,14 @@ import typer
 from rich.console import Console
 
 from sphcloth.cli.options import JsonFile, Ranks
+from sphcloth.errors import UserError
 
 EXAMPLES = """
 Examples:
 
 sphcloth advise in.drop
 
-sphcloth advise in.pour --var hold=corners --ranks 2 --probe-steps 3000 --speed 4
+sphcloth advise in.pour --set hold=corners --ranks 2 --probe-steps 3000 --speed 4
 """
 
 
@@ -24,11 +26,11 @@ def advise(
     settings: Annotated[
         list[str] | None,
         typer.Option(
-            "--var",
-            "--set",
-            metavar="NAME=VALUE",
-            help="Set a variable of the script; NAME= empties it.",
+            "--set", metavar="NAME=VALUE", help="Set a variable of the script; NAME= empties it."
         ),
+    ] = None,
+    old_settings: Annotated[
+        list[str] | None, typer.Option("--var", help="The same as --set.", hidden=True)
     ] = None,
     ranks: Ranks = 1,
     steps: Annotated[
@@ -50,8 +52,18 @@ def advise(
     from sphcloth.advice.probe import Probe
     from sphcloth.examples import parse_settings
 
-    probe = Probe(script, parse_settings(settings or [], "--var"), ranks, steps, seconds)
+    _check("--probe-time", seconds)
+    _check("--speed", speed)
+    _check("--stretch", stretch)
+    variables = parse_settings([*(settings or []), *(old_settings or [])])
+    probe = Probe(script, variables, ranks, steps, seconds)
     found = find_advice(probe, Console(), speed=speed, stretch=stretch)
     found.show(Console())
     if json_file is not None:
         found.write(json_file)
+
+
+def _check(option: str, value: float | None) -> None:
+    """Raise UserError for a number that is not finite and above 0."""
+    if value is not None and not 0 < value < math.inf:
+        raise UserError(f"{option} {value:g}: give a finite number above 0")

@@ -93,6 +93,7 @@ def bench(
     json_file: JsonFile = None,
 ) -> None:
     """Measure speed as ratios, side by side in one run, with the spread."""
+    from sphcloth.programs import endings_interrupt
     from sphcloth.results import write_json
 
     known = _known()
@@ -102,6 +103,7 @@ def bench(
         raise UserError(f"--only {only}: only block has metrics to choose from, not {name}")
     measure, usual_rounds, usual_across, usual_steps = known[name]
     size = (rounds or usual_rounds, across or usual_across, steps or usual_steps)
-    figures = measure(*size, Console(), **({} if only is None else {"only": only}))
+    with endings_interrupt():
+        figures = measure(*size, Console(), **({} if only is None else {"only": only}))
     if json_file is not None:
         write_json(json_file, figures)

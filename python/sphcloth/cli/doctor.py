@@ -21,8 +21,10 @@ def doctor(
 ) -> None:
     """Check that LAMMPS, MPI and the styles work together on this machine."""
     from sphcloth.doctor import examine
+    from sphcloth.programs import endings_interrupt
 
-    findings = examine()
+    with endings_interrupt():
+        findings = examine()
     findings.show(Console())
     if json_file is not None:
         findings.write(json_file)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from sphcloth.cli.options import JsonFile, grouped
+from sphcloth.cli.options import JsonFile, given, grouped
 from sphcloth.errors import UserError
 
 EXAMPLES = """
@@ -178,6 +178,15 @@ def mesh(
     if sequence.from_dump is not None:
         if files:
             raise UserError("--from-dump takes no mesh files")
+        of_files = [
+            *given(written),
+            *given(numbering),
+            *given(place),
+            *given(joining),
+            *given(rest),
+        ]
+        if idle := [option for option in of_files if option != "--data"]:
+            raise UserError(f"--from-dump has no use for {idle[0]}: leave it out")
         chosen = (sequence.first, sequence.last, sequence.every)
         command.make_sequence(
             sequence.from_dump,
@@ -191,6 +200,8 @@ def mesh(
         return
     if not files:
         raise UserError("which mesh? sphcloth mesh FILE, or --from-dump DUMP")
+    if idle := given(sequence):
+        raise UserError(f"{idle[0]} is for --from-dump DUMP alone: leave it out")
     recipe = command.Recipe(
         materials=command.make_materials(numbering.areal_mass, numbering.types, len(files)),
         placement=command.Placement(place.scale, place.rotate, place.translate),

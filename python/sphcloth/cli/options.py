@@ -11,8 +11,19 @@ from typing import Annotated, get_type_hints
 
 import typer
 
+
+def _prepared(context: typer.Context, path: Path | None) -> Path | None:
+    """Find a file that cannot be written before anything is computed for it."""
+    from sphcloth.results import prepare_file
+
+    if path is not None and not context.resilient_parsing:
+        prepare_file(path, "--json")
+    return path
+
+
 JsonFile = Annotated[
-    Path | None, typer.Option("--json", metavar="FILE", help="Write the result here too.")
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write the result here too.", callback=_prepared),
 ]
 Ranks = Annotated[int, typer.Option(min=1, help="Number of MPI ranks.")]
 
@@ -42,6 +53,20 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     ungrouped.__signature__ = inspect.Signature(options)
     ungrouped.__annotations__ = {}
     return ungrouped
+
+
+def given(group: object) -> list[str]:
+    """Return the options of a group whose values are not the defaults, as on the command line."""
+    hints = get_type_hints(type(group), include_extras=True)
+    named = []
+    for field in fields(group):
+        if getattr(group, field.name) != field.default:
+            # typer takes the first name for a default until it builds the command
+            option = hints[field.name].__metadata__[0]
+            names = [option.default, *(option.param_decls or ())]
+            usual = f"--{field.name.replace('_', '-')}"
+            named.append(next((name for name in names if str(name).startswith("--")), usual))
+    return named
 
 
 def _options(group: type) -> list[inspect.Parameter]:

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from sphcloth.cli.options import JsonFile
+from sphcloth.errors import UserError
 
 EXAMPLES = """
 Examples:
@@ -49,14 +50,19 @@ def stress(
     out: Annotated[
         Path | None, typer.Option(help="Keep what the runs wrote in this folder.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="With random: seed of the first scene.")] = 1,
-    count: Annotated[int, typer.Option(help="With random: how many scenes.")] = 20,
+    seed: Annotated[
+        int | None, typer.Option(help="With random: seed of the first scene.", show_default="1")
+    ] = None,
+    count: Annotated[
+        int | None, typer.Option(help="With random: how many scenes.", show_default="20")
+    ] = None,
     json_file: JsonFile = None,
     show_list: Annotated[
         bool, typer.Option("--list", help="Show all cases and what must happen.")
     ] = False,
 ) -> None:
     """Run the extremes, or random scenes; exit code 1 if one does not do what it must."""
+    from sphcloth.programs import endings_interrupt
     from sphcloth.stress import command
 
     console = Console()
@@ -64,7 +70,19 @@ def stress(
         command.show_cases(console)
         return
     if case == "random":
-        found = command.stress_random(seed, count, scheme, out, json_file, console)
+        if ranks is not None or quick:
+            idle = "--quick" if quick else f"--ranks {ranks}"
+            raise UserError(f"{idle}: a random scene draws its size and ranks: leave it out")
+        first, scenes = 1 if seed is None else seed, 20 if count is None else count
+        with endings_interrupt():
+            found = command.stress_random(first, scenes, scheme, out, json_file, console)
         raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)
-    found = command.stress(case, scheme, ranks, quick, out, json_file, console)
+    for option, value in (("--seed", seed), ("--count", count)):
+        if value is not None:
+            raise UserError(
+                f"{option} {value}: only random scenes have it: sphcloth stress random, or leave "
+                "it out"
+            )
+    with endings_interrupt():
+        found = command.stress(case, scheme, ranks, quick, out, json_file, console)
     raise typer.Exit(0 if all(verdict.passed for verdict in found) else 1)

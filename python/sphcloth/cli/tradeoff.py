@@ -197,4 +197,4 @@ def tradeoff(
     if json_file is not None:
         result.write(json_file)
     show(result, console)
-    console.print(*(str(file) for file in files), sep="\n", highlight=False, soft_wrap=True)
+    console.print("\n".join(map(str, files)), markup=False, highlight=False, soft_wrap=True)

@@ -12,6 +12,9 @@ from scipy.sparse import coo_array, eye_array
 from sphcloth.errors import UserError
 from sphcloth.meshing.surface import Surface, lengths
 
+# pair styles have a table of all pairs of types
+LARGEST_TYPE = 1000
+
 
 @dataclass(frozen=True)
 class Material:
@@ -36,9 +39,15 @@ class Material:
         if not 0 < self.areal_mass < np.inf:
             raise UserError(f"--areal-mass {self.areal_mass:g}: the mass per area must be positive")
         for name, minimum in (("vertex", 1), ("bond", 1), ("angle", 1), ("dihedral", 0)):
-            if getattr(self, f"{name}_type") < minimum:
-                value = getattr(self, f"{name}_type")
-                raise UserError(f"--{name}-type {value}: types count from {minimum}")
+            check_type(f"--{name}-type", getattr(self, f"{name}_type"), minimum)
+
+
+def check_type(option: str, number: int, minimum: int = 1) -> None:
+    """Raise UserError for a number that is no type of LAMMPS, which keeps tables of all."""
+    if number < minimum:
+        raise UserError(f"{option} {number}: types count from {minimum}")
+    if number > LARGEST_TYPE:
+        raise UserError(f"{option} {number}: give a number up to {LARGEST_TYPE}")
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.meshing import report
-from sphcloth.meshing.cloth import Cloth, Material, build_cloth
+from sphcloth.meshing.cloth import Cloth, Material, build_cloth, check_type
 from sphcloth.meshing.lammps_files import ATOM_STYLES, write_data, write_groups, write_molecule
 from sphcloth.meshing.load import LARGEST, read_surface
 from sphcloth.meshing.pins import select_vertices
@@ -96,8 +96,9 @@ class Recipe:
             raise UserError("--seam-type needs --sew DISTANCE")
         if self.pin_type is not None and not self.pins:
             raise UserError("--pin-type needs --pin SELECTION")
-        if any(number is not None and number < 1 for number in (self.seam_type, self.pin_type)):
-            raise UserError("--seam-type and --pin-type: types count from 1")
+        for option, number in (("--seam-type", self.seam_type), ("--pin-type", self.pin_type)):
+            if number is not None:
+                check_type(option, number)
         if self.seam_type in {material.bond_type for material in self.materials}:
             raise UserError(f"--seam-type {self.seam_type} is the type of the edges: use another")
         if self.pin_type in {material.vertex_type for material in self.materials}:

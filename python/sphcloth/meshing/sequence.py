@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import breadth_first_order
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.meshing.surface import Surface, lengths
+from sphcloth.results import make_folder
 from sphcloth.trajectory import Frame, Trajectory
 
 FORMATS = {"obj": ".obj", "ply": ".ply", "vtk": ".vtp"}
@@ -142,10 +143,7 @@ def _chosen(total: int, first: int, last: int | None, every: int) -> range:
 
 
 def _remove_old(out: Path, suffix: str) -> None:
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"folder {out} cannot be made: {error.strerror}") from None
+    make_folder(out)
     for path in [*out.glob(f"cloth_[0-9]*{suffix}"), out / SERIES]:
         path.unlink(missing_ok=True)
 

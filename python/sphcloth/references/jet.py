@@ -51,8 +51,3 @@ class Jet:
         """Thickness of the sheets that flow off along and against the direction of the jet, m."""
         share = (1 + math.cos(math.radians(self.angle))) / 2
         return self.thickness * share, self.thickness * (1 - share)
-
-    @property
-    def stagnation_pressure(self) -> float:
-        """Largest pressure on the plate, Pa."""
-        return self.rho0 * self.speed**2 / 2

@@ -209,7 +209,8 @@ def render(
     paths = list(write_pictures(pictures, form, out, dump.stem))
     seconds = (time.perf_counter() - start) / total
     particles = max(trajectory.counts[numbers])
-    console.print(f"{paths[0]}" + (f" ... {paths[-1].name}" if len(paths) > 1 else ""))
+    written = f"{paths[0]}" + (f" ... {paths[-1].name}" if len(paths) > 1 else "")
+    console.print(written, markup=False)
     console.print(
         f"{total} pictures of up to {particles:,} atoms, {seconds:.2g} s each", highlight=False
     )

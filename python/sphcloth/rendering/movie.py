@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from sphcloth.errors import UserError
+from sphcloth.results import make_folder
 
 FORMATS = ("png", "gif", "mp4")
 FRAMES_PER_SECOND = 20
@@ -55,10 +56,7 @@ def write_pictures(pictures: Pictures, form: str, out: Path, name: str) -> Itera
 
 
 def _clear(out: Path) -> None:
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"folder {out} cannot be made: {error.strerror}") from None
+    make_folder(out)
     for path in out.glob("frame_[0-9]*.png"):
         path.unlink()
 

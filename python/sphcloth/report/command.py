@@ -47,7 +47,8 @@ def report(
     if found.trajectories:
         counts.append(f"{len(shown)} of {len(found.trajectories)} trajectories")
     size = out.stat().st_size / 1e6
-    console.print(f"{out}: {', '.join(counts)}, {size:.1f} MB", highlight=False, soft_wrap=True)
+    told = f"{out}: {', '.join(counts)}, {size:.1f} MB"
+    console.print(told, markup=False, highlight=False, soft_wrap=True)
     for path, reason in found.skipped:
         console.print(f"left out: {path}: {reason}", markup=False, style="yellow", soft_wrap=True)
     return found

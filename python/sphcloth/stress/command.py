@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.results import mark, versions, write_json
+from sphcloth.results import make_folder, mark, versions, write_json
 from sphcloth.stress.case import SCHEMES, Case
 from sphcloth.stress.cases import all_cases
 from sphcloth.stress.random_run import random_scenes
@@ -46,6 +46,8 @@ def stress(
     chosen = _find_cases(name)
     wanted = _find_schemes(schemes)
     counts = _find_ranks(ranks or ("1,2" if quick else "1,2,4"))
+    if out is not None:
+        make_folder(out)
     found: list[Verdict] = []
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as scratch, console.status("") as status:
@@ -81,6 +83,8 @@ def stress_random(
         UserError: a seed or a count that is none, or an unknown scheme.
     """
     wanted = [None] if schemes is None else _find_schemes(schemes)
+    if out is not None:
+        make_folder(out)
     found: list[Verdict] = []
     start = time.monotonic()
     with console.status("") as status:

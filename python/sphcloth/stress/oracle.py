@@ -75,10 +75,6 @@ class Evidence:
         values = dict(zip(self.outcome.log["Step"], self.outcome.log[column], strict=True))
         return np.array([values[f.step] for f in self.frames]) / UNITS[self.scene.units].of(unit)
 
-    def is_fluid(self, frame: Frame) -> NDArray[np.bool_]:
-        """Which atoms of a frame are water."""
-        return np.isin(frame.types, FLUIDS)
-
 
 def complaints(scene: RandomScene, outcome: Outcome) -> list[str]:
     """Return all that is wrong with a run."""

@@ -28,8 +28,10 @@ def run_to_end(
         code = run.wait(timeout)
     except subprocess.TimeoutExpired:
         code = None
-        kill_all([*descendants(run.pid), run.pid])
-        run.wait()
+    finally:
+        if run.poll() is None:
+            kill_all([*descendants(run.pid), run.pid])
+            run.wait()
     return code, (folder / "printed").read_text(encoding="utf-8", errors="replace")
 
 

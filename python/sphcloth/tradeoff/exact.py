@@ -16,8 +16,9 @@ from rich.console import Console
 
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
+from sphcloth.programs import kill
 from sphcloth.results import argument
-from sphcloth.run import LOG, SCREEN, kill
+from sphcloth.run import LOG, SCREEN
 from sphcloth.tradeoff.front import Point
 from sphcloth.tradeoff.runs import Crew, Record, Setting, Workshop
 from sphcloth.tradeoff.scene import Quantity, Scene, column

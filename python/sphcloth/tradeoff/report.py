@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from sphcloth.tradeoff.figures import draw
@@ -79,22 +80,27 @@ def _settings_table(study: Study) -> Table:
     quantities = [quantity.name for quantity in study.scene.quantities]
     table = _table(
         study,
-        f"{study.scene.name}: {study.scene.summary}",
+        escape(f"{study.scene.name}: {study.scene.summary}"),
         ("updates", "wall s", *(f"error {name}" for name in quantities)),
     )
     table.add_column("", no_wrap=True)
     table.caption = "U, W: on the Pareto front by particle updates, by wall time"
     fronts = {cost: study.front(cost) for cost in COSTS}
     if (exact := study.reference) is not None:
-        table.add_row("reference", f"{exact.scheme}, {exact.label}", *_cost_cells(exact))
+        setting = escape(f"{exact.scheme}, {exact.label}")
+        table.add_row("reference", setting, *_cost_cells(exact))
     for point in study.points:
         if point.failure is not None:
-            table.add_row(point.scheme, point.label, "", "", f"[red]{_failed(study)}[/]")
+            table.add_row(*_names(point), "", "", f"[red]{_failed(study)}[/]")
             continue
         errors = [f"{point.errors[name]:.1e}" for name in quantities]
         marks = [mark for cost, mark in MARKS.items() if point in fronts[cost]]
-        table.add_row(point.scheme, point.label, *_cost_cells(point), *errors, "".join(marks))
+        table.add_row(*_names(point), *_cost_cells(point), *errors, "".join(marks))
     return table
+
+
+def _names(point: Point) -> tuple[str, str]:
+    return escape(point.scheme), escape(point.label)
 
 
 def _failed(study: Study) -> str:
@@ -111,7 +117,7 @@ def _table(study: Study, title: str, numbers: Sequence[str]) -> Table:
     table.add_column("scheme" if study.reference else "group", no_wrap=True)
     table.add_column("setting", min_width=12)
     for head in numbers:
-        table.add_column(head.replace(" ", "\n"), justify="right", no_wrap=True)
+        table.add_column(escape(head).replace(" ", "\n"), justify="right", no_wrap=True)
     return table
 
 
@@ -120,16 +126,17 @@ def _show_choices(study: Study, cost: str, console: Console) -> None:
     found = study.choices(cost)
     name, error = study.quantity.name, study.plan.error
     if not found:
-        console.print(f"no setting has an error of {name} of at most {error:g}", highlight=False)
+        told = f"no setting has an error of {name} of at most {error:g}"
+        console.print(told, markup=False, highlight=False)
         return
     best = study.best(cost)
     compared = BASELINES if study.reference else ()
     baselines = [f"best {scheme} over this" for scheme in compared]
-    title = f"cheapest by {COSTS[cost]}, error of {name} at most {error:g}"
+    title = escape(f"cheapest by {COSTS[cost]}, error of {name} at most {error:g}")
     table = _table(study, title, ("error", COSTS[cost], *baselines))
     for scheme, choice in found.items():
         mark = " (best)" if scheme == best else ""
-        table.add_row(f"{scheme}{mark}", *_choice_cells(choice, name, cost, compared))
+        table.add_row(f"{escape(scheme)}{mark}", *_choice_cells(choice, name, cost, compared))
     console.print(table)
 
 
@@ -137,4 +144,9 @@ def _choice_cells(choice: Choice, quantity: str, cost: str, compared: Sequence[s
     point = choice.point
     saved = [choice.saving[scheme] for scheme in compared]
     savings = ["n/a" if each is None else f"{each:.2f}" for each in saved]
-    return [point.label, f"{point.errors[quantity]:.1e}", f"{point.cost(cost):.3g}", *savings]
+    return [
+        escape(point.label),
+        f"{point.errors[quantity]:.1e}",
+        f"{point.cost(cost):.3g}",
+        *savings,
+    ]

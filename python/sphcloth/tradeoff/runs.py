@@ -8,6 +8,7 @@ import math
 import re
 import shutil
 import subprocess
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable
@@ -25,24 +26,25 @@ from sphcloth.errors import UserError
 from sphcloth.fix_values import column
 from sphcloth.log import ThermoTable
 from sphcloth.plugin import PLUGIN, lammps_release, plugin_folder
-from sphcloth.programs import installed_version
-from sphcloth.results import write_json
+from sphcloth.programs import endings_interrupt, installed_version, kill
+from sphcloth.results import make_folder, write_json
 from sphcloth.run import (
     LOG,
     check_no_link,
     companions,
     copy_companions,
-    endings_interrupt,
-    kill,
     lammps_command,
     last_words,
     start_lammps,
+    wait_for_lammps,
 )
 from sphcloth.tradeoff.scene import Scene
 
 RECORD = "result.json"
 # a run is stopped when it takes so many times as long as the reference, and these seconds
 TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 120.0
+# ends all runs of a script after a second
+LOOK = "timer timeout 0:0:1 every 1"
 STOPPED = "stopped; what has finished is kept: the same command goes on from there"
 # schemes under which a step is not a step of every particle
 PARTIAL = ("individual", "block")
@@ -126,6 +128,7 @@ class Workshop:
 
     def open(self, fresh: bool) -> None:
         """Refuse a folder that is a link, and forget what is in it if asked to."""
+        make_folder(self.out.parent)
         check_no_link(self.out)
         if fresh:
             shutil.rmtree(self.out, ignore_errors=True)
@@ -189,6 +192,27 @@ class Workshop:
                 self._run_missing(missing, timeout)
         return [self.find(setting) for setting in settings]
 
+    def check_columns(self, setting: Setting) -> None:
+        """Raise UserError for a quantity that the log will lack, after a second of a run.
+
+        Does nothing for a run that was kept, a script that may change its columns, or one that
+        fails: what is wrong with it the run itself will tell.
+        """
+        if self.find(setting) is not None or not self.scene.has_one_table:
+            return
+        with tempfile.TemporaryDirectory() as name:
+            folder, script = Path(name), Path(name) / "in.look"
+            copy_companions(self.scene.script, folder)
+            script.write_text(f'{LOOK}\ninclude "{self.scene.script.resolve()}"\n')
+            command = lammps_command(script, self.ranks, setting.variables, self.jobs)
+            wait_for_lammps(command, folder, GRACE_SECONDS)
+            try:
+                table = ThermoTable.read(folder / LOG, self.scene.last_run)
+            except UserError:
+                return
+        for each in self.scene.quantities:
+            each.history(table)
+
     def thermo(self, setting: Setting) -> ThermoTable:
         """Return the thermo output of a run, or of its last part if only that counts."""
         return ThermoTable.read(self.folder(setting) / LOG, self.scene.last_run)
@@ -212,7 +236,7 @@ class Workshop:
     def _run_missing(self, missing: list[Setting], timeout: float) -> None:
         crew = self.crew(timeout)
         bar = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(bar_width=20),
             MofNCompleteColumn(),
             console=self.console,

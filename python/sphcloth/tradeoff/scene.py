@@ -192,7 +192,13 @@ class Scene:
     @cached_property
     def text(self) -> str:
         """The script."""
-        return self.script.read_text(encoding="utf-8")
+        return self.script.read_text(encoding="utf-8", errors="replace")
+
+    @property
+    def has_one_table(self) -> bool:
+        """Whether all runs have the same columns, as far as the text tells."""
+        tables = re.findall(r"^\s*thermo_modify\b.*\byaml\b", self.text, re.MULTILINE)
+        return len(tables) == 1 and not re.search(r"\binclude\s", self.text)
 
     @cached_property
     def defaults(self) -> dict[str, str]:

@@ -161,6 +161,7 @@ def study(
     workshop = Workshop(scene, out / RUNS, ranks, jobs, console)
     workshop.open(fresh)
     references = [reference for reference, _ in starts]
+    workshop.check_columns(references[0])
     firsts = workshop.run(references)
     # a column that is missing is missed here, before all the other runs
     exact = [

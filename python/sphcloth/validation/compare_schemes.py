@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.results import finite, write_json
+from sphcloth.results import finite, make_folder, write_json
 from sphcloth.validation.case import Case
 from sphcloth.validation.schemes import SCHEMES
 from sphcloth.validation.validate import Result, all_cases, validate
@@ -78,7 +78,7 @@ def compare_schemes(
     densities = {"density": "summation"} if by_rates else {}
     same = densities | dict(settings)
     case.values(same, quick)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     results: dict[str, Result | str] = {}
     for scheme in SCHEMES:
         chosen = same | {"scheme": scheme}
@@ -86,7 +86,7 @@ def compare_schemes(
             results[scheme] = validate(case, chosen, ranks, quick, out / scheme, console)
         except UserError as error:
             results[scheme] = str(error)
-            console.print(f"{scheme}: {error}", highlight=False)
+            console.print(f"{scheme}: {error}", markup=False, highlight=False)
     written = {
         scheme: finite(asdict(each)) if isinstance(each, Result) else each
         for scheme, each in results.items()
@@ -107,7 +107,8 @@ def show(comparisons: Sequence[Comparison], console: Console) -> None:
     for comparison in comparisons:
         for scheme, result in comparison.results.items():
             if isinstance(result, str):
-                console.print(f"{comparison.case.name}, {scheme}: {result}", highlight=False)
+                told = f"{comparison.case.name}, {scheme}: {result}"
+                console.print(told, markup=False, highlight=False)
 
 
 def _value(result: Result | str, name: str) -> str:

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from sphcloth.errors import UserError
-from sphcloth.results import Value, finite, mark, versions, write_json
+from sphcloth.results import Value, finite, make_folder, mark, versions, write_json
 from sphcloth.validation import cases, schemes
 from sphcloth.validation.case import Case, Metric
 from sphcloth.validation.runner import Runner
@@ -105,7 +105,7 @@ def validate(
     """
     values = case.values(settings, quick)
     schemes.check(values)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     for stale in (f"{case.name}.json", f"{case.name}.png"):
         (out / stale).unlink(missing_ok=True)
     runner = Runner(case.script, out, ranks, console)

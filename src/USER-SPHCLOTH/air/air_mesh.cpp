@@ -84,6 +84,11 @@ void AirMesh::forward_motion()
   triangles.lee_share.resize(triangles.size());
 }
 
+void AirMesh::forward_positions(std::vector<Vec3> &by_slot)
+{
+  halo.forward_positions(ALL, by_slot.data());
+}
+
 double AirMesh::add_loads(const sphcloth::AirDrag &drag, double dt)
 {
   find_open_share();

@@ -36,7 +36,9 @@ class AirMesh : protected Pointers {
   bool empty() const { return n_felt == 0; }
   // after each list build
   void rebuild();
-  void forward_motion();    // to ghosts
+  // to ghosts
+  void forward_motion();
+  void forward_positions(std::vector<Vec3> &by_slot);
   // collective; returns the area that takes air, of this rank's triangles
   double add_loads(const sphcloth::AirDrag &, double dt);
   // by slot, of owned vertices: a third of each triangle, as far as no water covers it; collective

@@ -5,7 +5,9 @@
 
 #include "air/air_mesh.h"
 #include "comm.h"
+#include "domain.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/lammps_version.h"
 
 #include <limits>
 
@@ -15,15 +17,43 @@ using namespace LAMMPS_NS;
 // what is in the lee as it is
 static constexpr double MOVES = 0.5;
 
+// The picture is that of the positions that are kept: nothing depends on when lists are built or a
+// run begins.
+
 void WindShade::find(const std::vector<AirMesh *> &meshes)
 {
   const Vec3 direction = mean_direction(meshes);
+  if (!is_known && !found_with.isZero(0.0)) find_shares(meshes);
   if (still_holds(meshes, direction)) return;
   found_with = direction;
-  const bool blows = !direction.isZero(0.0);
+  record(meshes);
+  find_shares(meshes);
+}
+
+void WindShade::record(const std::vector<AirMesh *> &meshes)
+{
+  for (const AirMesh *mesh : meshes)
+    for (int s = 0; s < mesh->halo.n_owned(); s++)
+      for (int d = 0; d < 3; d++) columns[first + d][mesh->halo.atom_of(s)] = mesh->x[s][d];
+}
+
+// of an owned vertex since then; LAMMPS may have moved it by a period
+
+WindShade::Vec3 WindShade::displacement(const AirMesh &mesh, int slot) const
+{
+  const int i = mesh.halo.atom_of(slot);
+  Vec3 moved = mesh.x[slot] - Vec3(columns[first][i], columns[first + 1][i], columns[first + 2][i]);
+  release::minimum_image(domain, moved.data());
+  return moved;
+}
+
+void WindShade::find_shares(const std::vector<AirMesh *> &meshes)
+{
+  is_known = true;
+  const bool blows = !found_with.isZero(0.0);
   if (blows) {
     gather(meshes);
-    shadow.build(points, corners, direction);
+    shadow.build(points, corners, found_with);
   }
   std::size_t n = 0;
   for (AirMesh *mesh : meshes)
@@ -49,10 +79,9 @@ bool WindShade::still_holds(const std::vector<AirMesh *> &meshes, const Vec3 &di
   if ((direction - found_with).norm() * shadow.depth() > allowed) return false;
   Eigen::Array<double, 6, 1> here, range;    // of displacements: maxima, and minima times -1
   here.setConstant(-std::numeric_limits<double>::infinity());
-  std::size_t n = 0;
   for (const AirMesh *mesh : meshes)
-    for (int s = 0; s < mesh->halo.n_slots(); s++) {
-      const Eigen::Array3d moved = (mesh->x[s] - Vec3(points_here[n++].data())).array();
+    for (int s = 0; s < mesh->halo.n_owned(); s++) {
+      const Eigen::Array3d moved = displacement(*mesh, s).array();
       here.head<3>() = here.head<3>().max(moved);
       here.tail<3>() = here.tail<3>().max(-moved);
     }
@@ -68,13 +97,15 @@ void WindShade::gather(const std::vector<AirMesh *> &meshes)
   for (const AirMesh *mesh : meshes) n_here += mesh->halo.n_slots();
   MPI_Exscan(&n_here, &before, 1, MPI_INT, MPI_SUM, world);
   if (comm->me == 0) before = 0;    // MPI leaves it undefined
-  for (const AirMesh *mesh : meshes) {
-    const int first = before + static_cast<int>(points_here.size());
-    for (int s = 0; s < mesh->halo.n_slots(); s++)
-      points_here.push_back({mesh->x[s][0], mesh->x[s][1], mesh->x[s][2]});
+  for (AirMesh *mesh : meshes) {
+    const int number = before + static_cast<int>(points_here.size());
+    seen.resize(mesh->halo.n_slots());
+    for (int s = 0; s < mesh->halo.n_owned(); s++) seen[s] = mesh->x[s] - displacement(*mesh, s);
+    mesh->forward_positions(seen);
+    for (const Vec3 &at : seen) points_here.push_back({at[0], at[1], at[2]});
     for (int t = 0; t < mesh->n_triangles_here(); t++) {
       const std::array<int, 3> s = mesh->corners(t);
-      corners_here.push_back({first + s[0], first + s[1], first + s[2]});
+      corners_here.push_back({number + s[0], number + s[1], number + s[2]});
     }
   }
   allgather(points_here, points, comm->nprocs, world);

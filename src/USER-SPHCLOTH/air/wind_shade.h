@@ -6,6 +6,7 @@
 
 #include "core/air/wind_shadow.h"
 #include "core/util/bytes.h"
+#include "lammps_util/particle_columns.h"
 #include "pointers.h"
 
 #include <vector>
@@ -18,32 +19,47 @@ class WindShade : protected Pointers {
  public:
   using Vec3 = Eigen::Vector3d;
 
-  explicit WindShade(LAMMPS *lmp_) : Pointers(lmp_) {}
+  // In three columns, from the first on, the fix keeps of each vertex where it was when the lee was
+  // found.
+  WindShade(LAMMPS *lmp_, ParticleColumns &columns_, int first_) :
+      Pointers(lmp_), columns(columns_), first(first_)
+  {
+  }
 
-  // Behind each list build, which renumbers triangles, and where a restart file is written: a run
-  // that continues finds the lee anew, too.
-  void forget() { found_with.setZero(); }
+  // after each list build, which renumbers triangles
+  void lists_have_changed() { is_known = false; }
 
   // Of meshes whose motion and wind are known on ghosts, too; collective.  The wind is seen along
   // its mean over their vertices; without one there is no lee.  What was found stays until cloth
   // or wind have changed the picture by a part of a triangle.
   void find(const std::vector<AirMesh *> &meshes);
+
+  // the direction of the wind with which it was found, for restart files; 0: the lee is not known
+  const Vec3 &direction() const { return found_with; }
+  void restore(const Vec3 &direction) { found_with = direction; }
   double bytes() const
   {
-    return shadow.bytes() + sphcloth::bytes_of(points_here, points, corners_here, corners);
+    return shadow.bytes() + sphcloth::bytes_of(seen, points_here, points, corners_here, corners);
   }
 
  private:
   using Point = sphcloth::WindShadow::Point;
   using Corners = sphcloth::WindShadow::Corners;
 
-  Vec3 found_with = Vec3::Zero();    // direction of the wind; 0: the lee is not known
+  ParticleColumns &columns;
+  const int first;
+  Vec3 found_with = Vec3::Zero();
+  bool is_known = false;    // with the present lists
+  std::vector<Vec3> seen;    // of a mesh, by slot
   std::vector<Point> points_here, points;    // vertices of this rank then, with ghosts; of all
   std::vector<Corners> corners_here, corners;    // of triangles
   sphcloth::WindShadow shadow;
 
   Vec3 mean_direction(const std::vector<AirMesh *> &) const;
   bool still_holds(const std::vector<AirMesh *> &, const Vec3 &direction) const;
+  void record(const std::vector<AirMesh *> &);
+  Vec3 displacement(const AirMesh &, int slot) const;
+  void find_shares(const std::vector<AirMesh *> &);
   void gather(const std::vector<AirMesh *> &);
 };
 

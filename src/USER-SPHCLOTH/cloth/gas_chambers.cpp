@@ -11,7 +11,6 @@
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "lammps_util/lammps_version.h"
 
 #include <Eigen/Geometry>

@@ -9,7 +9,6 @@
 #include "cloth/cloth_options.h"
 #include "fix.h"
 #include "lammps_util/atom_tools.h"
-#include "update.h"
 
 namespace LAMMPS_NS {
 

@@ -12,7 +12,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -181,11 +180,7 @@ void ContactGuarantee::freeze_zones()
 double ContactGuarantee::max_displacement() const
 {
   if (of_cloth.none() || !ghosts.matters()) return 0.0;
-  double max_sq = 0.0;
-  for (int s = 0; s < mesh.halo.n_owned(); s++)
-    max_sq = std::max({max_sq, (mesh.start[s] - vertices_then[s]).squaredNorm(),
-                       (mesh.end[s] - vertices_then[s]).squaredNorm()});
-  return std::sqrt(max_sq);
+  return mesh.max_displacement(vertices_then);
 }
 
 // Both sides of a pair may have come from so far since the list build.

@@ -3,7 +3,6 @@
 
 #include "contact/joined_cloths.h"
 
-#include "atom.h"
 #include "core/util/bytes.h"
 
 using namespace LAMMPS_NS;

@@ -4,7 +4,6 @@
 #include "contact/known_region.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "domain.h"
 #include "lammps_util/rank_error.h"
 #include "update.h"
@@ -68,12 +67,7 @@ Eigen::Vector3d KnownRegion::in_box(const Vec3 &x) const
 
 double KnownRegion::max_vertex_displacement() const
 {
-  if (!bounded) return 0.0;
-  double max_sq = 0.0;
-  for (int s = 0; s < mesh.halo.n_owned(); s++)
-    max_sq = std::max({max_sq, (mesh.start[s] - vertices_then[s]).squaredNorm(),
-                       (mesh.end[s] - vertices_then[s]).squaredNorm()});
-  return std::sqrt(max_sq);
+  return bounded ? mesh.max_displacement(vertices_then) : 0.0;
 }
 
 // A triangle that comes near a sweep had its vertices, at the list build, within the displacement

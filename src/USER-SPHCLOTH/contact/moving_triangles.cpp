@@ -57,6 +57,15 @@ void MovingTriangles::load_positions()
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
 }
 
+double MovingTriangles::max_displacement(const std::vector<Vec3> &from) const
+{
+  double max_sq = 0.0;
+  for (int s = 0; s < halo.n_owned(); s++)
+    max_sq =
+        std::max({max_sq, (start[s] - from[s]).squaredNorm(), (end[s] - from[s]).squaredNorm()});
+  return std::sqrt(max_sq);
+}
+
 // from where the last step has left it to where it is
 
 Sweep MovingTriangles::sweep_of(int i) const

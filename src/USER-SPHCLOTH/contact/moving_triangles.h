@@ -11,7 +11,6 @@
 #include "contact/triangle_set.h"
 #include "lammps_util/particle_columns.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -38,6 +37,9 @@ class MovingTriangles : public TriangleSet {
   // start and end of the step from the atoms as they are, or of a step without motion
   void load_step();
   void load_positions();
+
+  // of owned vertices in the step, from places by slot
+  double max_displacement(const std::vector<Vec3> &from) const;
 
   // does an atom collide with this mesh?
   bool collides(int i) const { return atom->mask[i] & groupbits; }

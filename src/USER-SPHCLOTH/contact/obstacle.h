@@ -7,7 +7,7 @@
 
 #include "atom.h"
 #include "contact/contact_mesh.h"
-#include "lammps_util/particle_columns.h"
+#include "contact/obstacle_impulses.h"
 
 #include <string>
 
@@ -15,8 +15,7 @@ namespace LAMMPS_NS {
 
 class Obstacle : public ContactMesh, protected Pointers {
  public:
-  // impulses: x, y, z per atom, mass times velocity in this step
-  Obstacle(LAMMPS *lmp_, const std::string &owner, int groupbit_, ParticleColumns &impulses_) :
+  Obstacle(LAMMPS *lmp_, const std::string &owner, int groupbit_, ObstacleImpulses &impulses_) :
       Pointers(lmp_), groupbit(groupbit_), mesh(lmp, owner), impulses(impulses_)
   {
   }
@@ -27,16 +26,13 @@ class Obstacle : public ContactMesh, protected Pointers {
   bool has_vertex(int i) const override { return atom->mask[i] & groupbit; }
   double inverse_mass(int) const override { return 0.0; }
   double inverse_mass_in_solver(int) const override { return 0.0; }
-  void push_held(int i, const Eigen::Vector3d &impulse) override
-  {
-    for (int d = 0; d < 3; d++) impulses[d][i] += impulse[d];
-  }
+  void push_held(int i, const Eigen::Vector3d &impulse) override { impulses.add(i, impulse); }
 
   const int groupbit;
 
  private:
   ClothTopology mesh;
-  ParticleColumns &impulses;
+  ObstacleImpulses &impulses;
 };
 
 }    // namespace LAMMPS_NS

@@ -6,9 +6,7 @@
 
 #include "cloth/vertex_halo.h"
 #include "contact/contact_mesh.h"
-#include "core/geometry/box_grid.h"
 #include "lammps_util/ghost_reach.h"
-#include "platform.h"
 
 #include <array>
 #include <string>

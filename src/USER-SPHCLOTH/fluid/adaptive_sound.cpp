@@ -54,7 +54,7 @@ void AdaptiveSound::measure()
               &counts_here[(counts.size() - 1) * SoundCounts::N]);
   }
   MPI_Allreduce(counts_here.data(), counts_of_ranks.data(), static_cast<int>(counts_here.size()),
-                MPI_INT, MPI_SUM, world);
+                MPI_INT64_T, MPI_SUM, world);
   for (std::size_t k = 0; k < counts.size(); k++)
     std::copy_n(&counts_of_ranks[k * SoundCounts::N], SoundCounts::N, counts[k].counts.begin());
 

@@ -14,6 +14,7 @@
 #include "core/sph/sound_target.h"
 #include "lammps_util/particle_columns.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -39,7 +40,7 @@ class AdaptiveSound : protected Pointers {
 
   std::vector<int> followers;    // types
   std::vector<sphcloth::SoundCounts> counts;    // of them
-  std::vector<int> counts_here, counts_of_ranks;
+  std::vector<std::int64_t> counts_here, counts_of_ranks;
   std::vector<double> volumes_here, volumes;    // [ntypes + 1]
 
   double due() const;    // `elapsed` for which an update is worth its cost

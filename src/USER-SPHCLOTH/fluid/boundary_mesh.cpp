@@ -6,6 +6,7 @@
 
 #include "atom.h"
 #include "core/contact/point_triangle.h"
+#include "core/geometry/box_grid.h"
 
 #include <algorithm>
 #include <cmath>

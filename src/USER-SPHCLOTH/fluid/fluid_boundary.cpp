@@ -18,9 +18,16 @@ std::vector<FluidBoundary *> LAMMPS_NS::find_fluid_boundaries(Modify *modify)
     if (void *boundary = fix->extract(FluidBoundary::EXTRACT, dim))
       found.push_back(static_cast<FluidBoundary *>(boundary));
   }
-  std::stable_partition(found.begin(), found.end(),
-                        [](const FluidBoundary *b) { return !b->renormalizes(); });
   return found;
+}
+
+std::vector<FluidBoundary *>
+LAMMPS_NS::put_renormalizing_last(std::vector<FluidBoundary *> &boundaries)
+{
+  const auto first =
+      std::stable_partition(boundaries.begin(), boundaries.end(),
+                            [](const FluidBoundary *b) { return !b->renormalizes(); });
+  return {first, boundaries.end()};
 }
 
 bool LAMMPS_NS::have_vertices(const std::vector<FluidBoundary *> &boundaries)

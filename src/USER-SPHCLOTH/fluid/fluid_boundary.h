@@ -91,8 +91,10 @@ class FluidBoundary {
   ~FluidBoundary() noexcept(false) = default;
 };
 
-// all of a scene, in the order of evaluation
+// all of a scene
 std::vector<FluidBoundary *> find_fluid_boundaries(Modify *);
+// the order of an evaluation, once all fixes have been initialized; returns the last ones
+std::vector<FluidBoundary *> put_renormalizing_last(std::vector<FluidBoundary *> &);
 
 // of all boundaries together
 bool have_vertices(const std::vector<FluidBoundary *> &);

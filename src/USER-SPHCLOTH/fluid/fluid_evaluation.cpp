@@ -16,7 +16,6 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "timer.h"
-#include "update.h"
 
 #include <algorithm>
 #include <array>
@@ -203,6 +202,7 @@ void FluidEvaluation::end()
 
 void FluidEvaluation::begin_lists()
 {
+  renormalizing = put_renormalizing_last(boundaries);
   mass_or_volume.resize(atom->nmax);
   p_over_rho2.assign(atom->nmax, 0.0);
   if (integrates_density()) integrated.begin_lists(hooks);
@@ -400,7 +400,7 @@ void FluidEvaluation::find_pressures(const Particles &p)
     if (surface.on()) surface.set_pressure(i, core->model.pressure_scale[t] * term);
     term *= surface.along(i);
     // a density that is renormalized has a gradient that is
-    for (FluidBoundary *boundary : boundaries) term *= boundary->inverse_gamma(i);
+    for (FluidBoundary *boundary : renormalizing) term *= boundary->inverse_gamma(i);
     // neither true of what is not a number
     if (!(term < std::numeric_limits<double>::max()) || !(rho > 0.0))
       rank_error(lmp, FLERR,
@@ -420,10 +420,10 @@ int FluidEvaluation::ghost_size(GhostData what)
 {
   switch (what) {
     case GhostData::MASS_OR_VOLUME:
-    case GhostData::VISCOSITY: return 1;
-    case GhostData::DENSITY: return 2;
+    case GhostData::VISCOSITY:
     case GhostData::SINCE:
     case GhostData::CHANGE: return 1;
+    case GhostData::DENSITY: return 2;
     case GhostData::GRADIENT: return 3;
     case GhostData::TURN: return 4;
     case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;

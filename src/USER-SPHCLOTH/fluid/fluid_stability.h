@@ -10,7 +10,6 @@
 #include "core/sph/fluid.h"
 #include "core/sph/lattice_modes.h"
 
-#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {

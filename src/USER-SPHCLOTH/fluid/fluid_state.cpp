@@ -118,10 +118,7 @@ bool FluidState::feels_moving_wall(int i) const
                      [&](FluidBoundary *boundary) { return boundary->moves_beside(i); });
 }
 
-bool FluidState::is_beside_mesh(int i) const
-{
-  return have_vertices_beside(boundaries, i);
-}
+bool FluidState::is_beside_mesh(int i) const { return have_vertices_beside(boundaries, i); }
 
 void FluidState::find_pair_forces(std::vector<double> &forces)
 {
@@ -153,6 +150,15 @@ bool FluidState::evaluated() const
   return is_evaluated && evaluated_order == order_of_atoms(atom);
 }
 
+int FluidState::boundary_type_in(int groupbit) const
+{
+  int here = 0, anywhere = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit && !is_fluid(atom->type[i])) here = atom->type[i];
+  MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+  return anywhere;
+}
+
 double FluidState::pressure_of(int i) const
 {
   const int type = atom->type[i];
@@ -164,7 +170,7 @@ double FluidState::pressure_of(int i) const
   } else if (calibrates())
     p /= lattices.slope_at_rest();
   if (is_fluid(type))
-    for (FluidBoundary *boundary : boundaries) p /= boundary->inverse_gamma(i);
+    for (FluidBoundary *boundary : renormalizing) p /= boundary->inverse_gamma(i);
   return p;
 }
 

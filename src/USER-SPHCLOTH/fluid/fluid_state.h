@@ -48,6 +48,8 @@ class FluidState : public SPHMaterials {
   bool has_role(int itype) const;
   // are the owned atoms those of the last evaluation?  All that follows needs it.
   bool evaluated() const;
+  // one that has atoms in the group, on any rank; 0: none; collective
+  int boundary_type_in(int groupbit) const;
 
   // Of owned atoms, or of all atoms where it says so
 
@@ -145,7 +147,7 @@ class FluidState : public SPHMaterials {
   FreeSurface surface;
   Pair *const pair;
   std::unique_ptr<sphcloth::Fluid> core;
-  std::vector<FluidBoundary *> boundaries;
+  std::vector<FluidBoundary *> boundaries, renormalizing;    // all; the last of them
   SideSource *sides = nullptr;    // fluid on two of them does not interact; null without sheets
   StepHooks *hooks = nullptr;
   bool is_evaluated = false;

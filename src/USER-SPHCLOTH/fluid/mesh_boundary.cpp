@@ -14,7 +14,6 @@
 #include "neighbor.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;

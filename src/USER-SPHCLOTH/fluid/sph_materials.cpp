@@ -362,7 +362,7 @@ PairTerms SPHMaterials::mix(int i, int j) const
     t.rho0_ratio = rho0_ratio(types[i], types[j]);
     return t;
   }
-  t.stiffness = of_pair.stiffness > 0.0 ? of_pair.stiffness / a.eos.k : 1.0;
+  t.stiffness = is_fluid(i) ? pressure_factor(i, j) : pressure_factor(j, i);
   for (int k : {i, j})
     if (is_boundary(k) && types[k].pressure == Pressure::MIRROR) t.stiffness *= 2.0;
   // the mean of the fluid around a boundary particle follows the fluid that moves

@@ -7,11 +7,14 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "domain.h"
+#include "error.h"
+#include "lammps.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -77,14 +80,20 @@ inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_
   return any;
 }
 
-// collective
+// collective: the first of the IDs of n new atoms, above those that are there or have been
 
-inline tagint largest_id(const Atom *atom, MPI_Comm world)
+inline tagint first_free_id(LAMMPS *lmp, const std::string &label, bigint n, tagint been = 0)
 {
-  tagint mine = 0, all = 0;
+  const Atom *atom = lmp->atom;
+  tagint mine = been, all = 0;
   for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
+  if (n > MAXTAGINT - all)
+    lmp->error->all(FLERR,
+                    "{}: the largest atom ID is {}, too large for {} atoms more: renumber them "
+                    "with 'reset_atoms id'",
+                    label, all, n);
+  return all + 1;
 }
 
 // collective: every rank's list behind one another
@@ -94,14 +103,16 @@ void allgather(const std::vector<Record> &mine, std::vector<Record> &all, int np
                MPI_Comm world)
 {
   static_assert(std::is_trivially_copyable_v<Record>);
-  constexpr int SIZE = sizeof(Record);
-  int n = SIZE * static_cast<int>(mine.size());
+  const int n = static_cast<int>(mine.size());
   std::vector<int> counts(nprocs), displs(nprocs, 0);
   MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
   for (int p = 1; p < nprocs; p++) displs[p] = displs[p - 1] + counts[p - 1];
-  all.resize((displs.back() + counts.back()) / SIZE);
-  MPI_Allgatherv(mine.data(), n, MPI_BYTE, all.data(), counts.data(), displs.data(), MPI_BYTE,
-                 world);
+  all.resize(displs.back() + counts.back());
+  MPI_Datatype record;    // bytes would pass the largest int
+  MPI_Type_contiguous(sizeof(Record), MPI_BYTE, &record);
+  MPI_Type_commit(&record);
+  MPI_Allgatherv(mine.data(), n, record, all.data(), counts.data(), displs.data(), record, world);
+  MPI_Type_free(&record);
 }
 
 template <class Record>

@@ -43,7 +43,8 @@ void NamedValues::read_keyword(ArgReader &args, const std::vector<NamedValue> &k
     fix_id = args.word("fix");
     return;
   }
-  const auto star = word.back() == '*' ? word.size() - 1 : std::string::npos;
+  const bool begins = !word.empty() && word.back() == '*';
+  const auto star = begins ? word.size() - 1 : std::string::npos;
   const auto before = values.size();
   std::string names = "fix";
   for (const NamedValue &value : known) {

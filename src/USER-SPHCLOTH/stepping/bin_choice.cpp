@@ -198,15 +198,11 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
 {
   const Vertices &cloth = find_vertices();
   tightest.tighten(cloth.tightest.dt, cloth.tightest.by);
-  struct {
-    double dt;
-    int by;
-  } mine = {tightest.dt, static_cast<int>(tightest.by)}, all;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  const double shortest = std::min(all.dt, parts.options.ceiling);
+  tightest = parts.control.tightest_of_ranks(tightest);
+  const double shortest = std::min(tightest.dt, parts.options.ceiling);
 
   BaseStep base;
-  base.by = static_cast<Limit>(all.by);
+  base.by = tightest.by;
   base.output_time = parts.control.times.next(shortest);
   base.remaining = base.output_time - physical_time(update);
   base.uniform = true;
@@ -219,7 +215,8 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
   WantedSteps here, anywhere;
   for (const int i : fluid->active_particles()) here.add(wanted[i], shortest);
   here.count[0] += UPDATES_PER_VERTEX * cloth.n;    // which move in every smallest step
-  MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT, MPI_SUM, world);
+  MPI_Allreduce(here.count.data(), anywhere.count.data(), WantedSteps::N, MPI_INT64_T, MPI_SUM,
+                world);
   base.length = anywhere.base_step_towards(base.remaining, shortest, STEP_OVERHEAD, gain);
   base.uniform = base.length <= shortest;
   return base;

@@ -29,17 +29,17 @@ BlockSteps::BlockSteps(LAMMPS *lmp_, const SteppingParts &parts_, const BlockClo
   for (int i = 0; i < atom->nlocal; i++) state.add_particle(i);
 }
 
-void BlockSteps::init(FluidState *style, bool particles_changed)
+void BlockSteps::init(FluidState *style, Change change)
 {
-  Stepper::init(style, particles_changed);
+  Stepper::init(style, change);
   all_selected = false;
   state.init(style);
   bins.init(style);
   fluid->set_step_hooks(this);
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();
-  if (parts.control.watch.begin_run(settings, particles_changed) && before != 0)
-    start_over(settings != before);
+  if (parts.control.watch.begin_run(settings, change != Change::NOTHING) && before != 0)
+    start_over(settings != before || change == Change::SCENE);
 }
 
 // Steps and impulses are of another state.  Where only particles have been changed those that are

@@ -32,7 +32,7 @@ class BlockSteps : public Stepper, public StepHooks {
   BlockSteps(LAMMPS *, const SteppingParts &, const BlockClock &);
 
   // what fix sph/integrate calls
-  void init(FluidState *, bool particles_changed) override;
+  void init(FluidState *, Change) override;
   bool updates_all_next() const override;
   void move() override;
   void end_step() override;
@@ -48,6 +48,13 @@ class BlockSteps : public Stepper, public StepHooks {
   const BlockClock *clock() const override { return &state.clock; }
   int count_sleeping() const override;
   void count_limits() const override;
+  bool is_asleep(int i) const override { return state.is_asleep(i); }
+  bool lets_sleep() const override { return sleeping.enabled(); }
+  void note_contact(int i) override { sleeping.stay_awake(i); }
+  void wake_beside(const std::vector<std::array<double, 3>> &removed) override
+  {
+    sleeping.wake_beside(removed);
+  }
 
   // what the pair style calls
   void find_intervals(std::vector<double> &of_type) const override;

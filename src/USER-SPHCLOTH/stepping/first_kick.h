@@ -17,6 +17,11 @@
 
 namespace LAMMPS_NS {
 
+// Velocities or positions of integrated particles; or positions of what is beside them: boundary
+// particles, vertices, obstacles
+
+enum class Change { NOTHING, PARTICLES, SCENE };
+
 class FirstKick {
  public:
   // per atom, for exchange and restart
@@ -34,31 +39,35 @@ class FirstKick {
     return share;
   }
   void add_particle(int i, bool in_run) { columns[STATE][i] = in_run ? STAGGERED : GIVEN; }
-  // Has something else moved particles of this rank, or changed velocities, since the last run?
-  bool begin_run(const Atom *atom, const Domain *domain)
+  // What has something else done to atoms of this rank since the last run?
+  Change begin_run(const Atom *atom, const Domain *domain)
   {
-    bool any = false;
+    Change change = Change::NOTHING;
     for (int i = 0; i < atom->nlocal; i++) {
-      if (columns[STATE][i] != RECORDED) continue;
-      const bool same = columns[VELOCITY][i] == fingerprint(atom->v[i]);
-      columns[STATE][i] = same ? STAGGERED : GIVEN;
-      any = any || !same || has_been_moved(i, atom->x[i], domain);
+      double &state = columns[STATE][i];
+      const bool moves_by_itself = state == RECORDED;
+      if (!moves_by_itself && state != PRESENT) continue;
+      const bool same = !moves_by_itself || columns[VELOCITY][i] == fingerprint(atom->v[i]);
+      state = moves_by_itself && same ? STAGGERED : GIVEN;
+      if (same && !has_been_moved(i, atom->x[i], domain)) continue;
+      change = std::max(change, moves_by_itself ? Change::PARTICLES : Change::SCENE);
     }
-    return any;
+    return change;
   }
   void end_run(const Atom *atom)
   {
-    for (int i = 0; i < atom->nlocal; i++)
-      if (columns[STATE][i] == STAGGERED) {
-        columns[STATE][i] = RECORDED;
-        columns[VELOCITY][i] = fingerprint(atom->v[i]);
-        for (int d = 0; d < 3; d++) columns[POSITION + d][i] = atom->x[i][d];
-      }
+    for (int i = 0; i < atom->nlocal; i++) {
+      double &state = columns[STATE][i];
+      state = state == STAGGERED ? RECORDED : PRESENT;
+      columns[VELOCITY][i] = fingerprint(atom->v[i]);
+      for (int d = 0; d < 3; d++) columns[POSITION + d][i] = atom->x[i][d];
+    }
   }
 
  private:
   enum Column { STATE, VELOCITY, POSITION, N_COLUMNS = POSITION + 3 };
-  static constexpr double GIVEN = 0.0, STAGGERED = 1.0, RECORDED = 2.0;
+  // at the end of a run: RECORDED, what it has moved, and PRESENT, all else
+  static constexpr double GIVEN = 0.0, STAGGERED = 1.0, RECORDED = 2.0, PRESENT = 3.0;
 
   // other velocities have another one, but by chance
   static double fingerprint(const double *v)

@@ -82,6 +82,8 @@ std::uint64_t ParticleLimits::settings() const
   MPI_Allreduce(&mine, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
   for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
     hash = hash_with(hash, boundary->settings());
+  for (const Fix *contact : modify->get_fix_by_style("^cloth/contact$"))
+    hash = hash_with(hash, std::string_view(contact->id));
   for (const std::uint64_t number :
        {of_ranks, static_cast<std::uint64_t>(atom->natoms), bits_of(options.lambda.stability)})
     hash = hash_with(hash, number);
@@ -114,6 +116,14 @@ double ParticleLimits::acceleration(int i, double by_force) const
 void ParticleLimits::find(const int *particles, int n, const Rates &rates, StepLimits &limits) const
 {
   StepStates states;
+  if (lambda.motion_alone()) {
+    for (int k = 0; k < n; k++) {
+      StepState s = motion_state(particles[k], rates);
+      ease_density(particles[k], s);
+      states.set_motion(k, s);
+    }
+    return motion_limits(lambda, states, n, limits);
+  }
   for (int k = 0; k < n; k++) states.set(k, particle_state(particles[k], rates));
   particle_limits(lambda, states, n, limits);
 }
@@ -139,7 +149,7 @@ static double beyond_rest(double rate, double free, double tolerated)
   return rate > 0.0 ? rate * tolerated / (tolerated + free) : 0.0;
 }
 
-inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
+inline StepState ParticleLimits::motion_state(int i, const Rates &rates) const
 {
   StepState s{};
   double f[3];
@@ -149,8 +159,22 @@ inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
   set_motion(i, f, s);
   if (rates.accel_sq) s.accel_sq = rates.accel_sq[i];
   s.drho = rates.density ? rates.density[i] : atom->drho[i];
-  const FluidType &type = types[atom->type[i]];
   s.rho = atom->rho[i];
+  return s;
+}
+
+// what is thinner than at rest may change until it is pressed, but individual steps interpolate
+
+inline void ParticleLimits::ease_density(int i, StepState &s) const
+{
+  if (!interpolates_density && fluid->is_in_flight(i))
+    s.drho = beyond_rest(s.drho, types[atom->type[i]].eos.rho0 - s.rho, lambda.density * s.rho);
+}
+
+inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
+{
+  StepState s = motion_state(i, rates);
+  const FluidType &type = types[atom->type[i]];
   double by_sound = 0.0;    // the step under pressure
   if (lambda.stability > 0.0)
     by_sound = set_frequencies(i, s);
@@ -160,12 +184,9 @@ inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
     by_sound = lambda.acoustic * 0.5 * s.support / s.sound;
   }
   if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
-  const bool in_flight = fluid->is_in_flight(i);
-  if (in_flight && by_sound > 0.0 && s.of_vertices_sq == 0.0)
+  if (by_sound > 0.0 && s.of_vertices_sq == 0.0 && fluid->is_in_flight(i))
     s.until_pressed = until_pressed(i, s.drho, by_sound);
-  // what is thinner than at rest may change until it is pressed, but individual steps interpolate
-  if (in_flight && !interpolates_density)
-    s.drho = beyond_rest(s.drho, type.eos.rho0 - s.rho, lambda.density * s.rho);
+  ease_density(i, s);
   return s;
 }
 

@@ -111,6 +111,8 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   void find(const int *particles, int n, const Rates &, sphcloth::StepLimits &) const;
   sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
   double set_motion(int i, const double *force, sphcloth::StepState &) const;
+  sphcloth::StepState motion_state(int i, const Rates &) const;
+  void ease_density(int i, sphcloth::StepState &) const;
   sphcloth::StepState particle_state(int i, const Rates &) const;
   sphcloth::StepState vertex_state(int i) const;
   double scaled_acceleration(int i, double unscaled) const;

@@ -6,12 +6,15 @@
 #include "atom.h"
 #include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
+#include "domain.h"
 #include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/lammps_version.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -77,6 +80,29 @@ void SleepingWater::wake_disturbed()
       change_sq += change * change;
     }
     if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) wake(i);
+  }
+}
+
+void SleepingWater::stay_awake(int i)
+{
+  if (!state.is_asleep(i)) state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
+}
+
+// By a force that is unlike any, which restart files have, too.
+
+void SleepingWater::wake_beside(const std::vector<std::array<double, 3>> &positions)
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
+    const double support = state.fluid->support(atom->type[i]);
+    for (const auto &position : positions) {
+      double away[3], sq = 0.0;
+      for (int d = 0; d < 3; d++) away[d] = atom->x[i][d] - position[d];
+      release::minimum_image(domain, away);
+      for (const double a : away) sq += a * a;
+      if (sq < support * support)
+        state.columns.external_force(0)[i] = std::numeric_limits<double>::infinity();
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include "stepping/block_state.h"
 #include "stepping/particle_limits.h"
 
+#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -27,6 +28,10 @@ class SleepingWater : protected Pointers {
   void fall_asleep();
   // particles that other styles have given speed or a force
   void wake_disturbed();
+  // counts as slow from now on
+  void stay_awake(int i);
+  // in the next step, those within the support of these positions
+  void wake_beside(const std::vector<std::array<double, 3>> &);
   // marks sleeping particles beside moving boundaries
   void mark_beside_moving_boundaries();
   // beside active particles, and due to be asked again whether it rests

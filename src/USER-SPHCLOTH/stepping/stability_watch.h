@@ -28,9 +28,9 @@ class StabilityWatch {
 
   // A run begins: the limit is found in its first evaluation where anything that it follows from
   // has changed, or particles since the last run, so that several runs are one run.
-  bool begin_run(std::uint64_t settings, bool particles_changed)
+  bool begin_run(std::uint64_t settings, bool atoms_changed)
   {
-    if (settings == now.settings && !particles_changed) return false;
+    if (settings == now.settings && !atoms_changed) return false;
     now = State();
     now.settings = settings;
     return true;

@@ -11,13 +11,6 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void StepReport::count_particle(const StepLimit &limit)
-{
-  const Limit by = limit.dt < options.ceiling ? limit.by : Limit::CEILING;
-  // with block steps floor and growth bound a particle as well: then none of its own limits does
-  if (by <= Limit::CEILING) particles_by_limit[static_cast<int>(by)]++;
-}
-
 double StepReport::output(int n, Stepper &stepper, StepControl &control, const AdaptiveSound &sound,
                           const UpdateRows &rows) const
 {

@@ -7,6 +7,7 @@
 #include "pointers.h"
 
 #include "core/timestep/step_limits.h"
+#include "stepping/step_options.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,6 @@ namespace LAMMPS_NS {
 class AdaptiveSound;
 class Stepper;
 class StepControl;
-struct StepOptions;
 struct UpdateRows;
 
 class StepReport : protected Pointers {
@@ -67,7 +67,13 @@ class StepReport : protected Pointers {
   }
   // particles by their own limit at its last choice
   void forget_particles() { particles_by_limit.fill(0.0); }
-  void count_particle(const sphcloth::StepLimit &limit);
+  void count_particle(const sphcloth::StepLimit &limit)
+  {
+    using sphcloth::Limit;
+    const Limit by = limit.dt < options.ceiling ? limit.by : Limit::CEILING;
+    // with block steps floor and growth bound a particle as well: then none of its own limits does
+    if (by <= Limit::CEILING) particles_by_limit[static_cast<int>(by)]++;
+  }
 
   // collective
   double output(int n, Stepper &, StepControl &, const AdaptiveSound &, const UpdateRows &) const;

@@ -8,7 +8,7 @@
 
 using namespace LAMMPS_NS;
 
-void Stepper::init(FluidState *style, bool)
+void Stepper::init(FluidState *style, Change)
 {
   fluid = style;
   tell_active(false);

@@ -16,6 +16,9 @@
 #include "stepping/step_control.h"
 #include "stepping/step_options.h"
 
+#include <array>
+#include <vector>
+
 namespace LAMMPS_NS {
 
 struct BlockClock;
@@ -49,7 +52,7 @@ class Stepper : protected Pointers {
   }
 
   // Before each run.  Have particles been changed since the last one?  The same on all ranks.
-  virtual void init(FluidState *, bool particles_changed);
+  virtual void init(FluidState *, Change);
   // are all particles updated at the end of the step that comes next?
   virtual bool updates_all_next() const { return true; }
   // lines 30 to 33 of Algorithm 1, then tells the pair style which particles are updated
@@ -72,6 +75,13 @@ class Stepper : protected Pointers {
   virtual const BlockClock *clock() const { return nullptr; }
   virtual int count_sleeping() const { return 0; }
   virtual void count_limits() const {}    // of particles, for the report
+  virtual bool is_asleep(int) const { return false; }
+  virtual bool lets_sleep() const { return false; }
+  // An owned particle that contact has moved in this step does not fall asleep: it rests on what
+  // may go away.
+  virtual void note_contact(int) {}
+  // Particles have been taken away from here: those that sleep beside them wake in the next step.
+  virtual void wake_beside(const std::vector<std::array<double, 3>> &) {}
 
   virtual int pack_forward(int, const int *, double *) const { return 0; }
   virtual void unpack_forward(int, int, const double *) {}

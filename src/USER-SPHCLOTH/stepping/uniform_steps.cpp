@@ -13,10 +13,10 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
-void UniformSteps::init(FluidState *style, bool particles_changed)
+void UniformSteps::init(FluidState *style, Change change)
 {
-  Stepper::init(style, particles_changed);
-  if (!constant) parts.control.watch.begin_run(parts.limits.settings(), particles_changed);
+  Stepper::init(style, change);
+  if (!constant) parts.control.watch.begin_run(parts.limits.settings(), change != Change::NOTHING);
   fluid->want_frequencies_now(!constant && parts.control.watch.due());
 }
 

@@ -17,7 +17,7 @@ class UniformSteps : public Stepper {
   {
   }
 
-  void init(FluidState *, bool particles_changed) override;
+  void init(FluidState *, Change) override;
   void move() override;
   void choose_step() override;
   double bytes() const override;

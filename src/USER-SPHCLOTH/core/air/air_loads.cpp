@@ -3,6 +3,8 @@
 
 #include "core/air/air_loads.h"
 
+#include "core/util/simd.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -17,7 +17,6 @@
 #define SPHCLOTH_CORE_AIR_AIR_LOADS_H
 
 #include "core/air/drag_law.h"
-#include "core/util/simd.h"
 
 #include <Eigen/Core>
 

@@ -7,8 +7,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <cmath>
-
 namespace sphcloth {
 
 using Vec3 = Eigen::Vector3d;

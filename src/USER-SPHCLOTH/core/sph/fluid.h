@@ -20,7 +20,6 @@
 #include "core/neighbor/dual_lists.h"
 #include "core/sph/kernel.h"
 #include "core/sph/stiffness.h"
-#include "core/sph/tait.h"
 #include "core/sph/vertex_pairs.h"
 
 namespace sphcloth {

@@ -14,7 +14,6 @@
 #include "core/sph/pair_columns.h"
 
 #include <array>
-#include <limits>
 #include <utility>
 
 namespace sphcloth {

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace sphcloth {
 
@@ -26,7 +27,7 @@ struct SoundBounds {    // plain, for restart files; max 0: the speed of sound i
 class SoundCounts {
  public:
   static constexpr int N = 64;
-  std::array<int, N> counts{};
+  std::array<std::int64_t, N> counts{};
 
   // of a fluid whose speed of sound follows the flow
   explicit SoundCounts(const SoundBounds &bounds_) :
@@ -47,9 +48,10 @@ class SoundCounts {
   {
     constexpr double FASTER = 0.01;
     double n = 0.0, above = 0.0;
-    for (const int count : counts) n += count;
+    for (const std::int64_t count : counts) n += static_cast<double>(count);
     int k = N;
-    while (k > 0 && above + counts[k - 1] <= FASTER * n) above += counts[--k];
+    while (k > 0 && above + static_cast<double>(counts[k - 1]) <= FASTER * n)
+      above += static_cast<double>(counts[--k]);
     return k == 0 ? bounds.min : bounds.min * std::pow(bounds.max / bounds.min, double(k) / N);
   }
 

@@ -88,17 +88,20 @@ inline WallTable::Value WallProfile::operator()(const WallTable::Value &of) cons
 // A wall beside a particle: the half-space, and what it adds if it is the only one
 
 struct NearWall {
+  int wall;    // which one
+  double delta;    // distance/H
   WallTable::Value half_space, alone;
 
-  NearWall(const WallTable::Value &half_space_, const WallProfile &profile) :
-      half_space(half_space_), alone(profile(half_space_))
+  NearWall(int wall_, double delta_, const WallTable &table, const WallProfile &profile) :
+      wall(wall_), delta(delta_), half_space(table(delta_)), alone(profile(half_space))
   {
   }
 };
 
-// What several walls, an array, add together.  Half-spaces add the part of the kernel that they
-// miss together; with a profile, whose values may exceed 1, only a bounded part g = f/(1 + f^2) of
-// each overlaps with that of the others, so that each keeps a share of its force above 0.
+// What several walls, an array, add together; those out of reach add nothing.  Half-spaces add the
+// part of the kernel that they miss together; with a profile, whose values may exceed 1, only a
+// bounded part g = f/(1 + f^2) of each overlaps with that of the others, so that each keeps a share
+// of its force above 0.
 
 class JointWalls {
  public:
@@ -109,7 +112,8 @@ class JointWalls {
   {
   }
 
-  const WallTable::Value &half_space(std::size_t k) const { return walls[k].half_space; }
+  std::size_t size() const { return n; }
+  const NearWall &operator[](std::size_t k) const { return walls[k]; }
   // of the half-spaces together
   double half_spaces_lambda() const { return joint_lambda(half_spaces()); }
   double half_space_share(std::size_t k) const { return joint_share(half_spaces(), k); }

@@ -84,6 +84,12 @@ struct StepCoefficients {
   double cloth = 0.0;    // displacement of a vertex over the shortest edge at it
   std::optional<double> wetted;    // as acoustic, of wet vertices; the same if it is not given
 
+  // do velocity, force and rate of density alone bound particles?
+  bool motion_alone() const
+  {
+    return stability == 0.0 && acoustic == 0.0 && viscous == 0.0 && relative == 0.0;
+  }
+
   // With which kinetic energy is off by less than this share: it is that of velocities half a step
   // old, and its error is of first order in the step.  The defaults are those of USUAL; stability
   // allows no more than they do.
@@ -140,8 +146,9 @@ SPHCLOTH_INLINE double stable_step(double omega_sq, double friction)
 }
 
 // (13) of the paper, extended; infinite for a particle at rest without pressure.  Without branches,
-// so that a loop over particles vectorizes.
+// so that a loop over particles vectorizes.  Of motion alone what is of pressure is not looked at.
 
+template <bool MOTION_ALONE = false>
 SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const StepState &s)
 {
   constexpr double NEVER = std::numeric_limits<double>::infinity();
@@ -154,25 +161,29 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
   limit.tighten(
       with(lambda.force, lambda.force * std::sqrt(ratio(s.support, std::sqrt(s.accel_sq)))),
       Limit::FORCE);
-  // in free flight there is no sound, until the particle is compressed; half of the way to there
-  // leaves time for what the flight does not know
-  limit.tighten(with(lambda.acoustic,
-                     std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
-                Limit::ACOUSTIC);
-  const double omega_sq = s.of_fluid_sq + s.of_vertices_sq;
-  limit.tighten(
-      with(lambda.stability,
-           std::max(lambda.stability * stable_step(omega_sq, s.friction), 0.5 * s.until_pressed)),
-      s.friction * s.friction > omega_sq     ? Limit::VISCOUS
-          : s.of_vertices_sq > s.of_fluid_sq ? Limit::WETTED
-                                             : Limit::ACOUSTIC);
-  limit.tighten(with(lambda.stability, ratio(lambda.stability, s.friction)), Limit::VISCOUS);
-  limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
-                Limit::VISCOUS);
+  if constexpr (!MOTION_ALONE) {
+    // in free flight there is no sound, until the particle is compressed; half of the way to there
+    // leaves time for what the flight does not know
+    limit.tighten(
+        with(lambda.acoustic,
+             std::max(ratio(lambda.acoustic * smoothing, s.sound), 0.5 * s.until_pressed)),
+        Limit::ACOUSTIC);
+    const double omega_sq = s.of_fluid_sq + s.of_vertices_sq;
+    limit.tighten(
+        with(lambda.stability,
+             std::max(lambda.stability * stable_step(omega_sq, s.friction), 0.5 * s.until_pressed)),
+        s.friction * s.friction > omega_sq     ? Limit::VISCOUS
+            : s.of_vertices_sq > s.of_fluid_sq ? Limit::WETTED
+                                               : Limit::ACOUSTIC);
+    limit.tighten(with(lambda.stability, ratio(lambda.stability, s.friction)), Limit::VISCOUS);
+    limit.tighten(with(lambda.viscous, ratio(lambda.viscous * smoothing * smoothing, s.nu)),
+                  Limit::VISCOUS);
+  }
   limit.tighten(with(lambda.density, ratio(lambda.density * s.rho, std::fabs(s.drho))),
                 Limit::DENSITY);
-  limit.tighten(with(lambda.relative, ratio(lambda.relative * s.support, s.approach)),
-                Limit::RELATIVE);
+  if constexpr (!MOTION_ALONE)
+    limit.tighten(with(lambda.relative, ratio(lambda.relative * s.support, s.approach)),
+                  Limit::RELATIVE);
   return limit;
 }
 
@@ -184,20 +195,28 @@ struct StepStates {
       drho[MAX], approach[MAX], until_pressed[MAX], of_fluid_sq[MAX],
       of_vertices_sq[MAX], friction[MAX];
 
-  SPHCLOTH_INLINE void set(int k, const StepState &s)
+  SPHCLOTH_INLINE void set_motion(int k, const StepState &s)
   {
     support[k] = s.support;
     speed_sq[k] = s.speed_sq;
     accel_sq[k] = s.accel_sq;
-    sound[k] = s.sound;
-    nu[k] = s.nu;
     rho[k] = s.rho;
     drho[k] = s.drho;
+  }
+  SPHCLOTH_INLINE void set(int k, const StepState &s)
+  {
+    set_motion(k, s);
+    sound[k] = s.sound;
+    nu[k] = s.nu;
     approach[k] = s.approach;
     until_pressed[k] = s.until_pressed;
     of_fluid_sq[k] = s.of_fluid_sq;
     of_vertices_sq[k] = s.of_vertices_sq;
     friction[k] = s.friction;
+  }
+  SPHCLOTH_INLINE StepState motion(int k) const
+  {
+    return {support[k], speed_sq[k], accel_sq[k], 0.0, 0.0, rho[k], drho[k]};
   }
   SPHCLOTH_INLINE StepState operator[](int k) const
   {
@@ -221,6 +240,19 @@ particle_limits(const StepCoefficients &lambda, const StepStates &states, int n,
 #pragma omp simd
   for (int k = 0; k < n; k++) {
     const StepLimit limit = particle_limit(lambda, states[k]);
+    limits.dt[k] = limit.dt;
+    limits.by[k] = static_cast<double>(limit.by);
+  }
+}
+
+// where lambda.motion_alone(), of states of which the motion is set
+
+SPHCLOTH_MULTIVERSION inline void motion_limits(const StepCoefficients &lambda,
+                                                const StepStates &states, int n, StepLimits &limits)
+{
+#pragma omp simd
+  for (int k = 0; k < n; k++) {
+    const StepLimit limit = particle_limit<true>(lambda, states.motion(k));
     limits.dt[k] = limit.dt;
     limits.by[k] = static_cast<double>(limit.by);
   }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/timestep/step_limits.h"
@@ -70,7 +71,7 @@ class WantedSteps {
   static constexpr int PARTS = 32;    // of an octave
   static constexpr int N = PARTS * TimeBins::DEEPEST;
 
-  std::array<int, N> count{};    // to be summed over ranks
+  std::array<std::int64_t, N> count{};    // to be summed over ranks
 
   void add(double dt, double shortest)
   {
@@ -152,8 +153,9 @@ class WantedSteps {
     for (int k = 0; k < end; k++) {
       if (!count[k]) continue;
       work.longest = std::min(highest, (k + shift) / PARTS);
-      work.per_shortest += std::ldexp(count[k], -work.longest);
-      particles += count[k];
+      const auto wanting = static_cast<double>(count[k]);
+      work.per_shortest += std::ldexp(wanting, -work.longest);
+      particles += wanting;
     }
     work.per_shortest += overhead * particles;
     return work;

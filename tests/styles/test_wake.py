@@ -1,0 +1,114 @@
+"""What sleeping water rests on, and goes away: with ``sleep`` it falls as it does without."""
+
+import numpy as np
+import pytest
+from harness import by_id, instance
+from scenes import cloth_box, cloth_styles, filled, header, lattice, neighbor, sph_tait
+
+# Water between planes, on a plane, a sheet or other water; each scene has at most one of the parts
+# that vanish.
+HELD = (
+    header("f f f")
+    + cloth_box("-0.5 1.5 -0.5 0.5 -3 1", 3)
+    + "mass * 0.125\n"
+    + lattice(0.05)
+    + filled("water", "-0.2 0.2 -0.2 0.2 0 0.3", 1)
+    + "{part}\nset group all sph/rho 1000\ngroup water type 1\n"
+    + sph_tait(
+        "1 1 fluid 1000 c0 30 alpha 0.3 nu 0.01",
+        "2 2 boundary volume 1.25e-4",
+        "3 3 none",
+        options="density calibrated",
+    )
+    + cloth_styles("1", "0")
+    + neighbor(0.03)
+    + """timestep 2e-3
+fix walls water wall/sph {walls} ylo -0.2 yhi 0.2 
+fix gravity water gravity 9.81 vector 0 0 -1
+fix step water sph/integrate global max 0.002 sleep {sleep} gain 1
+run_style sph/adaptive block
+{fixes}
+"""
+)
+SHEET = """create_cloth 3 20 size 0.8 0.8 spacing 0.1 center 0 0 -0.02 group cloth
+variable fall equal -1.0*(time>2)"""
+ON_SHEET = """fix cloth cloth pbd/cloth pin cloth velocity 0 0 v_fall
+fix contact water cloth/contact 0.025"""
+# what is there, planes, fixes, and commands between two runs
+SCENES = {
+    "a plane that jumps": (
+        "variable x equal 0.2+1.2*(time>2)",
+        "xlo -0.2 xhi v_x zlo 0",
+        "",
+        "",
+    ),
+    "a gate of particles that is displaced": (
+        "region gate block 0.2 0.3 -0.2 0.2 0 0.45 units box\n"
+        "create_atoms 2 region gate\ngroup gate type 2",
+        "xlo -0.2 zlo 0",
+        "",
+        "displace_atoms gate move 1 0 0 units box",
+    ),
+    "a sheet that is drawn away": (SHEET, "xlo -0.2 xhi 0.2", ON_SHEET, ""),
+    "contact with a sheet that is unfixed": (
+        SHEET,
+        "xlo -0.2 xhi 0.2",
+        ON_SHEET,
+        "unfix contact",
+    ),
+    "water that is drained": (
+        "variable up equal (time>2)\n"
+        "region sink block INF INF INF INF -2.5 -0.85 move NULL NULL v_up units box",
+        "xlo -0.2 xhi 0.2 zlo 0",
+        "fix drain water sph/drain region sink\nneigh_modify check no",
+        "",
+    ),
+}
+
+
+def run_until(lmp, time):
+    """Return the mean height of the water then."""
+    lmp.commands_string(
+        f"variable now equal time\nfix end all halt 1 v_now > {time} error continue\n"
+        "run 4000\nunfix end"
+    )
+    return by_id(lmp, "x")[by_id(lmp, "type") == 1][:, 2].mean()
+
+
+def heights(name, sleep):
+    """Mean height of the water before and after, and how many slept before."""
+    part, walls, fixes, between = SCENES[name]
+    with instance() as lmp:
+        lmp.commands_string(HELD.format(part=part, walls=walls, fixes=fixes, sleep=sleep))
+        asleep = []
+        # what is beside particles that are awake is asked at times whether it rests
+        for time in np.linspace(1.0, 1.9, 7):
+            before = run_until(lmp, time)
+            asleep.append(lmp.extract_fix("step", 0, 1, 29))
+        lmp.commands_string(between)
+        return before, run_until(lmp, 2.1), max(asleep)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_water_falls_that_slept_on_what_has_gone(name):
+    before, after, asleep = heights(name, 0.1)
+    start, awake, none = heights(name, 0)
+    assert asleep > 200 and none == 0
+    assert before - after == pytest.approx(start - awake, rel=0.1)
+    assert abs(before - after) > 0.01
+
+
+def test_what_sleeps_is_not_shifted():
+    """A particle that flies above sets the speed by which others are shifted."""
+    bead = "create_atoms 1 single 0 0 0.45 units box\ngroup bead id 385"
+    flies = "fix flies bead setforce 0 0 0\nvelocity bead set 0 0 0.4 units box"
+    walls = SCENES["a plane that jumps"][1].replace("v_x", "0.2")
+    with instance() as lmp:
+        lmp.commands_string(HELD.format(part=bead, walls=walls, fixes=flies, sleep=0.1))
+        run_until(lmp, 0.8)
+        assert lmp.extract_fix("step", 0, 1, 29) == 384
+        before = by_id(lmp, "x")
+        lmp.commands_string("fix shift water sph/shift speed largest\nrun 20")
+        after = by_id(lmp, "x")
+        assert after[384, 2] > before[384, 2] + 0.01
+        assert np.array_equal(after[:384], before[:384])

@@ -86,8 +86,8 @@ class FixClothContact : public Fix, public SideSource {
     if (what == SideSource::EXTRACT && rules.sides) return static_cast<SideSource *>(this);
     return nullptr;
   }
-  // From init() of a fix that is defined behind: triangles of these types let particles of these
-  // groups through, which see them from this distance.  Returns the meshes that have any.
+  // From init() of a fix that is defined after this one: triangles of these types let particles of
+  // these groups through, which see them from this distance.  Returns the meshes that have any.
   std::vector<MovingTriangles *> let_through(int first_type, int last_type, int bits,
                                              double distance)
   {

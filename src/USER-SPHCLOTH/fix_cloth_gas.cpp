@@ -59,7 +59,7 @@ FixClothGas::FixClothGas(LAMMPS *lmp_, int narg, char **arg) :
   chambers.gather(groupbit, true);
   if (options.toward != GasChambers::Vec3::Zero() && !chambers.any_open())
     args.fail("toward", in_words(options.toward),
-              "the mesh is closed, and gas pushes outward: leave it away");
+              "the mesh is closed, and gas pushes outward: leave it out");
   size_array_rows = chambers.count();
   begin_chambers();
 }
@@ -103,7 +103,7 @@ void FixClothGas::check(ArgReader &args)
 {
   const auto refuse = [&](const std::string &keyword, const std::string &value) {
     args.fail(keyword, value,
-              "gas at a constant pressure does not follow its volume: leave it away, or use "
+              "gas at a constant pressure does not follow its volume: leave it out, or use "
               "'polytropic'");
   };
   if (!has_law) {
@@ -113,11 +113,11 @@ void FixClothGas::check(ArgReader &args)
     if (options.closes_holes)
       args.fail("close", "yes",
                 "holes of a mesh at a constant pressure "
-                "need no lids: leave it away");
+                "need no lids: leave it out");
     return;
   }
   if (options.toward != GasChambers::Vec3::Zero())
-    args.fail("toward", in_words(options.toward), "polytropic gas pushes outward: leave it away");
+    args.fail("toward", in_words(options.toward), "polytropic gas pushes outward: leave it out");
   const double first = law.start - law.ambient;
   for (const auto &[name, value] : {std::make_pair("valve", law.limit), {"burst", burst}})
     if (value < first)
@@ -126,7 +126,7 @@ void FixClothGas::check(ArgReader &args)
   if (burst < NEVER && law.limit < NEVER && law.limit < burst)
     args.fail(
         "burst", fmt::format("{:g}", burst),
-        fmt::format("the valve keeps the pressure at {:g}: leave one of both away", law.limit));
+        fmt::format("the valve keeps the pressure at {:g}: leave one of the two out", law.limit));
 }
 
 int FixClothGas::setmask() { return POST_FORCE | MIN_POST_FORCE | POST_NEIGHBOR | PRE_EXCHANGE; }

@@ -104,7 +104,8 @@ void FixClothPores::check_integrators()
   for (Fix *each : modify->get_fix_list()) {
     behind = behind || each == this;
     if (behind && each->time_integrate && share_atoms(atom, groupbit, each->groupbit, world))
-      error->all(FLERR, "{}: fix {} {} moves its particles and is defined behind: define it before",
+      error->all(FLERR,
+                 "{}: fix {} {} moves its particles and is defined after it: define it before",
                  label, each->id, each->style);
   }
 }

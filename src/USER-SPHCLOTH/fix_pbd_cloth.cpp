@@ -101,7 +101,7 @@ std::vector<FixPBDCloth *> LAMMPS_NS::cloths_before(LAMMPS *lmp, const Fix *fix,
     auto *cloth = dynamic_cast<FixPBDCloth *>(each);
     if (!cloth) continue;
     if (behind)
-      lmp->error->all(FLERR, "{}: fix {} pbd/cloth is defined behind: define it before", asking,
+      lmp->error->all(FLERR, "{}: fix {} pbd/cloth is defined after it: define it before", asking,
                       cloth->id);
     cloths.push_back(cloth);
   }

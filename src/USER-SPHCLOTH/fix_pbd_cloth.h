@@ -144,7 +144,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ParticleColumns *kept(int n);
 };
 
-// all of them; one that is defined behind the fix that asks is an error in its name
+// all of them; one that is defined after the fix that asks is an error in its name
 std::vector<FixPBDCloth *> cloths_before(LAMMPS *, const Fix *, const std::string &asking);
 
 }    // namespace LAMMPS_NS

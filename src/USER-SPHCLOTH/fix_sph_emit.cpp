@@ -141,7 +141,7 @@ void FixSPHEmit::init()
   if (atom->rmass && mass == 0.0) mass = at_rest;
   if (!atom->rmass && mass != 0.0)
     error->all(FLERR,
-               "{}: masses belong to types here: leave the mass keyword away and use 'mass {} {}'",
+               "{}: masses belong to types here: leave the mass keyword out and use 'mass {} {}'",
                label, itype, mass);
   const double excess = mass_of_one() / at_rest - 1.0;
   if (comm->me == 0 && excess > 0.01)

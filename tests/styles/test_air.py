@@ -244,7 +244,7 @@ ERRORS = {
     ),
     "behind": (
         SMALL_SHEET + "fix a cloth cloth/air density 1\nfix s cloth pbd/cloth\nrun 0",
-        r"fix a cloth/air: fix s pbd/cloth is defined behind: define it before",
+        r"fix a cloth/air: fix s pbd/cloth is defined after it: define it before",
     ),
 }
 

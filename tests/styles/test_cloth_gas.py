@@ -330,7 +330,7 @@ ERRORS = [
     ("polytropic 1.4 1.1e5 1e5 valve 5000", r"valve is '5000': the gas starts at p0 - ambient"),
     ("polytropic 1.4 1.1e5 1e5 burst 5000", r"burst is '5000': the gas starts at"),
     (LAW + " valve 100 burst 200", r"burst is '200': the valve keeps the pressure at 100"),
-    ("pressure 1 valve 100", r"valve is '100': .* leave it away, or use 'polytropic'"),
+    ("pressure 1 valve 100", r"valve is '100': .* leave it out, or use 'polytropic'"),
     ("pressure 1 inflow v_rate", r"inflow is 'v_rate': gas at a constant pressure"),
     ("pressure 1 close yes", r"close is 'yes': holes"),
     ("pressure 1 toward 0 0 1", r"toward is '0 0 1': the mesh is closed"),

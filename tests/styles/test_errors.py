@@ -130,7 +130,7 @@ CASES = [
     case(
         "cloth: strain of whole steps",
         SHEET + "fix s cloth pbd/cloth strain 0.1 solver gs",
-        r"strain is '0.1.*how long substeps are: leave it away",
+        r"strain is '0.1.*how long substeps are: leave it out",
     ),
     case("cloth: sweeps", SHEET + "fix s cloth pbd/cloth iterations 0", r"iterations is '0'"),
     case(
@@ -230,7 +230,7 @@ CASES = [
     case(
         "contact: cloth behind",
         SHEET + "fix c water cloth/contact 0.01\nfix s cloth pbd/cloth\nrun 0",
-        r"fix c cloth/contact: fix s pbd/cloth is defined behind: define it before",
+        r"fix c cloth/contact: fix s pbd/cloth is defined after it: define it before",
     ),
     case(
         "contact: many sheets",

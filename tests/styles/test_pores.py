@@ -304,7 +304,7 @@ def test_pores_need_a_mesh_contact_and_order(tmp_path):
         r"there is no fix cloth/contact before": gauze().replace(
             "fix contact water cloth/contact 0.01 \n", ""
         ),
-        r"fix step sph/integrate moves its particles and is defined behind": gauze().replace(
+        r"fix step sph/integrate moves its particles and is defined after it": gauze().replace(
             "fix step water sph/integrate global\n", ""
         )
         + "fix step water sph/integrate global\n",

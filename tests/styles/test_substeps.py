@@ -273,7 +273,7 @@ timestep 4e-3
 
 MISSED = (
     "WARNING: fix sheet pbd/cloth: contact leaves more than half of the momentum that stops "
-    "particles behind {} iterations: what is heavy beside the cloth may gain energy; give more "
+    "particles after {} iterations: what is heavy beside the cloth may gain energy; give more "
     "'iterations', or neither 'iterations' nor 'solver'"
 )
 

@@ -67,9 +67,9 @@ void ClothOptions::check(ArgReader &args)
               "bodies feel attached cloth once a step: use 'solver gs' or 'solver jacobi'");
   if (strain_given && solving.solver != ClothSolver::SUBSTEPS)
     args.fail("strain", std::to_string(solving.strain),
-              "it says how long substeps are: leave it away, or use 'solver substeps'");
+              "it says how long substeps are: leave it out, or use 'solver substeps'");
   if (solving.symmetric_sweeps && solving.solver == ClothSolver::JACOBI)
-    args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it away");
+    args.fail("order", "symmetric", "the sweeps of 'solver jacobi' have no order: leave it out");
   if (solving.tolerance > 0.0 && solving.solver == ClothSolver::SUBSTEPS)
     args.fail("tolerance", std::to_string(solving.tolerance),
               "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");

@@ -68,7 +68,7 @@ void Substepping::missed_in_contact(double share)
   }
   steps_missed = share > SubstepLength::MISSED ? steps_missed + 1 : 0;
   if (steps_missed == MANY)
-    warn(fmt::format("contact leaves more than half of the momentum that stops particles behind {} "
+    warn(fmt::format("contact leaves more than half of the momentum that stops particles after {} "
                      "iterations: what is heavy beside the cloth may gain energy; give more "
                      "'iterations', or neither 'iterations' nor 'solver'",
                      options.iterations));

@@ -34,8 +34,8 @@ void FluidStability::begin_lists()
   stiffness.resize(atom->nmax);
   found.resize(atom->nmax);
   lattices.resize(atom->ntypes + 1);
-  sounds.resize(atom->nmax);
   if (!has_vertices) return;
+  sounds.resize(atom->nmax);
   rows.resize(atom->nmax);
   vertices.resize(atom->nmax);
 }
@@ -81,7 +81,6 @@ void FluidStability::find_fluid(Fluid &core, const Particles &p,
 {
   if (new_lists) begin_lists();
   core.select_fluid([waits](int i) { return !waits || !(waits[i] > 0.0); }, due);
-  core.for_fluid(due, [this](int i, int) { sounds[i] = find_sound(i); });
   core.stiffness(p, due, stiffness.data());
   core.for_fluid(due, [&](int i, int t) {
     Stiffness &s = stiffness[i];
@@ -128,13 +127,13 @@ void FluidStability::find_vertices(Fluid &core, const Particles &p,
 void FluidStability::find_rows(Fluid &core, const Particles &p,
                                const std::vector<FluidBoundary *> &boundaries, bool scaled)
 {
-  const bool listed = with_vertices && has_vertices;
-  if (listed) core.vertex_rows(p, is_vertex.data(), vertices.data(), scaled, rows.data());
+  core.for_fluid(due, [&](int i, int) { found[i].vertices_sq = 0.0; });
+  if (!with_vertices) return;
+  if (has_vertices) core.vertex_rows(p, is_vertex.data(), vertices.data(), scaled, rows.data());
   core.for_fluid(due, [&](int i, int) {
-    VertexRow row = listed ? rows[i] : VertexRow();
-    if (with_vertices)
-      for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
-    found[i].vertices_sq = scaled ? 0.0 : sounds[i] * row.sum;
+    VertexRow row = has_vertices ? rows[i] : VertexRow();
+    for (FluidBoundary *boundary : boundaries) boundary->add_row(i, row);
+    if (!scaled) found[i].vertices_sq = find_sound(i) * row.sum;
     found[i].friction += row.friction;
   });
 }

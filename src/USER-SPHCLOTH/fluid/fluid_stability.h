@@ -97,7 +97,7 @@ class FluidStability : protected Pointers {
   bool now = true, new_lists = true, has_vertices = false, with_vertices = false;
   sphcloth::Selection due;    // those that do not wait
   std::vector<int> is_vertex;    // [ntypes + 1]
-  std::vector<double> sounds;    // s_k, of all atoms where vertices are particles
+  std::vector<double> sounds;    // s_k, of all atoms, where vertices are particles
   std::vector<sphcloth::Stiffness> stiffness;
   std::vector<sphcloth::VertexStiffness> vertices;    // of all atoms
   std::vector<sphcloth::VertexRow> rows;

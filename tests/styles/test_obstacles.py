@@ -184,7 +184,7 @@ def test_a_body_takes_what_the_drops_give_when_steps_change(tmp_path, scheme):
     lmp = instance()
     lmp.commands_string(
         scene(tmp_path, ball(), fixes, drops=drops, mass=0.2)
-        + f"unfix step\nfix step water sph/integrate global max 1e-3 velocity 0.01\n"
+        + "unfix step\nfix step water sph/integrate global max 1e-3 velocity 0.01\n"
         + f"run_style sph/adaptive {scheme}\nrun 0"
     )
     mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]

@@ -86,7 +86,8 @@ def test_the_count_is_exact_and_ids_are_unique():
             r"fix x sph/emit: opening is 'rectangle': there is one already",
         ),
         (
-            "region sea block INF INF INF INF INF -0.4\nfix x water sph/drain region sea region sea",
+            "region sea block INF INF INF INF INF -0.4\n"
+            "fix x water sph/drain region sea region sea",
             r"fix x sph/drain: region is 'sea': there is one already",
         ),
     ],
@@ -103,7 +104,8 @@ def test_ids_of_what_has_left_are_not_given_again():
     opening = "rectangle -0.2 0 -0.45 0.1 0.1"
     lmp.commands_string(
         POUR.format(n=4, dt=1e-3, opening=opening)
-        + "fix other water sph/emit 4 1 0.05 rectangle 0.2 0 0.5 0.1 0.1 velocity 0 0 -2 start 0.06\n"
+        + "fix other water sph/emit 4 1 0.05 rectangle 0.2 0 0.5 0.1 0.1 velocity 0 0 -2 "
+        + "start 0.06\n"
         + "fix out water sph/drain\nrun 50"
     )
     assert lmp.get_natoms() == 0

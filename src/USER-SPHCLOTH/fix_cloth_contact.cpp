@@ -333,7 +333,8 @@ void FixClothContact::post_integrate()
   if (!excess_velocities.empty()) subtract_excess_velocities();
   if (stepping && stepping->lets_sleep())
     for (MeshContact *contact : contacts)
-      for (const int i : contact->mesh().moved) stepping->note_contact(i);
+      contact->for_particles_at_moving_triangles(stepping->sleeping_speed() * update->dt,
+                                                 [this](int i) { stepping->disturb(i); });
   store_positions();
 }
 

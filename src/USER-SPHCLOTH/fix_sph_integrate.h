@@ -75,7 +75,8 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
   bool is_active(int i) const { return rows[i][UpdateRows::ACTIVE] != 0.0; }
   bool is_asleep(int i) const { return stepper && stepper->is_asleep(i); }
   bool lets_sleep() const { return stepper && stepper->lets_sleep(); }
-  void note_contact(int i) { stepper->note_contact(i); }
+  double sleeping_speed() const { return stepper->sleeping_speed(); }
+  void disturb(int i) { stepper->disturb(i); }
   void wake_beside(const std::vector<std::array<double, 3>> &removed)
   {
     stepper->wake_beside(removed);

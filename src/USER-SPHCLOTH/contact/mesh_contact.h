@@ -40,6 +40,16 @@ class MeshContact : protected Pointers {
   // Behind the solver.  Collective; was there anything to resolve?
   bool resolve();
 
+  // act(particle), some repeated: of triangles whose vertices have moved by more in this step
+  template <class Act> void for_particles_at_moving_triangles(double displacement, Act act) const
+  {
+    if (of_particles.none()) return;
+    of_particles.for_near(of_particles.max_reach(), [&](int particle, int triangle, const auto &) {
+      for (const int s : triangles.triangles[triangle])
+        if ((triangles.end[s] - triangles.start[s]).norm() > displacement) return act(particle);
+    });
+  }
+
   double memory_usage() const;
 
  private:

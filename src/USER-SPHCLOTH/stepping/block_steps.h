@@ -50,7 +50,8 @@ class BlockSteps : public Stepper, public StepHooks {
   void count_limits() const override;
   bool is_asleep(int i) const override { return state.is_asleep(i); }
   bool lets_sleep() const override { return sleeping.enabled(); }
-  void note_contact(int i) override { sleeping.stay_awake(i); }
+  double sleeping_speed() const override { return state.options.sleep; }
+  void disturb(int i) override { sleeping.disturb(i); }
   void wake_beside(const std::vector<std::array<double, 3>> &removed) override
   {
     sleeping.wake_beside(removed);

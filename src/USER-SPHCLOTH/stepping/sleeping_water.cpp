@@ -83,12 +83,13 @@ void SleepingWater::wake_disturbed()
   }
 }
 
-void SleepingWater::stay_awake(int i)
-{
-  if (!state.is_asleep(i)) state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
-}
-
 // By a force that is unlike any, which restart files have, too.
+
+void SleepingWater::disturb(int i)
+{
+  if (state.is_asleep(i))
+    state.columns.external_force(0)[i] = std::numeric_limits<double>::infinity();
+}
 
 void SleepingWater::wake_beside(const std::vector<std::array<double, 3>> &positions)
 {
@@ -100,8 +101,7 @@ void SleepingWater::wake_beside(const std::vector<std::array<double, 3>> &positi
       for (int d = 0; d < 3; d++) away[d] = atom->x[i][d] - position[d];
       release::minimum_image(domain, away);
       for (const double a : away) sq += a * a;
-      if (sq < support * support)
-        state.columns.external_force(0)[i] = std::numeric_limits<double>::infinity();
+      if (sq < support * support) disturb(i);
     }
   }
 }

@@ -28,9 +28,9 @@ class SleepingWater : protected Pointers {
   void fall_asleep();
   // particles that other styles have given speed or a force
   void wake_disturbed();
-  // counts as slow from now on
-  void stay_awake(int i);
-  // in the next step, those within the support of these positions
+  // wakes one that sleeps in the next step
+  void disturb(int i);
+  // the same of those within the support of these positions
   void wake_beside(const std::vector<std::array<double, 3>> &);
   // marks sleeping particles beside moving boundaries
   void mark_beside_moving_boundaries();

@@ -77,9 +77,9 @@ class Stepper : protected Pointers {
   virtual void count_limits() const {}    // of particles, for the report
   virtual bool is_asleep(int) const { return false; }
   virtual bool lets_sleep() const { return false; }
-  // An owned particle that contact has moved in this step does not fall asleep: it rests on what
-  // may go away.
-  virtual void note_contact(int) {}
+  virtual double sleeping_speed() const { return 0.0; }    // below which particles sleep
+  // What holds an owned particle moves: if it sleeps, it wakes in the next step.
+  virtual void disturb(int) {}
   // Particles have been taken away from here: those that sleep beside them wake in the next step.
   virtual void wake_beside(const std::vector<std::array<double, 3>> &) {}
 

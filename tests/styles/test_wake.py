@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 from harness import by_id, instance
-from scenes import cloth_box, cloth_styles, filled, header, lattice, neighbor, sph_tait
+from scenes import (
+    FLUID,
+    box,
+    cloth_box,
+    cloth_styles,
+    filled,
+    header,
+    lattice,
+    neighbor,
+    sph_tait,
+)
 
 # Water between planes, on a plane, a sheet or other water; each scene has at most one of the parts
 # that vanish.
@@ -50,6 +60,12 @@ SCENES = {
         "displace_atoms gate move 1 0 0 units box",
     ),
     "a sheet that is drawn away": (SHEET, "xlo -0.2 xhi 0.2", ON_SHEET, ""),
+    "water that is lifted itself": (
+        "variable x equal 0.2",
+        "xlo -0.2 xhi v_x zlo 0",
+        "",
+        "displace_atoms water move 0 0 0.3 units box",
+    ),
     "contact with a sheet that is unfixed": (
         SHEET,
         "xlo -0.2 xhi 0.2",
@@ -96,6 +112,40 @@ def test_water_falls_that_slept_on_what_has_gone(name):
     assert asleep > 200 and none == 0
     assert before - after == pytest.approx(start - awake, rel=0.1)
     assert abs(before - after) > 0.01
+
+
+# Water that fills a box of two periods, on a plane.
+PERIODIC = (
+    header("p p f", FLUID)
+    + box("0 0.3 0 0.3 -0.1 0.6")
+    + "mass 1 0.125\n"
+    + lattice(0.05)
+    + filled("water", "0 0.3 0 0.3 0 0.3")
+    + "set group all sph/rho 1000\n"
+    + sph_tait("1 1 fluid 1000 c0 20 alpha 0.5", options="density calibrated")
+    + neighbor(0.03)
+    + """timestep 4e-3
+fix walls all wall/sph zlo 0
+fix gravity all gravity 9.81 vector 0 0 -1
+fix step all sph/integrate global sleep 0.3 gain 1
+run_style sph/adaptive block
+run 600
+"""
+)
+
+
+@pytest.mark.parametrize("change", ["change_box all x final 0 0.6 units box", "run 0"])
+def test_a_gap_that_a_longer_period_opens_wakes(change):
+    with instance() as lmp:
+        lmp.commands_string(PERIODIC)
+        assert lmp.extract_fix("step", 0, 1, 29) == 216
+        before = by_id(lmp, "x")
+        lmp.commands_string(f"{change}\nrun 100")
+        after = by_id(lmp, "x")
+    if change == "run 0":
+        assert np.array_equal(after, before)
+    else:
+        assert after[:, 2].mean() < before[:, 2].mean() - 0.02
 
 
 def test_what_sleeps_is_not_shifted():

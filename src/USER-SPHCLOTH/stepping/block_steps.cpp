@@ -39,10 +39,10 @@ void BlockSteps::init(FluidState *style, Change change)
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();
   if (parts.control.watch.begin_run(settings, change != Change::NOTHING) && before != 0)
-    start_over(settings != before || change == Change::SCENE);
+    start_over(settings != before || change == Change::POSITIONS);
 }
 
-// Steps and impulses are of another state.  Where only particles have been changed those that are
+// Steps and impulses are of another state.  Where only velocities have been changed those that are
 // disturbed wake, as in a run; in another scene nothing is known to be at rest.
 
 void BlockSteps::start_over(bool other_scene)

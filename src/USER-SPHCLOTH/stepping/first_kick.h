@@ -17,10 +17,9 @@
 
 namespace LAMMPS_NS {
 
-// Velocities or positions of integrated particles; or positions of what is beside them: boundary
-// particles, vertices, obstacles
+// Velocities of particles; or positions, also of boundary particles, vertices and obstacles
 
-enum class Change { NOTHING, PARTICLES, SCENE };
+enum class Change { NOTHING, VELOCITIES, POSITIONS };
 
 class FirstKick {
  public:
@@ -47,10 +46,12 @@ class FirstKick {
       double &state = columns[STATE][i];
       const bool moves_by_itself = state == RECORDED;
       if (!moves_by_itself && state != PRESENT) continue;
-      const bool same = !moves_by_itself || columns[VELOCITY][i] == fingerprint(atom->v[i]);
+      const bool same = columns[VELOCITY][i] == fingerprint(atom->v[i]);
       state = moves_by_itself && same ? STAGGERED : GIVEN;
-      if (same && !has_been_moved(i, atom->x[i], domain)) continue;
-      change = std::max(change, moves_by_itself ? Change::PARTICLES : Change::SCENE);
+      if (has_been_moved(i, atom->x[i], domain))
+        change = Change::POSITIONS;
+      else if (moves_by_itself && !same)
+        change = std::max(change, Change::VELOCITIES);
     }
     return change;
   }

@@ -4,6 +4,7 @@
 #include "stepping/particle_limits.h"
 
 #include "core/sph/mass_scaling.h"
+#include "domain.h"
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
@@ -84,6 +85,14 @@ std::uint64_t ParticleLimits::settings() const
     hash = hash_with(hash, boundary->settings());
   for (const Fix *contact : modify->get_fix_by_style("^cloth/contact$"))
     hash = hash_with(hash, std::string_view(contact->id));
+  // a box that a fix deforms is another one in each step
+  const auto &fixes = modify->get_fix_list();
+  if (std::none_of(fixes.begin(), fixes.end(), [](const Fix *fix) { return fix->box_change; })) {
+    for (int d = 0; d < 3; d++)
+      if (domain->periodicity[d]) hash = hash_with(hash, bits_of(domain->prd[d]));
+    for (const double tilt : {domain->xy, domain->xz, domain->yz})
+      hash = hash_with(hash, bits_of(tilt));
+  }
   for (const std::uint64_t number :
        {of_ranks, static_cast<std::uint64_t>(atom->natoms), bits_of(options.lambda.stability)})
     hash = hash_with(hash, number);

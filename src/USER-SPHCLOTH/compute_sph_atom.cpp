@@ -82,13 +82,12 @@ void ComputeSPHAtom::find_styles()
     }
   }
   if (!asks_for(Column::DT) && !asks_for(Column::ACTIVE)) return;
-  const auto fixes = modify->get_fix_by_style("^sph/integrate$");
-  if (fixes.empty())
+  stepper = FixSPHIntegrate::find(modify);
+  if (!stepper)
     error->all(FLERR,
                "{}: dt and active are known to fix sph/integrate alone: add that fix, or leave "
                "the two keywords out",
                label);
-  stepper = dynamic_cast<FixSPHIntegrate *>(fixes[0]);
 }
 
 void ComputeSPHAtom::check_evaluated() const

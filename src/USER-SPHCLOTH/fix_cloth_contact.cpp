@@ -89,8 +89,7 @@ void FixClothContact::init()
                label);
   for (int obstacle : options.obstacle_groups) add_obstacle(obstacle);
   make_contacts();
-  const auto integrating = modify->get_fix_by_style("^sph/integrate$");
-  stepping = integrating.empty() ? nullptr : dynamic_cast<FixSPHIntegrate *>(integrating[0]);
+  stepping = FixSPHIntegrate::find(modify);
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);

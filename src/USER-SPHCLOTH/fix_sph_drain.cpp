@@ -110,9 +110,8 @@ bool FixSPHDrain::leaves(int i) const
 void FixSPHDrain::pre_exchange()
 {
   const std::vector<Position> removed = remove();
-  for (Fix *fix : modify->get_fix_by_style("^sph/integrate$"))
-    if (auto *steps = dynamic_cast<FixSPHIntegrate *>(fix); steps->lets_sleep())
-      steps->wake_beside(allgather(removed, comm->nprocs, world));
+  FixSPHIntegrate *steps = FixSPHIntegrate::find(modify);
+  if (steps && steps->lets_sleep()) steps->wake_beside(allgather(removed, comm->nprocs, world));
 }
 
 // by this rank; collective

@@ -15,6 +15,7 @@ FixStyle(sph/integrate,FixSPHIntegrate);
 #include "fix.h"
 
 #include "fluid/adaptive_sound.h"
+#include "modify.h"
 #include "stepping/particle_limits.h"
 #include "stepping/step_control.h"
 #include "stepping/step_options.h"
@@ -72,6 +73,12 @@ class FixSPHIntegrate : public Fix, public HasSteppingScheme {
 
   // the step that this particle allows, whatever the others need
   double own_step(int i) const;
+  // the one that there is, null if there is none
+  static FixSPHIntegrate *find(Modify *modify)
+  {
+    const auto fixes = modify->get_fix_by_style("^sph/integrate$");
+    return fixes.empty() ? nullptr : dynamic_cast<FixSPHIntegrate *>(fixes[0]);
+  }
   bool is_active(int i) const { return rows[i][UpdateRows::ACTIVE] != 0.0; }
   bool is_asleep(int i) const { return stepper && stepper->is_asleep(i); }
   bool lets_sleep() const { return stepper && stepper->lets_sleep(); }

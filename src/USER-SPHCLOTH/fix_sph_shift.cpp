@@ -91,8 +91,7 @@ void FixSPHShift::init()
                label);
   const auto found = modify->get_fix_by_style("^wall/sph$");
   walls = found.empty() ? nullptr : dynamic_cast<FixWallSPH *>(found[0]);
-  const auto integrating = modify->get_fix_by_style("^sph/integrate$");
-  steps = integrating.empty() ? nullptr : dynamic_cast<FixSPHIntegrate *>(integrating[0]);
+  steps = FixSPHIntegrate::find(modify);
   cloth_bits = 0;
   for (const Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) cloth_bits |= fix->groupbit;
 

@@ -133,11 +133,25 @@ void BlockImpulses::apply_uniform()
 {
   state.forget_inactive();
   state.fluid->push_boundaries();
-  const double times = state.clock.uniform_span;
-  if (times == 1.0) return;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
-  state.fluid->prolong_walls(times);
+  if (const double times = state.clock.uniform_span; times != 1.0) {
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
+    state.fluid->prolong_walls(times);
+  }
+  if (state.clock.some_sleep) let_sleep();
+}
+
+// The forces on those that are awake are complete: neighbors that sleep have their last pressures.
+
+void BlockImpulses::let_sleep()
+{
+  state.find_sleeping();
+  for (const int i : state.fluid->active_particles())
+    if (state.is_asleep(i)) std::fill_n(atom->f[i], 3, 0.0);
+  state.select_giving();
+  mark_neighbors();
+  state.reverse_given();
+  wake_marked();
 }
 
 void BlockImpulses::apply_by_bin()
@@ -149,10 +163,7 @@ void BlockImpulses::apply_by_bin()
   }
   for (const int i : state.giving) push_walls(i);
   state.refresh_inactive();
-  state.clear_ghost_marks();
-  state.marked.clear();
-  for (const int i : state.giving) mark_beside(i);
-  if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
+  mark_neighbors();
   state.reverse_given();
   hand_out();
   wake_marked();
@@ -183,6 +194,14 @@ void BlockImpulses::hand_out()
     for (int d = 0; d < 3; d++) atom->f[i][d] += per_step * state.given_to(i)[d];
   });
   state.end_giving();
+}
+
+void BlockImpulses::mark_neighbors()
+{
+  state.clear_ghost_marks();
+  state.marked.clear();
+  for (const int i : state.giving) mark_beside(i);
+  if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
 }
 
 // Neighbors that sleep, and those whose steps are too long for the particle's: where all particles

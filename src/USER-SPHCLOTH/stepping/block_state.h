@@ -30,6 +30,7 @@ struct BlockClock {
   sphcloth::Limit limit = sphcloth::Limit::NONE;    // that asks for it
   bool uniform = true;    // all particles take that step, and took the same before
   double uniform_span = 1.0;    // for which impulses then act, over that step
+  bool some_sleep = false;    // where steps are uniform: particles of any rank
   bool chosen = false;    // steps, at this time, by this evaluation or the same one before
   bool reaches_output = false;    // the base step ends at an output time
   bool defers = false;    // vertices get deferred impulses in the coming step
@@ -101,6 +102,7 @@ class BlockState : protected Pointers {
   bool ranges_known = false;
   std::vector<int> asleep;    // 1 or 0; with sleeping water only
   bool any_asleep = false;    // here, ghosts too
+  int n_at_rest = 0;    // owned particles that sleep, or will from this step on
   std::vector<double> given;    // impulses by source, see Impulses, force times ticks
   std::vector<double> kicks;    // changes of velocities [n][3]
   // owned active fluid that is not asleep; of it, by atom, in ticks: for how long it gives

@@ -99,7 +99,7 @@ bool BlockSteps::updates_all_next() const
 
 void BlockSteps::select_active()
 {
-  if (all_selected && state.clock.uniform) {
+  if (all_selected && state.clock.uniform && !state.clock.some_sleep) {
     parts.report.updates += static_cast<double>(fluid->active_particles().size());
     return tell_active(true);
   }
@@ -114,7 +114,8 @@ void BlockSteps::select_active()
   }
   parts.report.updates += n_active;
   // not by the particles of this rank alone: an inactive one may come from another in this step
-  const bool all = state.coarsest == 0 && n_active == n && !sleeping.enabled();
+  const bool none_sleep = state.clock.uniform ? !state.clock.some_sleep : !sleeping.enabled();
+  const bool all = state.coarsest == 0 && n_active == n && none_sleep;
   all_selected = all && state.clock.uniform;
   tell_active(all);
 }
@@ -132,6 +133,7 @@ const Impulses *BlockSteps::begin_impulses()
 void BlockSteps::choose_bins()
 {
   if (!state.clock.chosen) {
+    if (sleeping.enabled()) sleeping.find_resting();
     bins.choose();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;

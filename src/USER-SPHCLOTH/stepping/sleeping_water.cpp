@@ -53,11 +53,18 @@ bool SleepingWater::is_at_rest(int i)
   return others;
 }
 
-void SleepingWater::fall_asleep()
+void SleepingWater::find_resting()
 {
   resting.clear();
   for (const int i : state.fluid->active_particles())
     if (is_at_rest(i)) resting.push_back(i);
+  state.n_at_rest = static_cast<int>(resting.size());
+  for (int i = 0; i < atom->nlocal; i++)
+    state.n_at_rest += state.fluid->is_fluid(atom->type[i]) && state.is_asleep(i);
+}
+
+void SleepingWater::fall_asleep()
+{
   for (const int i : resting) {
     state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
     state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
@@ -79,7 +86,10 @@ void SleepingWater::wake_disturbed()
       const double change = atom->f[i][d] - state.columns.external_force(d)[i];
       change_sq += change * change;
     }
-    if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) wake(i);
+    if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) {
+      wake(i);
+      for (int d = 0; d < 3; d++) state.columns.external_force(d)[i] = atom->f[i][d];
+    }
   }
 }
 

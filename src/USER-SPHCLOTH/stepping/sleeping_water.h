@@ -25,7 +25,8 @@ class SleepingWater : protected Pointers {
   bool enabled() const { return state.options.sleep > 0.0; }
   bool is_slow(int i) const;
   // active particles that have been slow for long, among others that are slow
-  void fall_asleep();
+  void find_resting();
+  void fall_asleep();    // those
   // particles that other styles have given speed or a force
   void wake_disturbed();
   // wakes one that sleeps in the next step

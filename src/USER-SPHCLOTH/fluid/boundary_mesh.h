@@ -115,7 +115,7 @@ class BoundaryMesh : protected Pointers {
   void find_candidates(const Vec3 &p, double within);
   void store_candidates(Seeker &);
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
-  bool is_beyond(const Vec3 &p) const;
+  bool is_beyond(const Vec3 &p, const Seeker &, const ClosestPoint &) const;
   void find_border(const Vec3 &at, const Seeker &, ClosestPoint &) const;
   static void spread(const ClosestPoint &, const Vec3 &, std::vector<Vec3> &);
 };

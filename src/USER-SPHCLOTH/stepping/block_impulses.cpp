@@ -55,7 +55,18 @@ void BlockImpulses::note_external_forces()
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
   for (const int i : state.fluid->active_particles())
     for (int d = 0; d < 3; d++) external[d][i] = atom->f[i][d] - total[3 * i + d];
+  if (state.held.any()) note_held();
   if (!state.clock.uniform) note_rates();
+}
+
+void BlockImpulses::note_held()
+{
+  double *held = state.columns[Columns::HELD];
+  for (const int i : state.fluid->active_particles()) {
+    int axes = 0;
+    for (int d = 0; d < 3; d++) axes |= state.held.is_held(atom->f[i][d]) << d;
+    held[i] = axes;
+  }
 }
 
 void BlockImpulses::note_rates()

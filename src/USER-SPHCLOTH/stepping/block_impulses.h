@@ -58,6 +58,7 @@ class BlockImpulses : protected Pointers {
   void mark_beside(int i);
   void mark_slow(int i, int type, int finest_allowed);
   void wake_marked();
+  void note_held();
   void note_rates();
   void wake_pushed();
 };

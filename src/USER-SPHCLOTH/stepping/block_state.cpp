@@ -8,6 +8,7 @@
 #include "core/util/bytes.h"
 #include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -28,6 +29,7 @@ void BlockState::init(FluidState *style)
 {
   fluid = style;
   inactive_known = false;
+  held.begin_run(modify);
 }
 
 double BlockState::half_step(int i) const

@@ -35,6 +35,7 @@ void BlockSteps::init(FluidState *style, Change change)
   all_selected = false;
   state.init(style);
   bins.init(style);
+  sleeping.begin_run();
   fluid->set_step_hooks(this);
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();

@@ -79,6 +79,8 @@ void SleepingWater::fall_asleep()
 void SleepingWater::wake_disturbed()
 {
   if (!enabled()) return;
+  const bool some_vanished = atom->natoms < n_atoms;
+  n_atoms = atom->natoms;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
     double change_sq = 0.0;
@@ -86,7 +88,8 @@ void SleepingWater::wake_disturbed()
       const double change = atom->f[i][d] - state.columns.external_force(d)[i];
       change_sq += change * change;
     }
-    if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) {
+    if (some_vanished || !is_slow(i) || gains_speed(i, change_sq) ||
+        state.fluid->feels_moving_wall(i)) {
       wake(i);
       for (int d = 0; d < 3; d++) state.columns.external_force(d)[i] = atom->f[i][d];
     }
@@ -103,6 +106,7 @@ void SleepingWater::disturb(int i)
 
 void SleepingWater::wake_beside(const std::vector<std::array<double, 3>> &positions)
 {
+  n_atoms -= static_cast<bigint>(positions.size());
   for (int i = 0; i < atom->nlocal; i++) {
     if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
     const double support = state.fluid->support(atom->type[i]);

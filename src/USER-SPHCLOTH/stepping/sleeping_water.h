@@ -27,11 +27,14 @@ class SleepingWater : protected Pointers {
   // active particles that have been slow for long, among others that are slow
   void find_resting();
   void fall_asleep();    // those
-  // particles that other styles have given speed or a force
+  void begin_run() { n_atoms = atom->natoms; }
+  // Particles that other styles have given speed or a force; all, where atoms have vanished that
+  // nobody said anything of
   void wake_disturbed();
   // wakes one that sleeps in the next step
   void disturb(int i);
-  // the same of those within the support of these positions
+  // the same of those within the support of these positions, from which atoms of all ranks have
+  // been taken away
   void wake_beside(const std::vector<std::array<double, 3>> &);
   // marks sleeping particles beside moving boundaries
   void mark_beside_moving_boundaries();
@@ -45,6 +48,7 @@ class SleepingWater : protected Pointers {
   BlockState &state;
   const ParticleLimits &limits;
   std::vector<int> resting;
+  bigint n_atoms = 0;    // in the last step
 
   bool is_at_rest(int i);
   bool gains_speed(int i, double force_sq) const;

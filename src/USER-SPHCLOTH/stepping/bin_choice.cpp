@@ -302,10 +302,7 @@ void BinChoice::limit_differences()
     if (scaled.on() && scaled.is_beside_vertices(i)) its_bin[i] = bin[i] = state.clock.deepest;
   }
   state.forward_bins();
-  // those of few are not worth a pass over all
-  constexpr std::size_t MANY = 8;
-  state.ranges_known = MANY * active.size() > static_cast<std::size_t>(atom->nlocal);
-  if (state.ranges_known) fluid->order().measure_block_ranges(bin.data());
+  state.measure_ranges();
   for (const int i : active)
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
   for (const int i : active) bin[i] = static_cast<int>(its_bin[i]);

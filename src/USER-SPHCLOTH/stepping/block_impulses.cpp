@@ -157,11 +157,11 @@ void BlockImpulses::apply_uniform()
 void BlockImpulses::let_sleep()
 {
   state.find_sleeping();
+  state.measure_ranges();
   for (const int i : state.fluid->active_particles())
     if (state.is_asleep(i)) std::fill_n(atom->f[i], 3, 0.0);
   state.select_giving();
-  mark_neighbors();
-  state.reverse_given();
+  tell_neighbors();
   wake_marked();
 }
 
@@ -174,8 +174,7 @@ void BlockImpulses::apply_by_bin()
   }
   for (const int i : state.giving) push_walls(i);
   state.refresh_inactive();
-  mark_neighbors();
-  state.reverse_given();
+  tell_neighbors();
   hand_out();
   wake_marked();
 }
@@ -207,12 +206,15 @@ void BlockImpulses::hand_out()
   state.end_giving();
 }
 
-void BlockImpulses::mark_neighbors()
+// what they get, and what wakes them
+
+void BlockImpulses::tell_neighbors()
 {
   state.clear_ghost_marks();
   state.marked.clear();
   for (const int i : state.giving) mark_beside(i);
   if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
+  state.reverse_given();
 }
 
 // Neighbors that sleep, and those whose steps are too long for the particle's: where all particles

@@ -50,7 +50,7 @@ class BlockImpulses : protected Pointers {
   void copy_forces(std::vector<double> &to) const;
   void apply_uniform();
   void let_sleep();
-  void mark_neighbors();
+  void tell_neighbors();
   void apply_by_bin();
   void find_spans();
   void push_walls(int i);

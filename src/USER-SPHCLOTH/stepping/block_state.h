@@ -158,6 +158,7 @@ class BlockState : protected Pointers {
   void clear_ghost_marks();
 
   void forward_bins();
+  void measure_ranges();    // of bins, where many will ask
   void find_sleeping();    // of all atoms, from the bins of owned ones
   void forward_kicks();    // adds them to the velocities of ghosts
   void reverse_given();    // and marks

@@ -28,8 +28,8 @@ class SleepingWater : protected Pointers {
   void find_resting();
   void fall_asleep();    // those
   void begin_run() { n_atoms = atom->natoms; }
-  // Particles that other styles have given speed or a force; all, where atoms have vanished that
-  // nobody said anything of
+  // Particles that other styles have given speed or a force; all, where other fixes have taken
+  // atoms away
   void wake_disturbed();
   // wakes one that sleeps in the next step
   void disturb(int i);

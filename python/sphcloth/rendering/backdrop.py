@@ -1,0 +1,129 @@
+"""What is behind all that stands on the floor: the floor itself, which fades into the background.
+
+Of the pictures of one view only the light on the floor differs: all else is found once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+
+from sphcloth.rendering.camera import Camera
+from sphcloth.rendering.light import SKYLIGHT_UP, SUNLIGHT, Light
+
+FLOOR_COLOR = np.array([0.31, 0.36, 0.40])
+BACKDROP_LOW, BACKDROP_HIGH = np.array([0.40, 0.50, 0.57]), np.array([0.10, 0.15, 0.21])
+# its light is looked up in maps of a square around the scene, whose half side is in radii of it,
+# and it fades into the background from a distance on
+SHADOW_TEXELS, SKYLIGHT_TEXELS, FLOOR_REACH = 360, 90, 1.5
+FADE_FROM, FADE_WIDTH = 0.6, 1.6
+# the floor is a little less bright than its color says: it is the background
+FLOOR_SUN = 0.75
+
+
+@dataclass(frozen=True)
+class Environment:
+    """What surrounds the geometry.
+
+    Attributes:
+        floor: height of the floor.
+        center: the middle of all that is to be seen, shape (3,).
+        radius: of a sphere around it that holds all.
+        sun: towards the sun, a unit vector, shape (3,).
+    """
+
+    floor: float
+    center: NDArray[np.float64]
+    radius: float
+    sun: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Backdrop:
+    """Floor and background as a camera sees them, P pixels by rows.
+
+    Attributes:
+        nearness: inverse of the depth of the floor, 0 where there is none, shape (P,).
+    """
+
+    nearness: NDArray[np.float64]
+    _environment: Environment
+    _background: NDArray[np.float32]
+    _floor: NDArray[np.int64]
+    _fade: NDArray[np.float32]
+    _between: tuple[sparse.csr_array, sparse.csr_array]
+
+    @classmethod
+    def of(cls, camera: Camera, environment: Environment) -> Backdrop:
+        """Find out where each pixel sees the floor."""
+        pixels = camera.size[0] * camera.size[1]
+        rays = camera.rays(np.arange(pixels))
+        up = np.clip(0.45 + rays[:, 2] / 0.8, 0, 1)[:, None] ** 2
+        background = BACKDROP_LOW + up * (BACKDROP_HIGH - BACKDROP_LOW)
+        height = environment.floor - camera.position[2]
+        floor = np.flatnonzero(rays[:, 2] * height > 0)
+        depth = height / rays[floor, 2]
+        nearness = np.zeros(pixels)
+        nearness[floor] = 1 / depth
+        points = camera.position[:2] + depth[:, None] * rays[floor, :2]
+        away = (points - environment.center[:2]) / environment.radius
+        beyond = np.maximum(np.hypot(*away.T) - FADE_FROM, 0) / FADE_WIDTH
+        fade = np.exp(-(beyond**2)).astype(np.float32)
+        background[floor] *= 1 - fade[:, None]
+        between = tuple(
+            _interpolation(0.5 + 0.5 / FLOOR_REACH * away, texels)
+            for texels in (SHADOW_TEXELS, SKYLIGHT_TEXELS)
+        )
+        return cls(nearness, environment, background.astype(np.float32), floor, fade, between)
+
+    def color(self, light: Light) -> NDArray[np.float32]:
+        """Return the linear colors of all pixels in some light, shape (P, 3)."""
+        shares = (light.sunshine, light.skylight)
+        sun, sky = (
+            matrix @ _floor_map(share, texels, self._environment).ravel()
+            for matrix, share, texels in zip(
+                self._between, shares, (SHADOW_TEXELS, SKYLIGHT_TEXELS), strict=True
+            )
+        )
+        color = self._background.copy()
+        sunlight = (FLOOR_COLOR * SUNLIGHT * FLOOR_SUN * self._environment.sun[2]).astype(sun.dtype)
+        skylight = (FLOOR_COLOR * SKYLIGHT_UP).astype(sun.dtype)
+        # more than half of the sky is dark where something stands: contact shadows
+        arriving = np.stack([self._fade * sun, self._fade * sky**1.4], axis=1)
+        color[self._floor] += np.einsum("nk,kj->nj", arriving, np.stack([sunlight, skylight]))
+        return color
+
+
+def _interpolation(places: NDArray, texels: int) -> sparse.csr_array:
+    """Return the matrix from a square of texels to places on it, shape (N, 2), from 0 to 1.
+
+    Linear between the texels; beyond the border it is as on the border.
+    """
+    places = np.clip(places * (texels - 1), 0, texels - 1)
+    first = np.minimum(places.astype(np.int32), texels - 2)
+    part = places - first
+    corner = first[:, 0] * texels + first[:, 1]
+    steps = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+    weights = [np.prod(np.where(step, part, 1 - part), axis=1) for step in steps]
+    texel = corner[:, None] + (steps @ [texels, 1]).astype(np.int32)
+    starts = np.arange(0, 4 * len(places) + 1, 4, dtype=np.int32)
+    return sparse.csr_array(
+        (np.stack(weights, axis=1).astype(np.float32).ravel(), texel.ravel(), starts),
+        shape=(len(places), texels**2),
+    )
+
+
+def _floor_map(
+    share: Callable[[NDArray, NDArray], NDArray], texels: int, environment: Environment
+) -> NDArray[np.float32]:
+    """Return a share of light on a square of the floor, shape (texels, texels)."""
+    line = np.linspace(-FLOOR_REACH, FLOOR_REACH, texels) * environment.radius
+    x, y = np.meshgrid(line + environment.center[0], line + environment.center[1], indexing="ij")
+    places = np.stack([x.ravel(), y.ravel(), np.full(x.size, environment.floor)]).T
+    shares = share(places, np.broadcast_to([0.0, 0.0, 1.0], places.shape)).reshape(x.shape)
+    # the light comes from a few directions: without a blur each would have an edge of its own
+    return ndimage.gaussian_filter(shares, 1.5).astype(np.float32)

@@ -11,9 +11,10 @@ from trimesh.graph import connected_component_labels
 from sphcloth.rendering import light
 from sphcloth.rendering.camera import Camera, ParallelView
 from sphcloth.rendering.light import Light, Spheres
+from sphcloth.rendering.particles import Particles
 from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Particles, Surface, water_surface
+from sphcloth.rendering.surface import Surface, water_surface
 
 MESH, SHEET = square_sheet(6)
 SIZE = (96, 72)

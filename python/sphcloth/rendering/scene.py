@@ -11,17 +11,18 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from sphcloth.errors import UserError
-from sphcloth.meshing.sequence import Unwrapper
 from sphcloth.rendering.backdrop import Environment
 from sphcloth.rendering.camera import Camera
 from sphcloth.rendering.legend import Scale, add_scale
 from sphcloth.rendering.light import Light, Spheres
+from sphcloth.rendering.particles import Particles
 from sphcloth.rendering.scene_roles import SceneRoles, check_positions
 from sphcloth.rendering.shading import Geometry, Solid, View
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Particles, Surface, smoothed, water_surface
+from sphcloth.rendering.surface import Surface, smoothed, water_surface
 from sphcloth.rendering.tubes import tubes
 from sphcloth.trajectory import Frame
+from sphcloth.unwrapping import Unwrapper
 
 # front and back of each piece of cloth, in turn; then of obstacles, pins and spheres of water
 CLOTH_COLORS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -25,12 +25,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
-# standard deviation of the weights and radius of a particle, in spacings: the radius is the
-# distance of the mean from the plane that bounds a half-space, sqrt(2/pi) standard deviations
-WIDTH = 0.78
-RADIUS = np.sqrt(2 / np.pi) * WIDTH
-# the weights end here, in standard deviations
-REACH = 3.2
+from sphcloth.rendering.particles import RADIUS, REACH, WIDTH, Particles
+
 # nodes of the grid in a spacing: as many as makes no more than the first number of nodes in all,
 # or the fewest; beyond the second number of nodes the grid is coarser than that
 MAX_NODES_PER_SPACING, MIN_NODES_PER_SPACING = 4.0, 2.0
@@ -44,33 +40,6 @@ MIN_WEIGHT = 1e-4
 DISTANCE_BLUR, BLUR_NODES, SMOOTHING_ROUNDS = 0.6, 2, 8
 # the grid is worked on in cubes of so many nodes a side, by so many threads
 BLOCK_NODES, THREADS = 64, 2
-
-
-@dataclass(frozen=True)
-class Particles:
-    """Particles of water to find the surface of.
-
-    Attributes:
-        positions: shape (N, 3).
-        spacing: the edge of the cube that each particle stands for, shape (N,).
-        values: a quantity to carry to the surface, shape (N,), or None.
-        room: lower and upper corner of the space that the water may fill, shape (2, 3): it ends
-            flat where a periodic box goes on.
-    """
-
-    positions: NDArray[np.float64]
-    spacing: NDArray[np.float64]
-    values: NDArray[np.float64] | None = None
-    room: NDArray[np.float64] = field(
-        default_factory=lambda: np.array([[-np.inf] * 3, [np.inf] * 3])
-    )
-
-    def select(self, chosen: NDArray) -> Particles:
-        """Return copies of some particles, by mask or index."""
-        values = None if self.values is None else self.values[chosen]
-        return replace(
-            self, positions=self.positions[chosen], spacing=self.spacing[chosen], values=values
-        )
 
 
 @dataclass(frozen=True)

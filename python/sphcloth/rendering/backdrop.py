@@ -70,9 +70,9 @@ class Backdrop:
         nearness = np.zeros(pixels)
         nearness[floor] = 1 / depth
         points = camera.position[:2] + depth[:, None] * rays[floor, :2]
-        away = (points - environment.center[:2]) / environment.radius
+        away = ((points - environment.center[:2]) / environment.radius).astype(np.float32)
         beyond = np.maximum(np.hypot(*away.T) - FADE_FROM, 0) / FADE_WIDTH
-        fade = np.exp(-(beyond**2)).astype(np.float32)
+        fade = np.exp(-(beyond**2))
         background[floor] *= 1 - fade[:, None]
         between = tuple(
             _interpolation(0.5 + 0.5 / FLOOR_REACH * away, texels)
@@ -105,15 +105,13 @@ def _interpolation(places: NDArray, texels: int) -> sparse.csr_array:
     """
     places = np.clip(places * (texels - 1), 0, texels - 1)
     first = np.minimum(places.astype(np.int32), texels - 2)
-    part = places - first
+    part = places - first.astype(places.dtype)
     corner = first[:, 0] * texels + first[:, 1]
-    steps = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
-    weights = [np.prod(np.where(step, part, 1 - part), axis=1) for step in steps]
-    texel = corner[:, None] + (steps @ [texels, 1]).astype(np.int32)
+    weights = np.einsum("ni,nj->nij", *(np.stack([1 - x, x], axis=1) for x in part.T))
+    texel = corner[:, None] + np.array([0, 1, texels, texels + 1], np.int32)
     starts = np.arange(0, 4 * len(places) + 1, 4, dtype=np.int32)
     return sparse.csr_array(
-        (np.stack(weights, axis=1).astype(np.float32).ravel(), texel.ravel(), starts),
-        shape=(len(places), texels**2),
+        (weights.ravel(), texel.ravel(), starts), shape=(len(places), texels**2)
     )
 
 

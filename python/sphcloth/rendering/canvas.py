@@ -48,7 +48,7 @@ class Canvas:
 
     @classmethod
     def of(
-        cls, camera: Camera, ground: NDArray[np.float32], drawn: Sequence[NDArray[np.int64]]
+        cls, camera: Camera, ground: NDArray[np.float32], drawn: Sequence[NDArray[np.int32]]
     ) -> Canvas:
         """Prepare to draw in some samples, numbered by their rows in the whole picture."""
         touched = np.zeros(len(ground), bool)
@@ -59,12 +59,12 @@ class Canvas:
         place[pixels] = SAMPLES**2 * np.arange(len(pixels))
         return cls(camera, ground, place, ground[pixels].repeat(SAMPLES**2, axis=0))
 
-    def paint(self, samples: NDArray[np.int64], colors: NDArray) -> None:
+    def paint(self, samples: NDArray[np.int32], colors: NDArray) -> None:
         """Give samples, shape (N,), colors, shape (N, 3)."""
         pixel, number = _pixels(samples, self.camera)
         self.samples[self.place[pixel] + number] = colors
 
-    def at(self, samples: NDArray[np.int64]) -> NDArray[np.float32]:
+    def at(self, samples: NDArray[np.int32]) -> NDArray[np.float32]:
         """Return the colors of samples, shape (N, 3)."""
         pixel, number = _pixels(samples, self.camera)
         place = self.place[pixel]
@@ -99,7 +99,7 @@ class Canvas:
         return picture.reshape(*self.camera.shape, 3)
 
 
-def _pixels(samples: NDArray[np.int64], camera: Camera) -> tuple[NDArray, NDArray]:
+def _pixels(samples: NDArray[np.int32], camera: Camera) -> tuple[NDArray, NDArray]:
     """Return the pixels of samples, shape (N,), and the numbers of the samples within them."""
     width = SAMPLES * camera.size[0]
     row = samples // width

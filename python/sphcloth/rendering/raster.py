@@ -46,9 +46,9 @@ class Visible:
     face: NDArray[np.int32]
 
     @cached_property
-    def pixel(self) -> NDArray[np.int64]:
+    def pixel(self) -> NDArray[np.int32]:
         """Where there is a face, shape (F,)."""
-        return np.flatnonzero(self.face >= 0)
+        return np.flatnonzero(self.face >= 0).astype(np.int32)
 
 
 def nearest(fragments: Iterable[Fragments], behind: NDArray[np.float64]) -> Visible:

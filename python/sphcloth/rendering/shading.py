@@ -163,7 +163,7 @@ class _Patch:
         points: where the rays meet the thing, from the camera, shape (F, 3).
     """
 
-    pixel: NDArray[np.int64]
+    pixel: NDArray[np.int32]
     face: NDArray[np.int32]
     nearness: NDArray[np.float64]
     rays: NDArray[np.float32]
@@ -377,11 +377,11 @@ def _measured(
         yield part
 
 
-def _refracted(camera: Camera, patch: _Patch, normals: NDArray, path: NDArray) -> NDArray[np.int64]:
+def _refracted(camera: Camera, patch: _Patch, normals: NDArray, path: NDArray) -> NDArray[np.int32]:
     """Return the samples behind water to which refraction leads, shape (F,)."""
     aside = (1 / INDEX - 1) * in_axes(normals, camera.axes[:2]) * path[:, None]
     depth = (1 / patch.nearness).astype(np.float32)
-    shift = np.round(aside * (np.float32(camera.focal) / (depth + path))[:, None]).astype(np.int64)
+    shift = np.round(aside * (np.float32(camera.focal) / (depth + path))[:, None]).astype(np.int32)
     width, height = camera.size
     row = patch.pixel // width
     column = np.clip(patch.pixel - width * row + shift[:, 0], 0, width - 1)

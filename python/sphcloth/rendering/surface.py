@@ -40,6 +40,8 @@ MIN_WEIGHT = 1e-4
 DISTANCE_BLUR, BLUR_NODES, SMOOTHING_ROUNDS = 0.6, 2, 8
 # the grid is worked on in cubes of so many nodes a side, by so many threads
 BLOCK_NODES, THREADS = 64, 2
+# the own nodes of a block among those on which sums are needed
+INNER = (slice(BLUR_NODES, -BLUR_NODES),) * 3
 
 
 @dataclass(frozen=True)
@@ -93,10 +95,14 @@ class _Grid:
         counts = np.ceil((high - low) / cell) + 2 * margin
         return cls(low - margin * cell, cell, tuple(int(count) for count in counts))
 
-    def nodes(self, axis: int) -> NDArray[np.float32]:
-        """Return the coordinates of the nodes along an axis, in cells, to be broadcast."""
+    def nodes(self, axis: int, margin: int = 0) -> NDArray[np.float32]:
+        """Return the coordinates of the nodes along an axis, in cells, to be broadcast.
+
+        So many nodes at both ends are left out.
+        """
         shape = [-1 if other == axis else 1 for other in range(3)]
-        return np.arange(self.shape[axis], dtype=np.float32).reshape(shape)
+        nodes = np.arange(margin, self.shape[axis] - margin, dtype=np.float32)
+        return nodes.reshape(shape)
 
 
 def _cell(extent: NDArray, nodes: int) -> float:
@@ -114,13 +120,13 @@ def water_surface(particles: Particles) -> Surface:
     values = None if particles.values is None else np.zeros(grid.shape, np.float32)
 
     def fill(block: _Block) -> None:
-        inner, near = block.inner, particles.select(block.particles)
-        moments = _Moments.of(near, block.grid)
+        moments = _Moments.of(particles.select(block.particles), block.grid, block.margin)
         # empty nodes are not to divide by zero; what they get is never looked at
         share = 1 / np.maximum(moments.weight, MIN_WEIGHT)
-        distance[block.place] = _distance(moments, share, block.grid, bound)[inner]
+        nodes = [block.grid.nodes(axis, block.margin) for axis in range(3)]
+        distance[block.place] = _distance(moments, share, nodes, bound)[INNER]
         if values is not None:
-            values[block.place] = (moments.values * share)[inner]
+            values[block.place] = (moments.values * share)[INNER]
 
     # matrices as small as these are slower by many threads each than one after another
     with threadpool_limits(1), ThreadPoolExecutor(THREADS) as pool:
@@ -135,13 +141,14 @@ class _Block:
 
     Attributes:
         grid: its nodes, and as many around them as their sums depend on.
-        inner: its own nodes among those.
+        margin: how many nodes at each side are there for the particles alone: sums are needed on
+            its own nodes and on ``BLUR_NODES`` around them.
         place: its own nodes in the whole grid.
         particles: those that its sums depend on, indices.
     """
 
     grid: _Grid
-    inner: tuple[slice, ...]
+    margin: int
     place: tuple[slice, ...]
     particles: NDArray[np.int64]
 
@@ -161,7 +168,7 @@ def _blocks(particles: Particles, grid: _Grid) -> Iterator[_Block]:
         if held.any() and np.all(start >= 0) and np.all(end > start):
             yield _Block(
                 _Grid(grid.origin + (start - reach) * grid.cell, grid.cell, tuple(shape.tolist())),
-                tuple(slice(reach, n - reach) for n in shape.tolist()),
+                reach - BLUR_NODES,
                 tuple(map(slice, start.tolist(), end.tolist())),
                 near[held],
             )
@@ -186,7 +193,7 @@ def _reached(places: NDArray, reach: int, side: int) -> Iterator[tuple[NDArray, 
 
 @dataclass(frozen=True)
 class _Moments:
-    """Sums over particles on all nodes, weighted, and lengths in cells from the origin.
+    """Sums over particles on nodes, weighted, and lengths in cells from the origin.
 
     Attributes:
         weight: the weights alone.
@@ -203,8 +210,11 @@ class _Moments:
     values: NDArray[np.float32] | None
 
     @classmethod
-    def of(cls, particles: Particles, grid: _Grid) -> _Moments:
-        """Sum over particles; each spacing has weights of its own width."""
+    def of(cls, particles: Particles, grid: _Grid, margin: int) -> _Moments:
+        """Sum over particles, on all nodes but those of a margin.
+
+        Each spacing has weights of its own width.
+        """
         total: list[NDArray[np.float32]] = []
         for spacing in np.unique(particles.spacing):
             chosen = particles.spacing == spacing
@@ -213,21 +223,25 @@ class _Moments:
             if particles.values is not None:
                 amounts.append(particles.values[chosen])
             width = WIDTH * spacing / grid.cell
-            fields = [_blur(field, width) for field in _deposit(places, amounts, grid.shape)]
+            fields = [
+                _blur(field, width, margin) for field in _deposit(places, amounts, grid.shape)
+            ]
             fields.append(fields[0] * np.float32(RADIUS * spacing / grid.cell))
             total = [a + b for a, b in zip(total, fields, strict=True)] if total else fields
         values = total[5] if particles.values is not None else None
         return cls(total[0], total[1:4], total[4], total[-1], values)
 
 
-def _distance(moments: _Moments, share: NDArray, grid: _Grid, bound: float) -> NDArray[np.float32]:
-    """Return on all nodes their distance from the water in cells, at most ``bound``."""
+def _distance(
+    moments: _Moments, share: NDArray, nodes: list[NDArray], bound: float
+) -> NDArray[np.float32]:
+    """Return the distance of nodes from the water in cells, at most ``bound``."""
     spread = moments.second * share
     away = np.zeros_like(spread)
-    for axis, first in enumerate(moments.first):
+    for first, places in zip(moments.first, nodes, strict=True):
         mean = first * share
         spread -= mean**2
-        away += (mean - grid.nodes(axis)) ** 2
+        away += (mean - places) ** 2
     radius = moments.radius * share
     spread /= np.maximum((WIDTH / RADIUS) * radius, MIN_WEIGHT) ** 2
     inside = (SPREAD_OF_GAP - spread) / (SPREAD_OF_GAP - SPREAD_OF_WATER)
@@ -267,14 +281,14 @@ def _deposit(
     return fields
 
 
-def _blur(field: NDArray[np.float32], width: float) -> NDArray[np.float32]:
-    """Smooth a field by a Gaussian of a width in cells that is 1 at its middle.
+def _blur(field: NDArray[np.float32], width: float, margin: int) -> NDArray[np.float32]:
+    """Smooth a field by a Gaussian of a width in cells that is 1 at its middle, less a margin.
 
     A matrix product along each axis: several times faster than a sum for each node.
     """
-    along_x, along_y, along_z = (_kernel(n, width) for n in field.shape)
-    field = (along_x @ field.reshape(len(field), -1)).reshape(field.shape)
-    return along_y @ (field @ along_z)
+    along_x, along_y, along_z = (_kernel(n, width)[margin : n - margin] for n in field.shape)
+    field = (along_x @ field.reshape(len(field), -1)).reshape(-1, *field.shape[1:])
+    return along_y @ (field @ along_z.T)
 
 
 @cache

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
 
-from sphcloth.rendering.camera import Camera
+from sphcloth.rendering.camera import Camera, columns, in_colors
 from sphcloth.rendering.light import SKYLIGHT_UP, SUNLIGHT, Light
 
 FLOOR_COLOR = np.array([0.31, 0.36, 0.40])
@@ -53,48 +53,39 @@ class Backdrop:
     nearness: NDArray[np.float64]
     _environment: Environment
     _background: NDArray[np.float32]
-    _floor: NDArray[np.int64]
     _fade: NDArray[np.float32]
     _between: tuple[sparse.csr_array, sparse.csr_array]
 
     @classmethod
     def of(cls, camera: Camera, environment: Environment) -> Backdrop:
         """Find out where each pixel sees the floor."""
-        pixels = camera.size[0] * camera.size[1]
-        rays = camera.rays(np.arange(pixels))
-        up = np.clip(0.45 + rays[:, 2] / 0.8, 0, 1)[:, None] ** 2
-        background = BACKDROP_LOW + up * (BACKDROP_HIGH - BACKDROP_LOW)
+        rays = camera.rays(np.arange(camera.size[0] * camera.size[1], dtype=np.int32))
         height = environment.floor - camera.position[2]
-        floor = np.flatnonzero(rays[:, 2] * height > 0)
-        depth = height / rays[floor, 2]
-        nearness = np.zeros(pixels)
-        nearness[floor] = 1 / depth
-        points = camera.position[:2] + depth[:, None] * rays[floor, :2]
-        away = ((points - environment.center[:2]) / environment.radius).astype(np.float32)
+        is_floor = rays[:, 2] * height > 0
+        nearness = np.where(is_floor, rays[:, 2] / (height or 1.0), 0)
+        depth = np.divide(1, nearness, out=np.zeros_like(nearness), where=is_floor)
+        start = (camera.position - environment.center)[:2] / environment.radius
+        away = columns(start + (depth / environment.radius)[:, None] * rays[:, :2])
         beyond = np.maximum(np.hypot(*away.T) - FADE_FROM, 0) / FADE_WIDTH
-        fade = np.exp(-(beyond**2))
-        background[floor] *= 1 - fade[:, None]
+        fade = np.where(is_floor, np.exp(-(beyond**2)), 0)
+        up = columns(np.clip(0.45 + rays[:, 2:] / 0.8, 0, 1) ** 2)
+        background = in_colors(1 - up[:, 0], BACKDROP_LOW) + in_colors(up[:, 0], BACKDROP_HIGH)
+        places = 0.5 + 0.5 / FLOOR_REACH * away
         between = tuple(
-            _interpolation(0.5 + 0.5 / FLOOR_REACH * away, texels)
-            for texels in (SHADOW_TEXELS, SKYLIGHT_TEXELS)
+            _interpolation(places, texels) for texels in (SHADOW_TEXELS, SKYLIGHT_TEXELS)
         )
-        return cls(nearness, environment, background.astype(np.float32), floor, fade, between)
+        return cls(nearness, environment, (1 - fade)[:, None] * background, fade, between)
 
     def color(self, light: Light) -> NDArray[np.float32]:
         """Return the linear colors of all pixels in some light, shape (P, 3)."""
-        shares = (light.sunshine, light.skylight)
-        sun, sky = (
-            matrix @ _floor_map(share, texels, self._environment).ravel()
-            for matrix, share, texels in zip(
-                self._between, shares, (SHADOW_TEXELS, SKYLIGHT_TEXELS), strict=True
-            )
-        )
-        color = self._background.copy()
-        sunlight = (FLOOR_COLOR * SUNLIGHT * FLOOR_SUN * self._environment.sun[2]).astype(sun.dtype)
-        skylight = (FLOOR_COLOR * SKYLIGHT_UP).astype(sun.dtype)
+        sunny, bright = self._between
+        sun = _floor_map(light.sunshine, SHADOW_TEXELS, self._environment)
+        sky = _floor_map(light.skylight, SKYLIGHT_TEXELS, self._environment)
+        sunlight = FLOOR_COLOR * SUNLIGHT * FLOOR_SUN * self._environment.sun[2]
+        color = self._background + in_colors(self._fade * (sunny @ sun.ravel()), sunlight)
         # more than half of the sky is dark where something stands: contact shadows
-        arriving = np.stack([self._fade * sun, self._fade * sky**1.4], axis=1)
-        color[self._floor] += np.einsum("nk,kj->nj", arriving, np.stack([sunlight, skylight]))
+        shade = (bright @ sky.ravel()) ** 1.4
+        color += in_colors(self._fade * shade, FLOOR_COLOR * SKYLIGHT_UP)
         return color
 
 

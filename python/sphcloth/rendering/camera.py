@@ -43,6 +43,11 @@ def columns(vectors: NDArray, kind: type = np.float32) -> NDArray:
     return np.asarray(vectors, kind, order="F")
 
 
+def in_colors(shares: NDArray, color: NDArray[np.float64]) -> NDArray:
+    """Return shares of a color, shape (N,), as colors, shape (N, 3), with contiguous columns."""
+    return np.multiply.outer(color.astype(shares.dtype), shares).T
+
+
 @dataclass(frozen=True)
 class Camera:
     """A pinhole camera.

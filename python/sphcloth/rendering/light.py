@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,18 +157,28 @@ class _ShadowMap:
         """
         straight = self._look(places)
         rise = np.where(np.isfinite(straight), straight - near, 0)
-        least = MIN_RISE * self.view.radius
-        reach = np.maximum(rise, least) * (SUN_SLOPE / self.view.pixel)
-        # where the straight ray meets nothing, the others stay as close as this
-        aside = int(np.ceil(least * SUN_SLOPE / self.view.pixel))
-        around = ndimage.maximum_filter(self.nearness.reshape(self.view.shape), 2 * aside + 1)
-        shaded = np.isfinite(straight) | (around.ravel()[_texels(places, self.view)] > near)
+        reach = np.maximum(rise, self._least_rise) * (SUN_SLOPE / self.view.pixel)
+        shaded = np.isfinite(straight) | (self._around[_texels(places, self.view)] > near)
         blocked = np.zeros(len(near), np.float32)
         (some,) = np.nonzero(shaded)
         places, near, reach = places[some], near[some], reach[some]
         for slope in _spiral(rays):
             blocked[some] += self._look(places + reach[:, None] * slope) > near
         return blocked / rays
+
+    @property
+    def _least_rise(self) -> float:
+        return MIN_RISE * self.view.radius
+
+    @cached_property
+    def _around(self) -> NDArray[np.float64]:
+        """What is nearest to the light of all that other rays meet where the straight one does not.
+
+        They lean aside by what belongs to the least rise.
+        """
+        aside = int(np.ceil(self._least_rise * SUN_SLOPE / self.view.pixel))
+        nearness = self.nearness.reshape(self.view.shape)
+        return ndimage.maximum_filter(nearness, 2 * aside + 1).ravel()
 
     def _look(self, places: NDArray) -> NDArray[np.float64]:
         """Return what is nearest to the light at places, shape (N, 2)."""

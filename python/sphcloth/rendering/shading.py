@@ -85,7 +85,7 @@ class View:
         """Look at the floor, which stays as it is."""
         self._camera, self._environment = camera, environment
         self._backdrop = Backdrop.of(camera, environment)
-        self._behind = sampled(self._backdrop.nearness, camera)
+        self._behind = sampled(self._backdrop.nearness.astype(np.float32), camera)
 
     def draw(self, geometry: Geometry) -> NDArray[np.uint8]:
         """Return a picture, shape (height, width, 3)."""
@@ -165,7 +165,7 @@ class _Patch:
 
     pixel: NDArray[np.int32]
     face: NDArray[np.int32]
-    nearness: NDArray[np.float64]
+    nearness: NDArray[np.float32]
     rays: NDArray[np.float32]
     stretch: NDArray[np.float32]
     points: NDArray[np.float32]
@@ -175,7 +175,7 @@ class _Patch:
         """Find out where the rays through some samples end."""
         nearness = visible.nearness[pixel]
         rays = camera.rays(pixel).astype(np.float32)
-        points = rays / nearness.astype(np.float32)[:, None]
+        points = rays / nearness[:, None]
         stretch = np.sqrt(_dot(rays, rays))
         return cls(pixel, visible.face[pixel], nearness, rays / stretch[:, None], stretch, points)
 
@@ -380,7 +380,7 @@ def _measured(
 def _refracted(camera: Camera, patch: _Patch, normals: NDArray, path: NDArray) -> NDArray[np.int32]:
     """Return the samples behind water to which refraction leads, shape (F,)."""
     aside = (1 / INDEX - 1) * in_axes(normals, camera.axes[:2]) * path[:, None]
-    depth = (1 / patch.nearness).astype(np.float32)
+    depth = 1 / patch.nearness
     shift = np.round(aside * (np.float32(camera.focal) / (depth + path))[:, None]).astype(np.int32)
     width, height = camera.size
     row = patch.pixel // width

@@ -18,9 +18,9 @@ from sphcloth.rendering.light import SKYLIGHT_UP, SUNLIGHT, Light
 FLOOR_COLOR = np.array([0.31, 0.36, 0.40])
 BACKDROP_LOW, BACKDROP_HIGH = np.array([0.40, 0.50, 0.57]), np.array([0.10, 0.15, 0.21])
 # its light is looked up in maps of a square around the scene, whose half side is in radii of it,
-# and it fades into the background from a distance on
+# and it fades into the background from a distance on, until nothing of it is left
 SHADOW_TEXELS, SKYLIGHT_TEXELS, FLOOR_REACH = 360, 90, 1.5
-FADE_FROM, FADE_WIDTH = 0.6, 1.6
+FADE_FROM, FADE_WIDTH, FADED = 0.6, 1.6, 100.0
 # the floor is a little less bright than its color says: it is the background
 FLOOR_SUN = 0.75
 
@@ -66,7 +66,7 @@ class Backdrop:
         depth = np.divide(1, nearness, out=np.zeros_like(nearness), where=is_floor)
         start = (camera.position - environment.center)[:2] / environment.radius
         away = columns(start + (depth / environment.radius)[:, None] * rays[:, :2])
-        beyond = np.maximum(np.hypot(*away.T) - FADE_FROM, 0) / FADE_WIDTH
+        beyond = np.clip(np.hypot(*away.T) - FADE_FROM, 0, FADED) / FADE_WIDTH
         fade = np.where(is_floor, np.exp(-(beyond**2)), 0)
         up = columns(np.clip(0.45 + rays[:, 2:] / 0.8, 0, 1) ** 2)
         background = in_colors(1 - up[:, 0], BACKDROP_LOW) + in_colors(up[:, 0], BACKDROP_HIGH)

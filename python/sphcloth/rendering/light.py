@@ -158,9 +158,9 @@ class _ShadowMap:
         straight = self._look(places)
         rise = np.where(np.isfinite(straight), straight - near, 0)
         reach = np.maximum(rise, self._least_rise) * (SUN_SLOPE / self.view.pixel)
-        shaded = np.isfinite(straight) | (self._around[_texels(places, self.view)] > near)
+        dim = np.isfinite(straight) | (self._around[_texels(places, self.view)] > near)
+        some = np.flatnonzero(dim)
         blocked = np.zeros(len(near), np.float32)
-        (some,) = np.nonzero(shaded)
         places, near, reach = places[some], near[some], reach[some]
         for slope in _spiral(rays):
             blocked[some] += self._look(places + reach[:, None] * slope) > near

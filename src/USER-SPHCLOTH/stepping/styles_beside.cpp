@@ -11,10 +11,6 @@
 #include "force.h"
 #include "modify.h"
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-
 using namespace LAMMPS_NS;
 
 static void check_steps(LAMMPS *lmp, const std::string &label)
@@ -63,38 +59,14 @@ static void check_density(LAMMPS *lmp, const std::string &label)
           utils::strmatch(fix->style, "^deform") ? ", or 'remap v'" : "");
 }
 
-// Does this fix deform count steps?  Such a fix hands out its dimensions in a record for restart
-// files alone: the size of what follows, and six structures that begin with the style of one.
-
-static bool counts_steps(Fix *deform)
-{
-  enum { FINAL = 1, DELTA, SCALE, VEL, ERATE, TRATE, VOLUME, WIGGLE };
-  constexpr int SIZE = 272;    // of each structure
-  char *record = nullptr;
-  std::size_t length = 0;
-  std::FILE *fp = open_memstream(&record, &length);
-  if (!fp) return false;
-  deform->write_restart(fp);
-  std::fclose(fp);
-  bool counts = false;
-  for (std::size_t at = sizeof(int); at + SIZE <= length && at < 6 * SIZE; at += SIZE) {
-    int style;
-    std::memcpy(&style, record + at, sizeof(int));
-    counts = counts || (style >= FINAL && style <= TRATE) || style == WIGGLE;
-  }
-  std::free(record);
-  return counts;
-}
-
 static void warn_of_rates(LAMMPS *lmp, const std::string &label)
 {
   if (lmp->comm->me) return;
-  for (Fix *fix : lmp->modify->get_fix_by_style("^deform"))
-    if (counts_steps(fix))
-      lmp->error->warning(FLERR,
-                          "{}: fix {} {} takes all steps for as long as the first one, and steps "
-                          "vary, so its rates are wrong: give it the style 'variable', by the time",
-                          label, fix->id, fix->style);
+  for (const Fix *fix : lmp->modify->get_fix_by_style("^deform"))
+    lmp->error->warning(FLERR,
+                        "{}: fix {} {} takes all steps for as long as the first one, and steps "
+                        "vary, so rates are wrong but by its style 'variable', from the time",
+                        label, fix->id, fix->style);
 }
 
 void LAMMPS_NS::check_styles_beside(LAMMPS *lmp, const std::string &label, SteppingScheme scheme,

@@ -49,11 +49,11 @@ double BoundaryMesh::margin() const
   return OF_SKIN * skin;
 }
 
-void BoundaryMesh::find_positions()
+template <class OfVertex> void BoundaryMesh::find_positions(OfVertex of_vertex)
 {
   double step_sq = 0.0, since_sq = 0.0;
   for (std::size_t s = 0; s < positions.size(); s++) {
-    const Vec3 now = set->position(static_cast<int>(s));
+    const Vec3 now = of_vertex(static_cast<int>(s));
     step_sq = std::max(step_sq, (now - positions[s]).squaredNorm());
     since_sq = std::max(since_sq, (now - list_positions[s]).squaredNorm());
     positions[s] = now;
@@ -115,7 +115,7 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
     find_candidates(p, support + skin);
     if (near.empty()) continue;
     Seeker seeker{i, support, p, 0.0, 0, 0, borders.size(), 0};
-    store_candidates(seeker);
+    store_candidates(seeker, p);
     border_grid.query(Box(p), [&](int b) {
       const Vec3 gap = gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]);
       if (gap.norm() <= FROM_BORDER * support + skin) borders.push_back(edges[b]);
@@ -148,9 +148,9 @@ void BoundaryMesh::find_candidates(const Vec3 &p, double within)
   });
 }
 
-void BoundaryMesh::store_candidates(Seeker &seeker)
+void BoundaryMesh::store_candidates(Seeker &seeker, const Vec3 &p)
 {
-  seeker.at = position_of(atom->x[seeker.particle]);
+  seeker.at = p;
   seeker.path = path;
   seeker.first = candidates.size();
   candidates.insert(candidates.end(), near.begin(), near.end());
@@ -174,14 +174,31 @@ bool BoundaryMesh::is_beyond(const Vec3 &p, const Seeker &seeker, const ClosestP
 
 void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points)
 {
+  find_closest_points_at(
+      sheet, closest_points, [this](int s) { return set->position(s); },
+      [this](int i) { return position_of(atom->x[i]); });
+}
+
+void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points,
+                                       const std::vector<Vec3> &of_vertices,
+                                       const std::function<Vec3(int)> &of_particle)
+{
+  find_closest_points_at(
+      sheet, closest_points, [&of_vertices](int s) { return of_vertices[s]; }, of_particle);
+}
+
+template <class OfVertex, class OfParticle>
+void BoundaryMesh::find_closest_points_at(int sheet, std::vector<ClosestPoint> &closest_points,
+                                          OfVertex of_vertex, OfParticle of_particle)
+{
   if (seekers.empty()) return;
-  find_positions();
+  find_positions(of_vertex);
   for (Seeker &seeker : seekers) {
-    const Vec3 p = position_of(atom->x[seeker.particle]);
+    const Vec3 p = of_particle(seeker.particle);
     double nearer = path - seeker.path + (p - seeker.at).norm();    // at most, than then
     if (nearer > margin()) {
       find_candidates(p, seeker.reach + skin);
-      store_candidates(seeker);
+      store_candidates(seeker, p);
       nearer = 0.0;
     }
     ClosestPoint closest;

@@ -26,14 +26,6 @@ using Columns = BlockColumns;
 
 static constexpr double SLOW_BEFORE_SLEEP = 20.0, SLEEP_BESIDE_ACTIVE = 100.0;
 
-template <class Act> void SleepingWater::for_neighbors(int i, Act act)
-{
-  for (int t = 1; t <= atom->ntypes; t++) {
-    const NeighborSpan near = state.fluid->neighbors(i, t);
-    for (int k = 0; k < near.n; k++) act(near.of[k]);
-  }
-}
-
 bool SleepingWater::is_slow(int i) const
 {
   const double *v = atom->v[i], limit = state.options.sleep;
@@ -47,10 +39,17 @@ bool SleepingWater::is_at_rest(int i)
   if (!is_slow(i)) since = now;
   if (now - since < SLOW_BEFORE_SLEEP * limits.sound_time(i) || state.fluid->feels_moving_wall(i))
     return false;
-  bool others = true;
-  for_neighbors(
-      i, [&](int j) { others = others && (is_slow(j) || !state.fluid->inside_support(i, j)); });
-  return others;
+  return all_neighbors_are_slow(i);
+}
+
+bool SleepingWater::all_neighbors_are_slow(int i) const
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const NeighborSpan near = state.fluid->neighbors(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (!is_slow(near.of[k]) && state.fluid->inside_support(i, near.of[k])) return false;
+  }
+  return true;
 }
 
 void SleepingWater::find_resting()
@@ -132,11 +131,19 @@ bool SleepingWater::gains_speed(int i, double force_sq) const
 void SleepingWater::mark_beside_moving_boundaries()
 {
   for (const int i : state.boundaries)
-    if (!is_slow(i))
-      for_neighbors(i, [&](int j) {
-        if (state.asleep[j] && state.fluid->inside_support(i, j))
-          state.mark_atom(j, BlockState::WAKE);
-      });
+    if (!is_slow(i)) wake_neighbors(i);
+}
+
+void SleepingWater::wake_neighbors(int i)
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const NeighborSpan near = state.fluid->neighbors(i, t);
+    for (int k = 0; k < near.n; k++) {
+      const int j = near.of[k];
+      if (state.asleep[j] && state.fluid->inside_support(i, j))
+        state.mark_atom(j, BlockState::WAKE);
+    }
+  }
 }
 
 bool SleepingWater::has_slept_long(int i, double now) const

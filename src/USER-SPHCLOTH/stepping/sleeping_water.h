@@ -52,7 +52,8 @@ class SleepingWater : protected Pointers {
 
   bool is_at_rest(int i);
   bool gains_speed(int i, double force_sq) const;
-  template <class Act> void for_neighbors(int i, Act act);
+  bool all_neighbors_are_slow(int i) const;
+  void wake_neighbors(int i);
 };
 
 }    // namespace LAMMPS_NS

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from sphcloth.log import ThermoTable
+from sphcloth.rendering.movie import COMPRESSION
 
 # of a share: particles that were poured between two rows count as if they were there all the time
 ROUNDING = 0.05
@@ -30,7 +31,7 @@ def plot_history(table: ThermoTable, path: Path) -> None:
     draw_active_share(upper, table)
     draw_density_deviation(lower, table)
     lower.set_xlabel("time")
-    FigureCanvasAgg(figure).print_figure(path, dpi=120)
+    _write(figure, path)
 
 
 def draw_time_step(axes: Axes, table: ThermoTable) -> None:
@@ -86,5 +87,11 @@ def contact_sheet(pictures: Sequence[Path], captions: Sequence[str], path: Path)
         axes.axis("off")
     for axes, picture, caption in zip(grid.flat, pictures, captions, strict=False):
         axes.imshow(image.imread(picture))
-        axes.set_title(caption, fontsize=11)
-    FigureCanvasAgg(figure).print_figure(path, dpi=120)
+        # a height that is given need not be found from ticks
+        axes.set_title(caption, fontsize=11, y=1.0)
+    _write(figure, path)
+
+
+def _write(figure: Figure, path: Path) -> None:
+    options = {"compress_level": COMPRESSION}
+    FigureCanvasAgg(figure).print_figure(path, dpi=120, pil_kwargs=options)

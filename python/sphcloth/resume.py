@@ -14,8 +14,8 @@ import warnings
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from sphcloth.dump import frame_texts
 from sphcloth.errors import UserError
-from sphcloth.trajectory import frame_texts
 
 BEFORE = ".before"
 # the last bytes of a restart file

@@ -1,4 +1,8 @@
-"""Run a packaged example through LAMMPS, with a progress bar."""
+"""Run a packaged example through LAMMPS, with a progress bar.
+
+What measures and draws takes longer to load than all else before LAMMPS starts: it is loaded while
+LAMMPS runs.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +10,23 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 import yaml
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
-from sphcloth.log import error_lines
 from sphcloth.programs import endings_interrupt, kill, lammps_on
 from sphcloth.results import make_folder
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
-from sphcloth.summary import summarize
-from sphcloth.trajectory import has_frame
 
 LOG, SCREEN = "log.lammps", "screen.txt"
 POLL_SECONDS = 0.2
@@ -83,7 +87,8 @@ def run_example(
     _remove_old_results(out)
     copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
-    outcome = run_lammps(command, out, t_end, console)
+    with _loading(["sphcloth.summary", *(["sphcloth.pictures"] if frames else [])]):
+        outcome = run_lammps(command, out, t_end, console)
     join(log, dump)
     if outcome.interrupted and (first_step(log) is None or not has_frame(dump)):
         console.print("[yellow]stopped before the first row and frame: nothing to sum up[/]")
@@ -94,12 +99,23 @@ def run_example(
         _show_failure(out, outcome.status, console)
         return 1
     with console.status("measuring and drawing"):
+        from sphcloth.summary import summarize
+
         summary = summarize(out, name, frames)
     for file in (out / "summary.json", json_file):
         if file is not None:
             summary.write(file)
     summary.show(console)
     return 0 if summary.passed and not outcome.interrupted else 1
+
+
+@contextmanager
+def _loading(modules: Sequence[str]) -> Iterator[None]:
+    """Load modules beside the block; one that cannot be loaded says so where it is imported."""
+    with ThreadPoolExecutor(1) as pool:
+        for module in modules:
+            pool.submit(import_module, module)
+        yield
 
 
 def _go_on(example: Example, out: Path, log: Path, dump: Path) -> dict[str, str]:
@@ -219,14 +235,14 @@ def _follow(log: Path, process: subprocess.Popen[bytes]) -> Iterator[dict[str, f
             file.seek(offset)
             *lines, rest = (rest + file.read()).split("\n")
             offset = file.tell()
-        row = None
+        newest = None
         for line in lines:
             if line.startswith("keywords: ["):
-                names = yaml.safe_load(line)["keywords"]
+                names, newest = yaml.safe_load(line)["keywords"], None
             elif line.startswith("  - [") and names:
-                row = dict(zip(names, map(float, yaml.safe_load(line)[0]), strict=True))
-        if row and "Time" in row:
-            yield row
+                newest = line
+        if newest and "Time" in names:
+            yield dict(zip(names, map(float, yaml.safe_load(newest)[0]), strict=True))
 
 
 def _progress(console: Console) -> Progress:
@@ -273,6 +289,8 @@ def wait_for_lammps(command: list[str], out: Path, timeout: float) -> int | None
 
 def last_words(out: Path) -> list[str]:
     """Return the last words of LAMMPS, or else of the launcher in a folder."""
+    from sphcloth.log import error_lines
+
     screen = (out / SCREEN).read_text(errors="replace").splitlines()
     return error_lines(out / LOG) or screen[-5:]
 

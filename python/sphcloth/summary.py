@@ -10,21 +10,20 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from sphcloth import metrics, plots
+from sphcloth import metrics
 from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.fix_values import set_by
 from sphcloth.log import ThermoTable
 from sphcloth.metrics.intersections import REMEDY, most_met
-from sphcloth.rendering.command import draw_frames, evenly_spaced, make_scene, samples
-from sphcloth.rendering.movie import write_pictures
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
 from sphcloth.results import show_rows, text, versions, write_json
 from sphcloth.roles import Roles
-from sphcloth.trajectory import Frame, Trajectory
+from sphcloth.trajectory import Frame, Trajectory, samples
 
-SHEET_PICTURES = 6
 CONTACT = "cloth/contact"
+# columns of a dump that are measured, beside those that every dump has
+MEASURED = ("rho", "ix", "iy", "iz")
 
 
 @dataclass(frozen=True)
@@ -150,17 +149,24 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         UserError: a file is missing or cannot be read.
     """
     table = ThermoTable.read(folder / "log.lammps")
-    trajectory = Trajectory(folder / f"{name}.lammpstrj", folder / "log.lammps")
+    trajectory = Trajectory(folder / f"{name}.lammpstrj", table, MEASURED)
     roles = Roles.read(folder / f"{name}.data")
-    scene_roles = SceneRoles.of(samples(trajectory), roles, Choice())
+    some = samples(trajectory)
+    scene_roles = SceneRoles.of(some, roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
     poured = _last_count(table, "v_poured")
     can_count = "v_updates" in table or "v_fluid" in table
     updates = metrics.particle_updates(table) if can_count else None
-    evidence = Evidence.of_log(folder / "log.lammps")
+    evidence = Evidence.of_log(folder / "log.lammps", table)
     porous = evidence.commands.porous(scene_roles.mesh)
     counted = table if can_balance else None
     water = Water.of(trajectory, scene_roles, counted, roles.rest_density, porous)
+    pictures = []
+    if frames is not None:
+        # takes long to load, and a run without pictures has no use for it
+        from sphcloth.pictures import draw
+
+        pictures = draw(trajectory, some, scene_roles, table, folder, frames)
     layers = any(fix.value("cloth", "no") == "yes" for fix in evidence.commands.styled(CONTACT))
     return Summary(
         time=float(table["Time"][-1]),
@@ -181,7 +187,7 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         step_set_by=evidence.commands.steps_by_limit,
         particle_updates=updates,
         updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
-        pictures=[] if frames is None else draw(trajectory, scene_roles, table, folder, frames),
+        pictures=pictures,
         versions=versions(),
         unused=unused(evidence),
     )
@@ -288,22 +294,6 @@ def _counted(
         if table is not None and len(fluid) == 1:
             metrics.check_fluid_count(table, frame, *fluid)
         yield frame
-
-
-def draw(
-    trajectory: Trajectory, scene_roles: SceneRoles, table: ThermoTable, folder: Path, frames: int
-) -> list[str]:
-    """Draw the contact sheet, the plot and evenly spaced frames; return the paths as text."""
-    chosen = evenly_spaced(len(trajectory), frames)
-    scene = make_scene(samples(trajectory), scene_roles)
-    images = draw_frames(trajectory, scene, chosen)
-    pictures = list(write_pictures(images, "png", folder / "pictures", ""))
-    sheet, history = folder / "contact_sheet.png", folder / "history.png"
-    shown = evenly_spaced(len(pictures), SHEET_PICTURES)
-    captions = [f"t = {trajectory.times[chosen[place]]:.3g}" for place in shown]
-    plots.contact_sheet([pictures[place] for place in shown], captions, sheet)
-    plots.plot_history(table, history)
-    return [str(path) for path in (sheet, history, *pictures)]
 
 
 def _intersections(scene_roles: SceneRoles, trajectory: Trajectory) -> int | None:

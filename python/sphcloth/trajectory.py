@@ -7,36 +7,23 @@ indexed once and each frame's text goes to MDAnalysis' reader on its own.
 from __future__ import annotations
 
 import io
-import itertools
-import re
-import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from MDAnalysis.coordinates.LAMMPS import DumpReader
 from MDAnalysis.lib.util import NamedStream
 from numpy.typing import NDArray
 
+from sphcloth.dump import HEADER_LINES, REQUIRED_COLUMNS, Entry, index
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
 
-REQUIRED_COLUMNS = ("id", "type", "x", "y", "z")
-
-# line of a frame's header -> how it must begin
-_HEADER = {
-    0: "ITEM: TIMESTEP",
-    2: "ITEM: NUMBER OF ATOMS",
-    4: "ITEM: BOX BOUNDS",
-    8: "ITEM: ATOMS",
-}
-_HEADER_LINES = 9
-# what LAMMPS counts has 64 bits
-_COUNT = re.compile(r"[0-9]{1,18}")
-# and is exact as a number of double precision up to here
+# frames that are looked at before measuring or drawing, to find what there is
+SAMPLE = 8
+# what LAMMPS counts is exact as a number of double precision up to here
 _MOST = 2.0**53
 
 
@@ -115,30 +102,22 @@ class Frame:
         return np.stack([self.columns[name] for name in names], axis=1)
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """Where one frame stands in the file, and its header."""
-
-    offset: int
-    size: int
-    line: int
-    step: int
-    natoms: int
-    box: NDArray[np.float64]
-    columns: list[str]
-    periodic: tuple[bool, ...]
-    tilt: tuple[float, ...]
-
-
 class Trajectory(Sequence[Frame]):
     """The frames of a text dump (``dump custom``), read when they are asked for."""
 
-    def __init__(self, dump: str | Path, log: str | Path | None = None) -> None:
+    def __init__(
+        self,
+        dump: str | Path,
+        log: str | Path | ThermoTable | None = None,
+        columns: Collection[str] | None = None,
+    ) -> None:
         """Index a dump file.
 
         Args:
             dump: text dump with at least the columns id, type, x, y and z; columns are numbers.
-            log: log of the same run, for the physical time of each frame.
+            log: log of the same run, or its table, for the physical time of each frame.
+            columns: those that frames shall have beside these five, as far as they are in the
+                dump; None for all. What is left out takes no time.
 
         A last frame that is not complete is left out with a warning.
 
@@ -149,14 +128,16 @@ class Trajectory(Sequence[Frame]):
         if not self.path.is_file():
             raise UserError(f"no dump file {self.path}")
         with self.path.open("rb") as file:
-            self._entries = list(_index(file, self.path))
+            self._entries = list(index(file, self.path))
         if not self._entries:
             raise UserError(f"{self.path} holds no complete frame")
         self.steps = np.array([entry.step for entry in self._entries])
         self.counts = np.array([entry.natoms for entry in self._entries])
         self.times = np.full(len(self.steps), np.nan)
         if log is not None:
-            self.times = ThermoTable.read(log).time_at(self.steps)
+            table = log if isinstance(log, ThermoTable) else ThermoTable.read(log)
+            self.times = table.time_at(self.steps)
+        self._columns = None if columns is None else {*REQUIRED_COLUMNS, *columns}
 
     def __len__(self) -> int:
         return len(self._entries)
@@ -164,121 +145,60 @@ class Trajectory(Sequence[Frame]):
     def __getitem__(self, index: int) -> Frame:  # type: ignore[override]
         """Read one frame; negative indices count from the end."""
         entry = self._entries[index]
-        columns = _read_columns(self.path, entry)
+        names = [name for name in entry.columns if self._columns is None or name in self._columns]
+        columns = _read_columns(self.path, entry, names)
         time = float(self.times[index])
         return Frame(entry.step, time, entry.box, columns, entry.periodic, entry.tilt)
 
 
-def frame_texts(dump: Path) -> Iterator[tuple[int, bytes]]:
-    """Yield the step and the text of each complete frame of a text dump.
-
-    Raises:
-        UserError: not a dump (with the line), or columns missing.
-    """
-    with dump.open("rb") as file, dump.open("rb") as texts:
-        for entry in _index(file, dump):
-            yield entry.step, texts.read(entry.size)
+def evenly_spaced(total: int, wanted: int) -> list[int]:
+    """Return up to ``wanted`` indices out of ``total``: the last, the first, and some between."""
+    last_first = np.linspace(total - 1, 0, min(wanted, total))
+    return np.unique(last_first.round().astype(int)).tolist()
 
 
-def has_frame(dump: Path) -> bool:
-    """Return whether there is a dump file with a complete frame."""
-    if not dump.is_file():
-        return False
-    with dump.open("rb") as file:
-        return next(_index(file, dump), None) is not None
+def samples(trajectory: Trajectory) -> list[Frame]:
+    """Return a few frames that tell what there is in a dump."""
+    return [trajectory[index] for index in evenly_spaced(len(trajectory), SAMPLE)]
 
 
-def _index(file: BinaryIO, path: Path) -> Iterator[_Entry]:
-    """Yield the place of each complete frame; warn about an incomplete last one."""
-    line, offset = 1, 0
-    while header := [
-        text.decode(errors="replace") for text in itertools.islice(file, _HEADER_LINES)
-    ]:
-        _check_header(header, path, line)
-        is_whole = len(header) == _HEADER_LINES and header[-1].endswith("\n")
-        natoms = int(header[3]) if is_whole else 0
-        if not is_whole or _skip_lines(file, natoms) < natoms:
-            warnings.warn(f"{path}: the frame at line {line} is cut off: left out", stacklevel=3)
-            return
-        columns, about_box = header[8].split()[2:], header[4].split()[3:]
-        is_tilted = about_box[:3] == ["xy", "xz", "yz"]
-        bounds = _read_bounds(header[5:8], 3 if is_tilted else 2, path, line + 5)
-        end = file.tell()
-        periodic = tuple(flags == "pp" for flags in about_box[-3:])
-        tilt = tuple(bounds[:, 2]) if is_tilted else (0.0, 0.0, 0.0)
-        size, box = end - offset, bounds[:, :2].T
-        yield _Entry(offset, size, line, int(header[1]), natoms, box, columns, periodic, tilt)
-        line, offset = line + _HEADER_LINES + natoms, end
+class _FrameReader(DumpReader):
+    """Reads a text of one frame: there is no need to count the lines first."""
+
+    n_frames = 1
 
 
-def _read_bounds(rows: list[str], width: int, path: Path, line: int) -> NDArray[np.float64]:
-    """Return the numbers in the lines about the box, shape (3, width)."""
-    try:
-        bounds = np.array([row.split() for row in rows], dtype=np.float64)
-    except ValueError as error:
-        raise UserError(f"{path}, line {line}: not the bounds of a box") from error
-    if bounds.shape != (3, width) or not np.isfinite(bounds).all():
-        raise UserError(f"{path}, line {line}: not the bounds of a box")
-    return bounds
+def _read_columns(path: Path, entry: Entry, names: list[str]) -> dict[str, NDArray[np.float64]]:
+    """Return some columns of one frame, sorted by id.
 
-
-def _skip_lines(file: BinaryIO, wanted: int) -> int:
-    """Read past some lines; return how many of them were there with their end."""
-    return sum(row.endswith(b"\n") for row in itertools.islice(file, wanted))
-
-
-def _check_header(header: list[str], path: Path, line: int) -> None:
-    """Raise UserError where a complete line of a frame's header is not what it should be."""
-    complete = [text for text in header if text.endswith("\n")]
-    for number, text in enumerate(complete):
-        expected = _HEADER.get(number)
-        if expected and not text.startswith(expected):
-            raise UserError(
-                f"{path}, line {line + number}: expected '{expected}', found "
-                f"'{text.strip()[:60]}': a text dump without 'dump_modify time' or 'units' is read"
-            )
-        if number in (1, 3) and not _COUNT.fullmatch(text.strip()):
-            raise UserError(f"{path}, line {line + number}: '{text.strip()[:60]}' is no count")
-        if number == 4 and len(text.split()) not in (6, 9):
-            raise UserError(
-                f"{path}, line {line + number}: '{text.strip()[:60]}' does not say, as in "
-                "'xy xz yz pp pp ff', how a box along the axes is tilted and bounded"
-            )
-    if len(complete) == _HEADER_LINES:
-        _check_columns(complete[8].split()[2:], path)
-
-
-def _check_columns(columns: list[str], path: Path) -> None:
-    absent = [name for name in REQUIRED_COLUMNS if name not in columns]
-    if absent:
-        raise UserError(
-            f"{path} lacks the column {' '.join(absent)}: write it with "
-            "'dump ID all custom N FILE id type x y z vx vy vz rho'"
-        )
-    if len(set(columns)) < len(columns):
-        raise UserError(f"{path} has two columns of one name: {' '.join(columns)}")
-
-
-def _read_columns(path: Path, entry: _Entry) -> dict[str, NDArray[np.float64]]:
-    """Return all columns of one frame, sorted by id.
-
-    Positions are asked for as additional columns: those stay float64 and where they are, whereas
-    the reader's own positions are float32 and shifted by the box's lower corner.
+    All are asked for as additional columns: those stay float64 and where they are, whereas the
+    reader's own positions are float32 and shifted by the box's lower corner. Velocities and forces
+    have other names for the reader, which would also make a float32 copy of them.
     """
     with path.open("rb") as file:
         file.seek(entry.offset)
         text = file.read(entry.size).decode(errors="replace")
-    stream = NamedStream(io.StringIO(text), f"{path.name}.lammpsdump")
+    *head, rows = text.split("\n", HEADER_LINES)
+    head[-1] = " ".join(["ITEM: ATOMS", *map(_renamed, entry.columns)])
+    renamed = "\n".join([*head, rows])
+    stream = NamedStream(io.StringIO(renamed), f"{path.name}.lammpsdump")
     try:
-        reader = DumpReader(stream, "unscaled", additional_columns=entry.columns, dt=1.0)
+        reader = _FrameReader(
+            stream, "unscaled", additional_columns=[_renamed(name) for name in names], dt=1.0
+        )
     except (ValueError, IndexError) as error:
         raise UserError(f"{path}, line {_bad_line(text, entry)}: not a row of numbers") from error
-    columns = {name: reader.ts.data[name] for name in entry.columns}
+    columns = {name: reader.ts.data[_renamed(name)] for name in names}
     _check_atoms(columns, path, entry)
     return columns
 
 
-def _check_atoms(columns: dict[str, NDArray[np.float64]], path: Path, entry: _Entry) -> None:
+def _renamed(column: str) -> str:
+    """Return the name of a column for the reader, which knows an ID and a place by their names."""
+    return column if column in ("id", "x", "y", "z") else f"column_{column}"
+
+
+def _check_atoms(columns: dict[str, NDArray[np.float64]], path: Path, entry: Entry) -> None:
     """Raise UserError where an atom is there twice, or has an ID or type that none can have."""
     where = f"{path}, frame at line {entry.line}"
     for name in ("id", "type"):
@@ -290,9 +210,9 @@ def _check_atoms(columns: dict[str, NDArray[np.float64]], path: Path, entry: _En
         raise UserError(f"{where}: atom {twice[0]:.0f} is there twice")
 
 
-def _bad_line(text: str, entry: _Entry) -> int:
+def _bad_line(text: str, entry: Entry) -> int:
     """Return the line in the file of the first atom whose row cannot be read."""
-    for number, row in enumerate(text.splitlines()[_HEADER_LINES:], entry.line + _HEADER_LINES):
+    for number, row in enumerate(text.splitlines()[HEADER_LINES:], entry.line + HEADER_LINES):
         try:
             values = [float(field) for field in row.split()]
         except ValueError:

@@ -7,6 +7,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "contact/find_layers.h"
+#include "contact/order_of_fixes.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_pbd_cloth.h"
@@ -82,6 +83,7 @@ void FixClothContact::init()
   cloths = cloths_before(lmp, this, label);
   for (const FixPBDCloth *cloth : cloths) vertex_bits |= cloth->groupbit;
   check_group();
+  warn_of_reflection_after(lmp, this, label);
   for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth));
   if (surfaces.empty() && options.obstacle_groups.empty())
     error->all(FLERR,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Drag in pores: it acts on particles where they have moved to in a step, before the cloth follows.
+// Drag in pores: particles have moved in a step when it slows them, before the cloth follows.
 
 #include "fix_cloth_pores.h"
 

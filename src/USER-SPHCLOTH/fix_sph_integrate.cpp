@@ -17,6 +17,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "stepping/make_stepper.h"
+#include "stepping/styles_beside.h"
 #include "update.h"
 
 #include <algorithm>
@@ -92,6 +93,7 @@ void FixSPHIntegrate::init()
   run_style_drives = run_style != nullptr;
   const SteppingScheme wanted = run_style ? run_style->stepping_scheme() : options.scheme;
   options.check(wanted, control.times, *fluid, label, error);
+  check_styles_beside(lmp, label, wanted, *fluid);
   use_scheme(wanted, BlockClock());
   take_up_restored_step();
   if (update->whichflag == 2 && updates_some())
@@ -197,6 +199,11 @@ void FixSPHIntegrate::end_of_step()
                "{}: with run_style sph/adaptive {} rerun would update the particles that are due "
                "alone: use 'run_style verlet' before",
                label, scheme_name(scheme));
+  if (!has_moved && fluid->integrates_density())
+    error->all(FLERR,
+               "{}: rerun reads no densities, and 'density continuity' would take those of before: "
+               "use 'density summation' or 'density calibrated'",
+               label);
   if (!run_style_drives) finish_step();
 }
 

@@ -15,6 +15,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cstring>
@@ -94,6 +95,11 @@ void PairSPHTait::init_style()
     error->all(FLERR,
                "{}: c0 follows the flow where fix sph/integrate takes the steps: add it, or give a "
                "constant 'c0 C'",
+               STYLE);
+  if (update->whichflag == 2 && fluid.integrates_density())
+    error->all(FLERR,
+               "{}: minimize moves particles without velocities, and 'density continuity' follows "
+               "velocities: use 'density summation' or 'density calibrated'",
                STYLE);
   fluid.lattices.set_masses();    // 'mass' may have come since
   comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;

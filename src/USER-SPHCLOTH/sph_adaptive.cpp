@@ -13,6 +13,7 @@
 #include "fix_sph_integrate.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
+#include "group.h"
 #include "improper.h"
 #include "kspace.h"
 #include "lammps_util/arg_reader.h"
@@ -105,8 +106,18 @@ void SPHAdaptive::set_up_atoms()
   neighbor->ncalls = 0;
 }
 
+// LAMMPS fills a dynamic group in the setup of its fix, when time bins have been chosen.
+
+void SPHAdaptive::fill_dynamic_group()
+{
+  if (!group->dynamic[particles->igroup]) return;
+  const std::string fills = std::string("GROUP_") + group->names[particles->igroup];
+  if (Fix *fix = modify->get_fix_by_id(fills)) fix->setup(vflag);
+}
+
 void SPHAdaptive::set_up_forces()
 {
+  fill_dynamic_group();
   force->setup();
   ev_set(update->ntimestep);
   force_clear();

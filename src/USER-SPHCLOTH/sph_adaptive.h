@@ -31,6 +31,7 @@ class SPHAdaptive : public Verlet, public HasSteppingScheme {
   bool fluid_alone;    // pair_style sph/tait without others
 
   void set_up_atoms();
+  void fill_dynamic_group();
   void set_up_forces();
   void move();
   void communicate();

@@ -69,13 +69,22 @@ BOOST_AUTO_TEST_CASE(what_is_behind_is_in_the_lee_and_what_is_before_or_beside_i
   BOOST_TEST(share_of_moved({0, -3, 0}, {0, -1, 0}) == 0.0);
 }
 
-BOOST_AUTO_TEST_CASE(the_picture_has_a_depth_and_triangles_a_size)
+BOOST_AUTO_TEST_CASE(the_picture_has_a_depth_and_triangles_a_size_whatever_the_axes)
 {
-  const Triangle one{Vector3d(0, 0, 1), Vector3d(0.2, 0, 1), Vector3d(0, 0.4, 1)};
-  const Triangle other{Vector3d(0, 0, 4), Vector3d(0.6, 0, 4), Vector3d(0, 0.1, 4)};
-  const Seen seen({one, other}, Vector3d(0, 0, 5));
-  BOOST_TEST(seen.shadow.mean_size() == 0.5, boost::test_tools::tolerance(1e-12));
-  BOOST_TEST(seen.shadow.depth() == 3.0, boost::test_tools::tolerance(1e-12));
+  const Triangle one{Vector3d(0, 0, 1), Vector3d(0.3, 0, 1), Vector3d(0, 0.4, 1)};
+  const Triangle other{Vector3d(0, 0, 4), Vector3d(0.6, 0, 5), Vector3d(0, 0.8, 4)};
+  Eigen::Matrix3d cyclic;
+  cyclic << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  const Eigen::Matrix3d oblique(Eigen::AngleAxisd(0.5, Vector3d(1, 2, -3).normalized()));
+  for (const Eigen::Matrix3d &turn :
+       {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), cyclic, oblique}) {
+    const auto turned = [&](const Triangle &t) {
+      return Triangle{turn * t[0], turn * t[1], turn * t[2]};
+    };
+    const Seen seen({turned(one), turned(other)}, turn * Vector3d(0, 0, 5));
+    BOOST_TEST(seen.shadow.mean_size() == 0.6, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(seen.shadow.depth() == 4.0, boost::test_tools::tolerance(1e-12));
+  }
   const Seen none({}, Vector3d(1, 0, 0));
   BOOST_TEST(none.shadow.mean_size() == 0.0);
   BOOST_TEST(none.shadow.depth() == 0.0);

@@ -7,8 +7,12 @@ is loaded only because a module lies in it does not count.
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
+
+import pytest
 
 import sphcloth
 
@@ -37,3 +41,19 @@ def imported(path: Path) -> set[str]:
 def test_no_module_imports_itself_by_way_of_others() -> None:
     assert len(FILES) > 100
     TopologicalSorter({name: imported(path) for name, path in FILES.items()}).prepare()
+
+
+# what a command is to do without waiting for: modules that take long to load
+@pytest.mark.parametrize(
+    ("module", "absent"),
+    [
+        ("sphcloth.run", ["MDAnalysis", "scipy", "matplotlib", "vtkmodules", "trimesh"]),
+        ("sphcloth.summary", ["matplotlib", "vtkmodules", "trimesh"]),
+        ("sphcloth.pictures", ["trimesh"]),
+    ],
+)
+def test_nothing_is_loaded_that_is_not_needed(module: str, absent: list[str]) -> None:
+    script = f"import sys, {module}; print(*({set(absent)} & set(sys.modules)))"
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout.split() == []

@@ -17,7 +17,7 @@ from test_render_surface import block
 from sphcloth import cli
 from sphcloth.errors import UserError
 from sphcloth.plots import contact_sheet
-from sphcloth.rendering import command, light, movie, scene, shading
+from sphcloth.rendering import backdrop, command, light, movie, scene
 from sphcloth.rendering.scene import Scene
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
 from sphcloth.roles import Roles
@@ -31,7 +31,7 @@ SIZE = (96, 72)
 def draw_small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Spend no time on what a small picture does not show."""
     monkeypatch.setattr(scene, "FINE_TRIANGLES", 5000)
-    monkeypatch.setattr(shading, "SHADOW_TEXELS", 60)
+    monkeypatch.setattr(backdrop, "SHADOW_TEXELS", 60)
     monkeypatch.setattr(light, "SUN_PIXELS", 200)
 
 

@@ -11,9 +11,10 @@ from trimesh.graph import connected_component_labels
 from sphcloth.rendering import light
 from sphcloth.rendering.camera import Camera, ParallelView
 from sphcloth.rendering.light import Light, Spheres
+from sphcloth.rendering.particles import Particles
 from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Particles, Surface, water_surface
+from sphcloth.rendering.surface import Surface, water_surface
 
 MESH, SHEET = square_sheet(6)
 SIZE = (96, 72)
@@ -108,7 +109,7 @@ def test_pixels_belong_to_the_triangle_that_holds_their_middle() -> None:
     shape, rng = (20, 30), np.random.default_rng(1)
     places = rng.uniform(-8, 36, (40, 3, 2))
     near = rng.uniform(1, 2, (40, 3))
-    visible = nearest(triangle_fragments(places, near, shape), 600)
+    visible = nearest(triangle_fragments(places, near, shape), np.full(600, -np.inf))
     rows, columns = np.divmod(np.arange(600), 30)
     middles = np.stack([columns + 0.5, rows + 0.5], 1)
     best = np.full(600, -np.inf)

@@ -16,10 +16,10 @@ from rich.console import Console
 
 import sphcloth.run
 from sphcloth import examples
+from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.run import run_example
 from sphcloth.stress.processes import descendants
-from sphcloth.trajectory import has_frame
 
 SCRIPT = f"""\
 variable        t_end index 0.5

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import dump_frame
+from MDAnalysis.coordinates.LAMMPS import DumpReader
 
 from sphcloth.errors import UserError
+from sphcloth.log import ThermoTable
 from sphcloth.trajectory import Trajectory
 
 COLUMNS = "id type x y z vx vy vz rho"
@@ -37,6 +39,29 @@ def test_atoms_come_sorted_by_id_with_all_their_columns(write_dump: WriteDump) -
     assert frame.select(2).ids.tolist() == [1]
 
 
+def test_columns_are_those_that_mdanalysis_reads(write_dump: WriteDump) -> None:
+    columns = f"{COLUMNS} fx fy fz mass"
+    dump = write_dump(dump_frame(5, [[*row, 7, 8, 9, 0.25] for row in MANY], columns))
+    theirs = DumpReader(str(dump), "unscaled", additional_columns=True, dt=1.0, format=None).ts
+    ours = Trajectory(dump)[0]
+    assert list(ours.columns) == columns.split()
+    for name in ("type", "rho", "mass"):
+        assert ours.columns[name].tolist() == theirs.data[name].tolist()
+    np.testing.assert_allclose(ours.velocities, theirs.velocities)
+    np.testing.assert_allclose(ours.vectors("fx", "fy", "fz"), theirs.forces)
+    np.testing.assert_allclose(ours.positions - ours.box[0], theirs.positions, atol=1e-6)
+
+
+def test_columns_that_are_not_asked_for_are_left_out(write_dump: WriteDump) -> None:
+    dump = write_dump(dump_frame(0, FEW, COLUMNS))
+    frame = Trajectory(dump, columns=["rho", "ix"])[0]
+    assert list(frame.columns) == ["id", "type", "x", "y", "z", "rho"]
+    whole = Trajectory(dump)[0]
+    assert all(np.array_equal(frame.columns[name], whole.columns[name]) for name in frame.columns)
+    with pytest.raises(UserError, match="line 11: not a row of numbers"):
+        Trajectory(write_dump(dump_frame(0, FEW, COLUMNS).replace("7 1 3", "7 1 l")), columns=[])[0]
+
+
 def test_positions_are_those_of_the_script(write_dump: WriteDump) -> None:
     text = dump_frame(0, FEW, COLUMNS).replace(" 3 1 2 ", " 3.000000123456 1 2 ")
     frame = Trajectory(write_dump(text))[0]
@@ -49,6 +74,7 @@ def test_time_comes_from_the_log(write_dump: WriteDump, tmp_path: Path) -> None:
     log.write_text("---\nkeywords: ['Step', 'Time', ]\ndata:\n  - [0, 0, ]\n  - [9, 0.3, ]\n...\n")
     dump = write_dump(dump_frame(0, FEW, COLUMNS) + dump_frame(9, MANY, COLUMNS))
     assert [frame.time for frame in Trajectory(dump, log)] == [0, 0.3]
+    assert Trajectory(dump, ThermoTable.read(log)).times.tolist() == [0, 0.3]
     assert np.isnan(Trajectory(dump)[1].time)
 
 

@@ -156,6 +156,49 @@ def test_a_restart_file_from_within_a_run_continues_with_the_same_lee(tmp_path):
     assert two[-1] == one[-1]
 
 
+def turned_by(degrees, axis):
+    """Rotation matrix, of Rodrigues."""
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = np.radians(degrees)
+    return np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across
+
+
+@pytest.mark.parametrize(("degrees", "axis"), [(120, (1, 1, 1)), (30, (1, -2, 3))])
+def test_the_lee_turns_with_the_scene(degrees, axis):
+    """Two free sheets across an oblique wind: it is found anew many times."""
+
+    def at_the_end(turn):
+        def words(*vector):
+            return " ".join(f"{each:.17g}" for each in turn @ vector)
+
+        def square(center, first, second):
+            return (
+                "create_cloth 1 0.5 size 0.6 0.6 spacing 0.05 group cloth "
+                f"center {words(*center)} axes {words(*first)} {words(*second)}\n"
+            )
+
+        script = (
+            header("p p p")
+            + cloth_box("-2 2 -2 2 -2 2", 1)
+            + square((0, 0, 0), (1, 0.2, 0.1), (0, 1, 0.3))
+            + square((0.2, 0.1, 0.3), (1, -0.2, 0.3), (0.3, 1, 0))
+            + stiffness("1.0", "0.1")
+            + f"pair_style zero 0.2\npair_coeff * *\n{no_other_bonds()}{neighbor(0.03)}"
+            + "fix s cloth pbd/cloth\ntimestep 2e-3\n"
+            + f"fix air cloth cloth/air density 1.2 wind {words(1, 2, 3)} shaded yes\n"
+        )
+        with instance() as lmp:
+            lmp.commands_string(script + "run 120")
+            return by_id(lmp, "x"), by_id(lmp, "v")
+
+    x, v = at_the_end(np.eye(3))
+    turn = turned_by(degrees, axis)
+    turned = at_the_end(turn)
+    np.testing.assert_allclose(turned[0], x @ turn.T, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(turned[1], v @ turn.T, rtol=0, atol=1e-9)
+
+
 # added mass
 
 AREAL, THICKNESS = 0.5, 0.4

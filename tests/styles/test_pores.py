@@ -156,7 +156,10 @@ def test_density_by_continuity_has_that_flux_too():
         assert flux(lmp) == pytest.approx(exact(8000, 0, length), rel=0.01)
 
 
-def gauze(pores="darcy 500", *, types=1, areal=2.0, v=-3.0, contact="", free=False):
+WATER = "-0.2 0.2 -0.2 0.2 0.1 0.3"
+
+
+def gauze(pores="darcy 500", *, types=1, areal=2.0, v=-3.0, contact="", free=False, density=""):
     """A sheet, pinned at its rim or free, of one triangle type, which a block of water meets."""
     pin = "" if free else " pin rim pins"
     return (
@@ -166,10 +169,10 @@ def gauze(pores="darcy 500", *, types=1, areal=2.0, v=-3.0, contact="", free=Fal
         + "region rim block -0.39 0.39 -0.39 0.39 INF INF side out units box\n"
         + sheet(2, areal, "0.8 0.8", SPACING, f"center 0 0 0 group cloth{pin}")
         + lattice(SPACING)
-        + filled("water", "-0.2 0.2 -0.2 0.2 0.1 0.3")
+        + filled("water", WATER)
         + "group water type 1\n"
         + f"velocity water set 0.3 -0.2 {v} units box\n"
-        + sph_tait(f"1 1 fluid {RHO} c0 30 alpha 0.1", "2 2 none")
+        + sph_tait(f"1 1 fluid {RHO} c0 30 alpha 0.1", "2 2 none", options=density)
         + stiffness("1.0", "0.1")
         + f"set group cloth angle {types}\n"
         + no_other_bonds()
@@ -277,6 +280,71 @@ def test_any_number_of_ranks_and_a_restart_give_the_same(tmp_path, ranks):
         run(write(folder, script), each)
         results.append(np.loadtxt(folder / "out.txt"))
     np.testing.assert_allclose(results[1], results[0], rtol=1e-8)
+
+
+PERIOD = 2.0  # of the box of gauze()
+DENSITIES = ["density summation", "density continuity"]
+
+
+def one_by_one():
+    across, up = SPACING * (np.arange(-4, 4) + 0.5), SPACING * (np.arange(2, 6) + 0.5)
+    return "".join(
+        f"create_atoms 1 single {x:.3f} {y:.3f} {z:.3f} units box\n"
+        for z in up
+        for y in across
+        for x in across
+    )
+
+
+def drifting(density="density summation", *, frame=(0, 0, 0), moved=(0, 0, 0), wiggled=False):
+    """The jet and a free sheet, or one that is moved to and fro, elsewhere or in a moving frame."""
+    of_frame, by = (" ".join(map(str, vector)) for vector in (frame, moved))
+    script = gauze("darcy 500 screen 0.2 0.002", free=True, density=density)
+    script = script.replace("sph/integrate global", "sph/integrate constant")
+    # their IDs do not depend on the number of ranks
+    script = script.replace(filled("water", WATER), one_by_one())
+    if wiggled:
+        script = script.replace("fix s cloth pbd/cloth", "fix s cloth move wiggle 0 0 0.02 0.05")
+        script = script.replace("cloth/contact 0.01", "cloth/contact 0.01 obstacle cloth")
+    return script.replace(
+        "timestep 5e-4\n",
+        "displace_atoms water random 0.005 0.005 0.005 88 units box\n"
+        f"displace_atoms all move {by} units box\nset group water sph/rho {RHO}\n"
+        f"velocity all set {of_frame} sum yes units box\ntimestep 1e-3\n",
+    )
+
+
+def moved_by(folder, script, ranks=1, steps=60):
+    """Positions, which are unwrapped, and velocities."""
+    tell = "write_dump all custom end id xu yu zu vx vy vz modify sort id format float %.17g\n"
+    folder.mkdir()
+    run(write(folder, script + f"run {steps}\n" + tell), ranks)
+    rows = np.loadtxt(folder / "end", skiprows=9)[:, 1:]
+    return rows[:, :3], rows[:, 3:]
+
+
+@pytest.mark.parametrize("wiggled", [False, True])
+@pytest.mark.parametrize("density", DENSITIES)
+@pytest.mark.parametrize(("ranks", "by"), [(2, (0, 0, 0)), (4, (0, 0, 0)), (1, (0.93, 1.04, 0.97))])
+def test_ranks_and_periodic_faces_do_not_matter(tmp_path, wiggled, density, ranks, by):
+    """Their ghosts know how fast vertices are, and where they are."""
+    script = drifting(density, wiggled=wiggled)
+    one = moved_by(tmp_path / "one", script)
+    x, v = moved_by(tmp_path / "other", drifting(density, moved=by, wiggled=wiggled), ranks)
+    offset = x - by - one[0]
+    offset -= PERIOD * np.round(offset / PERIOD)
+    np.testing.assert_allclose(offset, 0, atol=1e-11)
+    np.testing.assert_allclose(v, one[1], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("density", DENSITIES)
+def test_a_moving_frame_does_not_matter(tmp_path, density):
+    """In it the sheet moves in a step, by much of the layer in which water feels it."""
+    frame, steps = np.array([0.5, 0.2, 2.0]), 60
+    x, v = moved_by(tmp_path / "at_rest", drifting(density), steps=steps)
+    moving = moved_by(tmp_path / "moving", drifting(density, frame=frame), steps=steps)
+    np.testing.assert_allclose(moving[0] - 1e-3 * steps * frame, x, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(moving[1] - frame, v, rtol=0, atol=1e-9)
 
 
 ERRORS = [

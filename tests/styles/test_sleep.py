@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from block_scenes import SPLASH
-from harness import by_id, instance
+from harness import by_id, instance, last_frame, run, write
 from scenes import (
     FLUID,
     box,
@@ -161,3 +161,77 @@ def test_a_reset_of_the_time_neither_hastens_nor_delays_sleep(reset):
             awake.append(steps_awake(lmp))
     assert awake[0] > 20
     assert awake[1] == awake[0]
+
+
+# unequal steps do not save so much: all that is awake takes the same step
+EQUAL = "gain 100"
+SHAKEN = "velocity all ramp vx 0.1 0.3 z -0.3 0.5 sum yes units box\n"
+
+
+def equal_splash(limits="sleep 0.01"):
+    """The script; atoms have the same IDs on any number of ranks."""
+    script = SPLASH.format(
+        scheme="block", limits=f"{limits} {EQUAL}", ceiling=1e-3, end=10, height=0.3
+    )
+    return script.replace("set group", "reset_atoms id sort yes\nset group", 1)
+
+
+def test_while_nothing_sleeps_the_keyword_changes_nothing():
+    """Neither a digit nor the evaluations of pairs."""
+    found = []
+    for limits in ("", "sleep 1e-9"):
+        lmp = instance()
+        lmp.commands_string(equal_splash(limits) + SHAKEN + "run 120")
+        assert sleepers(lmp) == 0
+        found.append((by_id(lmp, "x"), by_id(lmp, "v"), lmp.extract_fix("step", 0, 1, 35)))
+    (x, v, pairs), (x_sleep, v_sleep, pairs_sleep) = found
+    assert np.array_equal(x, x_sleep) and np.array_equal(v, v_sleep)
+    assert pairs == pairs_sleep > 0
+
+
+def test_equal_steps_beside_water_that_sleeps():
+    """As with a small uniform step, with fewer updates."""
+    reference, _ = splash("constant", ceiling=2e-4)
+    awake, updates = splash("block", EQUAL)
+    woken, fewer = splash("block", f"sleep 0.01 {EQUAL}")
+    assert awake == pytest.approx(reference, rel=0.02)
+    assert woken == pytest.approx(awake, rel=0.002)
+    assert fewer < 0.8 * updates
+
+
+DUMPED = (
+    "dump final all custom 1 {name} id x y z vx vy vz\ndump_modify final sort id format float %.17g"
+)
+SLEEPY, STEPS = 90, 60
+
+
+@pytest.fixture(scope="module")
+def while_some_sleep(tmp_path_factory):
+    """The state after a drop has fallen into a pool that sleeps in part, on one rank."""
+    folder = tmp_path_factory.mktemp("sleep")
+    text = equal_splash() + f'run {SLEEPY}\nprint "sleep $(f_step[30])"\nrun {STEPS}\n'
+    text += 'print "sleep $(f_step[30])"\n' + DUMPED.format(name="all.dump") + "\nrun 0\n"
+    said = run(write(folder, text))
+    asleep = [float(line.split()[1]) for line in said.splitlines() if line.startswith("sleep ")]
+    assert asleep[0] > 100 and asleep[-1] < asleep[0]  # the drop wakes some
+    return folder, last_frame(folder / "all.dump")
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_equal_steps_beside_sleeping_water_on_any_number_of_ranks(while_some_sleep, ranks):
+    folder, one = while_some_sleep
+    text = equal_splash() + f"run {SLEEPY}\nrun {STEPS}\n"
+    name = f"all{ranks}.dump"
+    run(write(folder, text + DUMPED.format(name=name) + "\nrun 0\n", f"in.{ranks}"), ranks)
+    np.testing.assert_allclose(last_frame(folder / name), one, rtol=0, atol=1e-9)
+
+
+def test_equal_steps_beside_sleeping_water_go_on_from_a_restart_file(while_some_sleep):
+    """The file is written while the drop is in the water, and some of that sleeps."""
+    folder, one = while_some_sleep
+    text = equal_splash()
+    run(write(folder, text + f"run {SLEEPY}\nrun {STEPS // 2}\nwrite_restart half.rst\n", "in.a"))
+    settings = text[text.index("pair_style") :].replace("velocity falls", "#")
+    go_on = f"read_restart half.rst\nneighbor 0.03 bin\n{settings}\nrun {SLEEPY + STEPS} upto\n"
+    run(write(folder, go_on + DUMPED.format(name="half.dump") + "\nrun 0\n", "in.b"))
+    np.testing.assert_allclose(last_frame(folder / "half.dump"), one, rtol=0, atol=1e-9)

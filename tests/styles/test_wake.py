@@ -162,3 +162,50 @@ def test_what_sleeps_is_not_shifted():
         after = by_id(lmp, "x")
         assert after[384, 2] > before[384, 2] + 0.01
         assert np.array_equal(after[:384], before[:384])
+
+
+# Two halves of a column between walls of LAMMPS, at rest; what holds the upper one goes away.
+COLUMN = (
+    header("f f f", FLUID)
+    + box("-0.2 1 -0.2 0.6 -0.4 0.8", 2)
+    + lattice(0.05)
+    + filled("low", "0 0.2 0 0.2 0 0.1")
+    + filled("high_region", "0 0.2 0 0.2 0.1 0.2", 2)
+    + "group lower type 1\ngroup high type 2\n"
+    + sph_tait("* * fluid 1000 c0 20 alpha 0.5 spacing 0.05", options="density calibrated")
+    + neighbor(0.03)
+    + """timestep 4e-3
+fix gravity all gravity 9.81 vector 0 0 -1
+fix sides all wall/sph xlo 0 xhi 0.2 ylo 0 yhi 0.2 {floor}
+fix step all sph/integrate global sleep 0.3 gain 1
+run_style sph/adaptive block
+thermo_modify lost ignore
+run 400
+"""
+)
+PLANE, REFLECTING = "zlo 0", "\nfix floor all wall/reflect zlo 0 units box"
+GOES_AWAY = {
+    "water that evaporates": (PLANE, "fix gone lower evaporate 5 20 low 777"),
+    "a floor of LAMMPS": (REFLECTING, "unfix floor"),
+    "water that another type does not feel any more": (PLANE, "neigh_modify exclude type 1 2"),
+}
+
+
+@pytest.mark.parametrize("name", GOES_AWAY)
+def test_water_falls_when_lammps_takes_away_what_it_slept_on(name):
+    floor, command = GOES_AWAY[name]
+    with instance() as lmp:
+        lmp.commands_string(COLUMN.format(floor=floor))
+        assert lmp.extract_fix("step", 0, 1, 29) == 64
+        lmp.commands_string("variable z atom z\ncompute height high reduce ave v_z\nrun 0")
+        before = lmp.extract_compute("height", 0, 0)
+        lmp.commands_string(f"{command}\nrun 60")
+        assert lmp.extract_compute("height", 0, 0) < before - 0.03
+
+
+def test_water_sleeps_on_beside_fixes_that_move_nothing():
+    with instance() as lmp:
+        lmp.commands_string(COLUMN.format(floor=PLANE))
+        before = by_id(lmp, "x")
+        lmp.commands_string("fix mean all ave/time 1 1 1 c_thermo_temp\nrun 20")
+        assert np.array_equal(by_id(lmp, "x"), before)

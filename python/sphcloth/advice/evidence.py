@@ -35,9 +35,16 @@ class Evidence:
     time: float
 
     @classmethod
-    def of_log(cls, log: Path) -> Evidence:
-        """Take a finished run from its log; a column ``v_x`` counts as what x stands for."""
-        commands, table = Commands.read(log), ThermoTable.read(log)
+    def of_log(cls, log: Path, table: ThermoTable | None = None) -> Evidence:
+        """Take a finished run from its log; a column ``v_x`` counts as what x stands for.
+
+        Args:
+            log: of the run.
+            table: what was read of it before; None reads it.
+        """
+        commands = Commands.read(log)
+        if table is None:
+            table = ThermoTable.read(log)
         columns = dict(table.columns)
         stand_for = {f"v_{name}": formula for name, formula in commands.variables.items()}
         for name, values in table.columns.items():

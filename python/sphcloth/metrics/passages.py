@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -70,7 +71,7 @@ def above_sheet(mesh: ClothMesh, frame: Frame, fluid_type: int = 1) -> NDArray[n
     positions = frame.select(fluid_type).positions
     corners = mesh.corners(frame)
     plan = np.broadcast_to(positions[:, :2], (2, len(positions), 2))
-    footprint = np.stack([corners.min(axis=1), corners.max(axis=1)])[:, :, :2]
+    footprint = _boxes(corners[:, :, :2].swapaxes(0, 1))
     particle, triangle = _overlapping_boxes(plan, footprint)
     height = _height_over(positions[particle], corners[triangle])
     above = np.zeros(len(positions), dtype=bool)
@@ -105,9 +106,8 @@ def _net_passes(paths: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:
     Returns:
         Indices of the particles, shape (K,), and where they passed, shape (K, 3).
     """
-    sweeps = np.stack([corners.min(axis=(0, 2)), corners.max(axis=(0, 2))])
-    boxes = np.stack([paths.min(axis=0), paths.max(axis=0)])
-    particle, triangle = _overlapping_boxes(boxes, sweeps)
+    sweeps = _boxes([*corners[0].swapaxes(0, 1), *corners[1].swapaxes(0, 1)])
+    particle, triangle = _overlapping_boxes(_boxes(paths), sweeps)
     pair, moment, direction = _passes(paths[:, particle], corners[:, triangle])
     passing = particle[pair]
     net = np.bincount(passing, weights=direction, minlength=paths.shape[1])
@@ -192,6 +192,15 @@ def _height_over(positions: NDArray, corners: NDArray) -> NDArray[np.float64]:
 def _plan_area(u: NDArray, v: NDArray) -> NDArray:
     """Return twice the signed area that two vectors span in the x-y plane."""
     return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+
+
+def _boxes(points: Sequence[NDArray] | NDArray) -> NDArray[np.float64]:
+    """Return the lower and upper corners of the boxes around K points each, shape (2, N, D).
+
+    Args:
+        points: K arrays of shape (N, D).
+    """
+    return np.stack([functools.reduce(bound, points) for bound in (np.minimum, np.maximum)])
 
 
 def _overlapping_boxes(left: NDArray, right: NDArray) -> tuple[NDArray, NDArray]:

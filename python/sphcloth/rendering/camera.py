@@ -29,9 +29,23 @@ def axes_towards(direction: NDArray[np.float64]) -> NDArray[np.float64]:
 def in_axes(vectors: NDArray, axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the components of vectors, shape (N, 3), along axes, the rows of a (K, 3) matrix.
 
-    For so small a matrix the threads of a matrix product cost more than they bring.
+    For so small a matrix the threads of a matrix product cost more than they bring. What is
+    returned has the type of the vectors, and its columns are contiguous.
     """
-    return np.einsum("nj,kj->nk", vectors, axes)
+    return np.einsum("kj,nj->kn", axes.astype(vectors.dtype, copy=False), vectors).T
+
+
+def columns(vectors: NDArray, kind: type = np.float32) -> NDArray:
+    """Return vectors, shape (N, 3), with contiguous columns.
+
+    Arithmetic keeps that order, and is several times as fast as on rows of three.
+    """
+    return np.asarray(vectors, kind, order="F")
+
+
+def in_colors(shares: NDArray, color: NDArray[np.float64]) -> NDArray:
+    """Return shares of a color, shape (N,), as colors, shape (N, 3), with contiguous columns."""
+    return np.multiply.outer(color.astype(shares.dtype), shares).T
 
 
 @dataclass(frozen=True)
@@ -118,11 +132,12 @@ class Camera:
 
         Their length is such that a depth times a ray leads from the camera to the point.
         """
-        row, column = np.divmod(pixels, self.size[0])
+        row = pixels // self.size[0]
+        column = pixels - row * self.size[0]
         across = (column + 0.5 - self.size[0] / 2) / self.focal
         upwards = (self.size[1] / 2 - row - 0.5) / self.focal
-        right, up, back = self.axes
-        return across[:, None] * right + upwards[:, None] * up - back
+        right, up, back = self.axes[:, :, None]
+        return (across * right + upwards * up - back).T
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,8 @@ from sphcloth.rendering.scene import Scene
 from sphcloth.rendering.scene_roles import QUANTITIES, Choice, SceneRoles
 from sphcloth.results import write_json
 from sphcloth.roles import Roles, parse_types
-from sphcloth.trajectory import Frame, Trajectory
+from sphcloth.trajectory import Frame, Trajectory, evenly_spaced, samples
 
-# frames that are looked at before drawing, to find one view and one scale for all
-SAMPLE = 8
 # views of a turntable around a single frame
 TURNTABLE_VIEWS = 72
 MIN_SIZE, MAX_SIZE = 16, 4096
@@ -103,12 +101,6 @@ class Report:
     seconds_per_picture: float
 
 
-def evenly_spaced(total: int, wanted: int) -> list[int]:
-    """Return up to ``wanted`` indices out of ``total``: the last, the first, and some between."""
-    last_first = np.linspace(total - 1, 0, min(wanted, total))
-    return np.unique(last_first.round().astype(int)).tolist()
-
-
 def make_choice(
     fluid: str | None, cloth: str | None, spacing: float | None, color_by: str
 ) -> Choice:
@@ -127,11 +119,6 @@ def make_choice(
         spacing,
         None if color_by == "none" else color_by,
     )
-
-
-def samples(trajectory: Trajectory) -> list[Frame]:
-    """Return a few frames that tell what there is in a dump."""
-    return [trajectory[index] for index in evenly_spaced(len(trajectory), SAMPLE)]
 
 
 def make_scene(frames: Sequence[Frame], roles: SceneRoles, view: View | None = None) -> Scene:

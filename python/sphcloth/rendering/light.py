@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from sphcloth.rendering.camera import ParallelView, in_axes
-from sphcloth.rendering.raster import disc_fragments, nearest, triangle_fragments
+from sphcloth.rendering.camera import ParallelView, columns, in_axes
+from sphcloth.rendering.raster import disc_fragments, triangle_fragments
 from sphcloth.rendering.surface import Surface
 
 SUN_PIXELS, SUN_RAYS = 900, 24
@@ -27,8 +28,11 @@ MIN_RISE = 0.12
 WATER_SHADE, WATER_SKY_SHADE = 0.45, 0.35
 # cosines of the angles from the sun in which the lamp that water mirrors fades
 SOFTBOX_EDGE = (0.93, 0.965)
+SUNLIGHT = np.array([1.0, 0.94, 0.84]) * 1.55
+SKYLIGHT_UP, SKYLIGHT_DOWN = np.array([0.50, 0.60, 0.74]), np.array([0.36, 0.33, 0.30])
 GROUND, HORIZON, ZENITH = (
-    np.array(color) for color in ((0.42, 0.43, 0.46), (0.86, 0.90, 0.95), (0.34, 0.52, 0.78))
+    np.array(color, np.float32)
+    for color in ((0.42, 0.43, 0.46), (0.86, 0.90, 0.95), (0.34, 0.52, 0.78))
 )
 
 
@@ -75,16 +79,17 @@ class Light:
         maps = (_ShadowMap.of(view, solids, spheres), _ShadowMap.of(view, [water], []))
         parts = [*(solid.points for solid in solids), *(part.centers for part in spheres)]
         grains = np.concatenate([np.zeros((0, 3)), *parts])
+        dusts = [columns(dust, np.float64) for dust in (grains, water.points)]
         sky = []
         for direction in sky_directions(SKY_DIRECTIONS):
             view = ParallelView(direction, *room, SKY_PIXELS)
-            sky.append(tuple(_ShadowMap.of_points(view, dust) for dust in (grains, water.points)))
+            sky.append(tuple(_ShadowMap.of_points(view, dust) for dust in dusts))
         return cls(sun, maps, sky)
 
     def sunshine(self, points: NDArray, normals: NDArray) -> NDArray[np.float64]:
         """Return the share of the sun that points see, shape (N,)."""
         solid, water = self.maps
-        start = points + 2.5 * solid.view.pixel * normals
+        start = columns(points + 2.5 * solid.view.pixel * normals, np.float64)
         places, near = solid.view.project(start)
         blocked = solid.blocked_softly(places, near, SUN_RAYS)
         wet = water.blocked_softly(places, near, SUN_RAYS // 2)
@@ -93,14 +98,18 @@ class Light:
     def skylight(self, points: NDArray, normals: NDArray) -> NDArray[np.float64]:
         """Return the share of the sky over their tangent planes that points see, shape (N,)."""
         total, seen = np.full(len(points), 1e-9), np.full(len(points), 1e-9)
+        points, normals = columns(points, np.float64), columns(normals, np.float64)
+        starts = points + 2.0 * self.sky[0][0].view.pixel * normals
         for solid, water in self.sky:
-            cosine = np.maximum(_along(normals, solid.view.direction), 0)
-            places, near = solid.view.project(points + 2.0 * solid.view.pixel * normals)
+            cosine = _along(normals, solid.view.direction)
+            # the others do not see this part of the sky
+            turned = np.flatnonzero(cosine > 0)
+            places, near = solid.view.project(starts[turned])
             clear = ~solid.blocked(places, near) * (
                 1 - WATER_SKY_SHADE * water.blocked(places, near)
             )
-            total += cosine
-            seen += cosine * clear
+            total[turned] += cosine[turned]
+            seen[turned] += cosine[turned] * clear
         return seen / total
 
 
@@ -119,8 +128,8 @@ class _ShadowMap:
         for surface in surfaces:
             places, near = view.project(surface.points)
             corners = surface.triangles
-            parts = triangle_fragments(places[corners], near[corners], view.shape)
-            np.maximum(nearness, nearest(parts, len(nearness)).nearness, out=nearness)
+            for part in triangle_fragments(places[corners], near[corners], view.shape):
+                np.maximum.at(nearness, part.pixel, part.nearness)
         for part in spheres:
             places, near = view.project(part.centers)
             for discs in disc_fragments(places, part.radius / view.pixel, view.shape):
@@ -132,10 +141,9 @@ class _ShadowMap:
     def of_points(cls, view: ParallelView, points: NDArray) -> _ShadowMap:
         """Take points for all of a surface; they are denser than pixels, or nearly."""
         places, near = view.project(points)
-        nearness = np.full(view.shape, -np.inf)
-        column, row = np.floor(np.clip(places, 0, view.pixels - 1)).astype(np.int64).T
-        np.maximum.at(nearness, (row, column), near)
-        return cls(view, _bordered(ndimage.maximum_filter(nearness, 2)))
+        nearness = np.full(view.pixels**2, -np.inf)
+        np.maximum.at(nearness, _texels(places, view), near)
+        return cls(view, _bordered(ndimage.maximum_filter(nearness.reshape(view.shape), 2)))
 
     def blocked(self, places: NDArray, near: NDArray) -> NDArray[np.bool_]:
         """Return whether something is between the light and points of its view, shape (N,)."""
@@ -149,17 +157,38 @@ class _ShadowMap:
         """
         straight = self._look(places)
         rise = np.where(np.isfinite(straight), straight - near, 0)
-        reach = np.maximum(rise, MIN_RISE * self.view.radius) * (SUN_SLOPE / self.view.pixel)
-        blocked = sum(
-            (self._look(places + reach[:, None] * slope) > near).astype(np.float32)
-            for slope in _spiral(rays)
-        )
+        reach = np.maximum(rise, self._least_rise) * (SUN_SLOPE / self.view.pixel)
+        dim = np.isfinite(straight) | (self._around[_texels(places, self.view)] > near)
+        some = np.flatnonzero(dim)
+        blocked = np.zeros(len(near), np.float32)
+        places, near, reach = places[some], near[some], reach[some]
+        for slope in _spiral(rays):
+            blocked[some] += self._look(places + reach[:, None] * slope) > near
         return blocked / rays
+
+    @property
+    def _least_rise(self) -> float:
+        return MIN_RISE * self.view.radius
+
+    @cached_property
+    def _around(self) -> NDArray[np.float64]:
+        """What is nearest to the light of all that other rays meet where the straight one does not.
+
+        They lean aside by what belongs to the least rise.
+        """
+        aside = int(np.ceil(self._least_rise * SUN_SLOPE / self.view.pixel))
+        nearness = self.nearness.reshape(self.view.shape)
+        return ndimage.maximum_filter(nearness, 2 * aside + 1).ravel()
 
     def _look(self, places: NDArray) -> NDArray[np.float64]:
         """Return what is nearest to the light at places, shape (N, 2)."""
-        column, row = np.clip(places, 0, self.view.pixels - 1).astype(np.int32).T
-        return self.nearness[row * self.view.pixels + column]
+        return self.nearness[_texels(places, self.view)]
+
+
+def _texels(places: NDArray, view: ParallelView) -> NDArray[np.int32]:
+    """Return the numbers of the pixels of a view at places, shape (N, 2); the nearest ones."""
+    column, row = np.clip(places, 0, view.pixels - 1).astype(np.int32).T
+    return row * view.pixels + column
 
 
 def _bordered(nearness: NDArray) -> NDArray[np.float64]:
@@ -200,7 +229,7 @@ def surroundings(directions: NDArray, sun: NDArray) -> NDArray[np.float64]:
     behind = _along(directions, -sun * [1, 1, 0] / np.linalg.norm(sun[:2]))
     height_of_strip = _smooth_step(0.16 - np.abs(height[:, 0] - 0.38), 0, 0.08)
     strip = _smooth_step(behind, 0.3, 0.6) * height_of_strip
-    return light + (7.0 * key + 1.4 * strip)[:, None]
+    return light + (7 * key + 1.4 * strip)[:, None]
 
 
 def _smooth_step(values: NDArray, low: float, high: float) -> NDArray[np.float64]:

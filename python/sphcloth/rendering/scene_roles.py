@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
-from sphcloth.rendering.surface import REACH, WIDTH, Particles
+from sphcloth.rendering.particles import REACH, WIDTH, Particles
 from sphcloth.roles import Roles
 from sphcloth.strings import Strings
 from sphcloth.trajectory import Frame

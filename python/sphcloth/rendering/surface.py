@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -25,12 +25,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 
-# standard deviation of the weights and radius of a particle, in spacings: the radius is the
-# distance of the mean from the plane that bounds a half-space, sqrt(2/pi) standard deviations
-WIDTH = 0.78
-RADIUS = np.sqrt(2 / np.pi) * WIDTH
-# the weights end here, in standard deviations
-REACH = 3.2
+from sphcloth.rendering.particles import RADIUS, REACH, WIDTH, Particles
+
 # nodes of the grid in a spacing: as many as makes no more than the first number of nodes in all,
 # or the fewest; beyond the second number of nodes the grid is coarser than that
 MAX_NODES_PER_SPACING, MIN_NODES_PER_SPACING = 4.0, 2.0
@@ -44,33 +40,8 @@ MIN_WEIGHT = 1e-4
 DISTANCE_BLUR, BLUR_NODES, SMOOTHING_ROUNDS = 0.6, 2, 8
 # the grid is worked on in cubes of so many nodes a side, by so many threads
 BLOCK_NODES, THREADS = 64, 2
-
-
-@dataclass(frozen=True)
-class Particles:
-    """Particles of water to find the surface of.
-
-    Attributes:
-        positions: shape (N, 3).
-        spacing: the edge of the cube that each particle stands for, shape (N,).
-        values: a quantity to carry to the surface, shape (N,), or None.
-        room: lower and upper corner of the space that the water may fill, shape (2, 3): it ends
-            flat where a periodic box goes on.
-    """
-
-    positions: NDArray[np.float64]
-    spacing: NDArray[np.float64]
-    values: NDArray[np.float64] | None = None
-    room: NDArray[np.float64] = field(
-        default_factory=lambda: np.array([[-np.inf] * 3, [np.inf] * 3])
-    )
-
-    def select(self, chosen: NDArray) -> Particles:
-        """Return copies of some particles, by mask or index."""
-        values = None if self.values is None else self.values[chosen]
-        return replace(
-            self, positions=self.positions[chosen], spacing=self.spacing[chosen], values=values
-        )
+# the own nodes of a block among those on which sums are needed
+INNER = (slice(BLUR_NODES, -BLUR_NODES),) * 3
 
 
 @dataclass(frozen=True)
@@ -124,10 +95,14 @@ class _Grid:
         counts = np.ceil((high - low) / cell) + 2 * margin
         return cls(low - margin * cell, cell, tuple(int(count) for count in counts))
 
-    def nodes(self, axis: int) -> NDArray[np.float32]:
-        """Return the coordinates of the nodes along an axis, in cells, to be broadcast."""
+    def nodes(self, axis: int, margin: int = 0) -> NDArray[np.float32]:
+        """Return the coordinates of the nodes along an axis, in cells, to be broadcast.
+
+        So many nodes at both ends are left out.
+        """
         shape = [-1 if other == axis else 1 for other in range(3)]
-        return np.arange(self.shape[axis], dtype=np.float32).reshape(shape)
+        nodes = np.arange(margin, self.shape[axis] - margin, dtype=np.float32)
+        return nodes.reshape(shape)
 
 
 def _cell(extent: NDArray, nodes: int) -> float:
@@ -145,13 +120,13 @@ def water_surface(particles: Particles) -> Surface:
     values = None if particles.values is None else np.zeros(grid.shape, np.float32)
 
     def fill(block: _Block) -> None:
-        inner, near = block.inner, particles.select(block.particles)
-        moments = _Moments.of(near, block.grid)
+        moments = _Moments.of(particles.select(block.particles), block.grid, block.margin)
         # empty nodes are not to divide by zero; what they get is never looked at
         share = 1 / np.maximum(moments.weight, MIN_WEIGHT)
-        distance[block.place] = _distance(moments, share, block.grid, bound)[inner]
+        nodes = [block.grid.nodes(axis, block.margin) for axis in range(3)]
+        distance[block.place] = _distance(moments, share, nodes, bound)[INNER]
         if values is not None:
-            values[block.place] = (moments.values * share)[inner]
+            values[block.place] = (moments.values * share)[INNER]
 
     # matrices as small as these are slower by many threads each than one after another
     with threadpool_limits(1), ThreadPoolExecutor(THREADS) as pool:
@@ -166,13 +141,14 @@ class _Block:
 
     Attributes:
         grid: its nodes, and as many around them as their sums depend on.
-        inner: its own nodes among those.
+        margin: how many nodes at each side are there for the particles alone: sums are needed on
+            its own nodes and on ``BLUR_NODES`` around them.
         place: its own nodes in the whole grid.
         particles: those that its sums depend on, indices.
     """
 
     grid: _Grid
-    inner: tuple[slice, ...]
+    margin: int
     place: tuple[slice, ...]
     particles: NDArray[np.int64]
 
@@ -192,7 +168,7 @@ def _blocks(particles: Particles, grid: _Grid) -> Iterator[_Block]:
         if held.any() and np.all(start >= 0) and np.all(end > start):
             yield _Block(
                 _Grid(grid.origin + (start - reach) * grid.cell, grid.cell, tuple(shape.tolist())),
-                tuple(slice(reach, n - reach) for n in shape.tolist()),
+                reach - BLUR_NODES,
                 tuple(map(slice, start.tolist(), end.tolist())),
                 near[held],
             )
@@ -217,7 +193,7 @@ def _reached(places: NDArray, reach: int, side: int) -> Iterator[tuple[NDArray, 
 
 @dataclass(frozen=True)
 class _Moments:
-    """Sums over particles on all nodes, weighted, and lengths in cells from the origin.
+    """Sums over particles on nodes, weighted, and lengths in cells from the origin.
 
     Attributes:
         weight: the weights alone.
@@ -234,8 +210,11 @@ class _Moments:
     values: NDArray[np.float32] | None
 
     @classmethod
-    def of(cls, particles: Particles, grid: _Grid) -> _Moments:
-        """Sum over particles; each spacing has weights of its own width."""
+    def of(cls, particles: Particles, grid: _Grid, margin: int) -> _Moments:
+        """Sum over particles, on all nodes but those of a margin.
+
+        Each spacing has weights of its own width.
+        """
         total: list[NDArray[np.float32]] = []
         for spacing in np.unique(particles.spacing):
             chosen = particles.spacing == spacing
@@ -244,21 +223,25 @@ class _Moments:
             if particles.values is not None:
                 amounts.append(particles.values[chosen])
             width = WIDTH * spacing / grid.cell
-            fields = [_blur(field, width) for field in _deposit(places, amounts, grid.shape)]
+            fields = [
+                _blur(field, width, margin) for field in _deposit(places, amounts, grid.shape)
+            ]
             fields.append(fields[0] * np.float32(RADIUS * spacing / grid.cell))
             total = [a + b for a, b in zip(total, fields, strict=True)] if total else fields
         values = total[5] if particles.values is not None else None
         return cls(total[0], total[1:4], total[4], total[-1], values)
 
 
-def _distance(moments: _Moments, share: NDArray, grid: _Grid, bound: float) -> NDArray[np.float32]:
-    """Return on all nodes their distance from the water in cells, at most ``bound``."""
+def _distance(
+    moments: _Moments, share: NDArray, nodes: list[NDArray], bound: float
+) -> NDArray[np.float32]:
+    """Return the distance of nodes from the water in cells, at most ``bound``."""
     spread = moments.second * share
     away = np.zeros_like(spread)
-    for axis, first in enumerate(moments.first):
+    for first, places in zip(moments.first, nodes, strict=True):
         mean = first * share
         spread -= mean**2
-        away += (mean - grid.nodes(axis)) ** 2
+        away += (mean - places) ** 2
     radius = moments.radius * share
     spread /= np.maximum((WIDTH / RADIUS) * radius, MIN_WEIGHT) ** 2
     inside = (SPREAD_OF_GAP - spread) / (SPREAD_OF_GAP - SPREAD_OF_WATER)
@@ -298,14 +281,14 @@ def _deposit(
     return fields
 
 
-def _blur(field: NDArray[np.float32], width: float) -> NDArray[np.float32]:
-    """Smooth a field by a Gaussian of a width in cells that is 1 at its middle.
+def _blur(field: NDArray[np.float32], width: float, margin: int) -> NDArray[np.float32]:
+    """Smooth a field by a Gaussian of a width in cells that is 1 at its middle, less a margin.
 
     A matrix product along each axis: several times faster than a sum for each node.
     """
-    along_x, along_y, along_z = (_kernel(n, width) for n in field.shape)
-    field = (along_x @ field.reshape(len(field), -1)).reshape(field.shape)
-    return along_y @ (field @ along_z)
+    along_x, along_y, along_z = (_kernel(n, width)[margin : n - margin] for n in field.shape)
+    field = (along_x @ field.reshape(len(field), -1)).reshape(-1, *field.shape[1:])
+    return along_y @ (field @ along_z.T)
 
 
 @cache

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sphcloth.errors import UserError
-from sphcloth.rendering.command import evenly_spaced, samples
 from sphcloth.rendering.scene_roles import Choice, SceneRoles, check_positions
 from sphcloth.roles import Roles
-from sphcloth.trajectory import Frame, Trajectory
+from sphcloth.trajectory import Frame, Trajectory, evenly_spaced, samples
 
 Array = NDArray[np.float64]
 

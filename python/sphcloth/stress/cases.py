@@ -179,7 +179,7 @@ def _boxes() -> list[Case]:
         Case("periodic", "a sheet and water through the faces: nothing crosses, momentum kept",
              "drift", checks),
         Case("tilted", "the same in a tilted box", "drift", checks, {"tilt": 0.2}),
-        Case("deforming", "the same in a box that grows by a half", "drift", checks,
+        Case("deforming", "the same in a box that grows by three fifths", "drift", checks,
              {"stretch": 2.0}),
     ]  # fmt: skip
 

@@ -9,11 +9,12 @@
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/lammps_version.h"
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 
-// of the mean size of a triangle in the picture: parts that moved less against each other leave
+// of the mean length of an edge in the picture: parts that moved less against each other leave
 // what is in the lee as it is
 static constexpr double MOVES = 0.5;
 
@@ -70,23 +71,28 @@ WindShade::Vec3 WindShade::mean_direction(const std::vector<AirMesh *> &meshes) 
   return sum.normalized();
 }
 
-// A turn of the wind moves what is behind in the picture against what is in front.
+// A turn of the wind moves what is behind in the picture against what is in front.  Two vertices
+// have moved against each other by no more than both have moved from the mean, which is the same
+// whatever the axes.
 
 bool WindShade::still_holds(const std::vector<AirMesh *> &meshes, const Vec3 &direction) const
 {
   if (found_with.isZero(0.0)) return false;
   const double allowed = MOVES * shadow.mean_size();
   if ((direction - found_with).norm() * shadow.depth() > allowed) return false;
-  Eigen::Array<double, 6, 1> here, range;    // of displacements: maxima, and minima times -1
-  here.setConstant(-std::numeric_limits<double>::infinity());
+  Eigen::Vector4d here = Eigen::Vector4d::Zero(), sum;    // of displacements, and of vertices
+  for (const AirMesh *mesh : meshes) {
+    for (int s = 0; s < mesh->halo.n_owned(); s++) here.head<3>() += displacement(*mesh, s);
+    here[3] += mesh->halo.n_owned();
+  }
+  MPI_Allreduce(here.data(), sum.data(), 4, MPI_DOUBLE, MPI_SUM, world);
+  const Vec3 mean = sum.head<3>() / std::max(1.0, sum[3]);
+  double mine_sq = 0.0, farthest_sq;
   for (const AirMesh *mesh : meshes)
-    for (int s = 0; s < mesh->halo.n_owned(); s++) {
-      const Eigen::Array3d moved = displacement(*mesh, s).array();
-      here.head<3>() = here.head<3>().max(moved);
-      here.tail<3>() = here.tail<3>().max(-moved);
-    }
-  MPI_Allreduce(here.data(), range.data(), 6, MPI_DOUBLE, MPI_MAX, world);
-  return (range.head<3>() + range.tail<3>()).matrix().norm() <= allowed;
+    for (int s = 0; s < mesh->halo.n_owned(); s++)
+      mine_sq = std::max(mine_sq, (displacement(*mesh, s) - mean).squaredNorm());
+  MPI_Allreduce(&mine_sq, &farthest_sq, 1, MPI_DOUBLE, MPI_MAX, world);
+  return 2.0 * std::sqrt(farthest_sq) <= allowed;
 }
 
 void WindShade::gather(const std::vector<AirMesh *> &meshes)

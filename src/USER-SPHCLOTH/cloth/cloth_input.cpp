@@ -47,6 +47,18 @@ void ClothInput::check_vertices() const
                  "{}: shares vertices with fix {}: give the two fixes groups without common atoms",
                  label, other->id);
   }
+  for (const Fix *other : modify->get_fix_by_style("^bond/")) {
+    const auto is = [other](const char *style) { return utils::strmatch(other->style, style); };
+    // fix bond/react has groups of its own in place of the one of the fix
+    if (is("^bond/react") ||
+        ((is("^bond/break") || is("^bond/create") || is("^bond/swap")) &&
+         share_atoms(atom, fix->groupbit, other->groupbit, world)))
+      error->all(FLERR,
+                 "{}: fix {} {} would change bonds of the cloth within a run, which are read where "
+                 "a run begins: remove it with 'unfix {}' or give it a group without vertices; "
+                 "tear cloth with delete_bonds between runs",
+                 label, other->id, other->style, other->id);
+  }
   tagint mine = 0, massless;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fix->groupbit && !(atom_mass(atom, i) > 0.0)) mine = atom->tag[i];

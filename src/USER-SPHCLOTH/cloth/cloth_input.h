@@ -20,7 +20,8 @@ class ClothInput : protected Pointers {
 
   // into x, y and z, from a per-atom property; an error if it does not exist or is 0 everywhere
   void read_rest_positions(const std::string &property, ParticleColumns &rest_x) const;
-  // Vertices belong to no other cloth, and all have a mass.  Only per-atom masses may be missing.
+  // Vertices belong to no other cloth, no other fix changes their bonds, and all have a mass.  Only
+  // per-atom masses may be missing.
   void check_vertices() const;
   void check_styles() const;
 

@@ -17,6 +17,10 @@ using namespace sphcloth;
 
 // Triangles that are equally near, at an edge or a vertex, but for rounding.
 static constexpr double TIE = 1e-9;
+// Nearer to the border than this part of an edge the triangle says where the border is.
+static constexpr double AT_BORDER = 1e-6;
+// How far, in supports, is a border that is within one of the closest point?
+static constexpr double FROM_BORDER = 1.4142136;
 
 static Eigen::Vector3d position_of(const double *x) { return {x[0], x[1], x[2]}; }
 
@@ -45,11 +49,11 @@ double BoundaryMesh::margin() const
   return OF_SKIN * skin;
 }
 
-void BoundaryMesh::find_positions()
+template <class OfVertex> void BoundaryMesh::find_positions(OfVertex of_vertex)
 {
   double step_sq = 0.0, since_sq = 0.0;
   for (std::size_t s = 0; s < positions.size(); s++) {
-    const Vec3 now = set->position(static_cast<int>(s));
+    const Vec3 now = of_vertex(static_cast<int>(s));
     step_sq = std::max(step_sq, (now - positions[s]).squaredNorm());
     since_sq = std::max(since_sq, (now - list_positions[s]).squaredNorm());
     positions[s] = now;
@@ -70,7 +74,6 @@ void BoundaryMesh::sort_triangles(double farthest)
 }
 
 // Until the next build particle and triangle come nearer by the skin at most, or go away by it.
-// A particle beyond the border has fluid on both sides until then, and nothing is filled.
 
 void BoundaryMesh::update_candidates(double list_skin, const std::function<double(int)> &reach)
 {
@@ -99,8 +102,8 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
       edges.push_back({s[(q + 1) % 3], s[(q + 2) % 3]});
       Box box(positions[edges.back()[0]]);
       box.extend(positions[edges.back()[1]]);
-      box.min().array() -= farthest + skin;
-      box.max().array() += farthest + skin;
+      box.min().array() -= FROM_BORDER * farthest + skin;
+      box.max().array() += FROM_BORDER * farthest + skin;
       border_boxes.push_back(box);
     }
   BoxGrid border_grid;
@@ -110,12 +113,12 @@ void BoundaryMesh::update_candidates(double list_skin, const std::function<doubl
     if (support == 0.0) continue;
     const Vec3 p = position_of(atom->x[i]);
     find_candidates(p, support + skin);
-    if (near.empty() || (part == Part::WATERTIGHT && is_beyond(p))) continue;
+    if (near.empty()) continue;
     Seeker seeker{i, support, p, 0.0, 0, 0, borders.size(), 0};
-    store_candidates(seeker);
+    store_candidates(seeker, p);
     border_grid.query(Box(p), [&](int b) {
-      if (gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]).norm() <= support + skin)
-        borders.push_back(edges[b]);
+      const Vec3 gap = gap_to_line(p, positions[edges[b][0]], positions[edges[b][1]]);
+      if (gap.norm() <= FROM_BORDER * support + skin) borders.push_back(edges[b]);
     });
     seeker.last_border = borders.size();
     seekers.push_back(seeker);
@@ -145,36 +148,57 @@ void BoundaryMesh::find_candidates(const Vec3 &p, double within)
   });
 }
 
-void BoundaryMesh::store_candidates(Seeker &seeker)
+void BoundaryMesh::store_candidates(Seeker &seeker, const Vec3 &p)
 {
-  seeker.at = position_of(atom->x[seeker.particle]);
+  seeker.at = p;
   seeker.path = path;
   seeker.first = candidates.size();
   candidates.insert(candidates.end(), near.begin(), near.end());
   seeker.last = candidates.size();
 }
 
-bool BoundaryMesh::is_beyond(const Vec3 &p) const
+// Beyond the border there is fluid on both sides.  Of a vertex of the border some triangles have no
+// edge there.
+
+bool BoundaryMesh::is_beyond(const Vec3 &p, const Seeker &seeker, const ClosestPoint &closest) const
 {
-  for (const Candidate &c : near) {
-    if (c.distance > near[0].distance * (1.0 + TIE)) break;
+  if (seeker.first_border == seeker.last_border) return false;
+  for (std::size_t k = seeker.first; k < seeker.last; k++) {
     Vec3 weight;
-    gap_to(p, c.triangle, weight);
-    if (set->is_on_border(c.triangle, weight)) return true;
+    const double distance = gap_to(p, candidates[k].triangle, weight).norm();
+    if (distance > closest.distance * (1.0 + TIE)) continue;
+    if (set->is_on_border(candidates[k].triangle, weight)) return true;
   }
   return false;
 }
 
 void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points)
 {
+  find_closest_points_at(
+      sheet, closest_points, [this](int s) { return set->position(s); },
+      [this](int i) { return position_of(atom->x[i]); });
+}
+
+void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points,
+                                       const std::vector<Vec3> &of_vertices,
+                                       const std::function<Vec3(int)> &of_particle)
+{
+  find_closest_points_at(
+      sheet, closest_points, [&of_vertices](int s) { return of_vertices[s]; }, of_particle);
+}
+
+template <class OfVertex, class OfParticle>
+void BoundaryMesh::find_closest_points_at(int sheet, std::vector<ClosestPoint> &closest_points,
+                                          OfVertex of_vertex, OfParticle of_particle)
+{
   if (seekers.empty()) return;
-  find_positions();
+  find_positions(of_vertex);
   for (Seeker &seeker : seekers) {
-    const Vec3 p = position_of(atom->x[seeker.particle]);
+    const Vec3 p = of_particle(seeker.particle);
     double nearer = path - seeker.path + (p - seeker.at).norm();    // at most, than then
     if (nearer > margin()) {
       find_candidates(p, seeker.reach + skin);
-      store_candidates(seeker);
+      store_candidates(seeker, p);
       nearer = 0.0;
     }
     ClosestPoint closest;
@@ -193,6 +217,7 @@ void BoundaryMesh::find_closest_points(int sheet, std::vector<ClosestPoint> &clo
       triangle = candidates[k].triangle;
     }
     if (triangle < 0 || closest.distance == 0.0) continue;
+    if (part == Part::WATERTIGHT && is_beyond(p, seeker, closest)) continue;
     closest.particle = seeker.particle;
     closest.sheet = sheet;
     closest.triangle = triangle;
@@ -214,8 +239,15 @@ void BoundaryMesh::find_border(const Vec3 &at, const Seeker &seeker, ClosestPoin
     const double distance = gap.norm();
     if (distance >= closest.border_distance) continue;
     closest.border_distance = distance;
-    const Vec3 in_plane = gap - gap.dot(closest.normal) * closest.normal;
-    closest.from_border = distance > 0.0 ? Vec3(in_plane / distance) : Vec3::Zero();
+    const Vec3 &end = positions[borders[b][0]], edge = positions[borders[b][1]] - end;
+    if (distance > AT_BORDER * edge.norm()) {
+      closest.from_border = (gap - gap.dot(closest.normal) * closest.normal) / distance;
+    } else {    // the difference of two points says nothing
+      const auto &[u, v, w] = closest.vertices;
+      const Vec3 center = (positions[u] + positions[v] + positions[w]) / 3.0;
+      const Vec3 across = closest.normal.cross(edge).normalized();
+      closest.from_border = std::copysign(1.0, across.dot(center - end)) * across;
+    }
   }
 }
 

@@ -46,6 +46,10 @@ class BoundaryMesh : protected Pointers {
 
   // where particles stand now, those within reach, added to what is there
   void find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points);
+  // the same at another time: where vertices, by slot, and particles, by atom, stood then
+  void find_closest_points(int sheet, std::vector<ClosestPoint> &closest_points,
+                           const std::vector<Vec3> &of_vertices,
+                           const std::function<Vec3(int)> &of_particle);
 
   Vec3 velocity_of(int slot) const;
   Vec3 velocity_at(const ClosestPoint &) const;
@@ -110,12 +114,14 @@ class BoundaryMesh : protected Pointers {
   std::vector<Vec3> stiffness;    // by slot: the sum over fluid, the rate of friction
 
   double margin() const;
-  void find_positions();
+  template <class OfVertex, class OfParticle>
+  void find_closest_points_at(int sheet, std::vector<ClosestPoint> &, OfVertex, OfParticle);
+  template <class OfVertex> void find_positions(OfVertex);
   void sort_triangles(double farthest);
   void find_candidates(const Vec3 &p, double within);
-  void store_candidates(Seeker &);
+  void store_candidates(Seeker &, const Vec3 &p);
   Vec3 gap_to(const Vec3 &p, int triangle, Vec3 &weight) const;
-  bool is_beyond(const Vec3 &p) const;
+  bool is_beyond(const Vec3 &p, const Seeker &, const ClosestPoint &) const;
   void find_border(const Vec3 &at, const Seeker &, ClosestPoint &) const;
   static void spread(const ClosestPoint &, const Vec3 &, std::vector<Vec3> &);
 };

@@ -151,6 +151,7 @@ void ScaledMass::move_fluid(double dt, double part_of_step)
     if (i < atom->nlocal) {
       const Vec3 change = impulses[i] / atom_mass(atom, i);
       for (int d = 0; d < 3; d++) {
+        if (held.is_held(atom->f[i][d])) continue;
         atom->v[i][d] += change[d];
         atom->x[i][d] += dt * change[d];
       }

@@ -12,6 +12,7 @@
 #include "fluid/fluid_boundary.h"
 #include "fluid/ghost_exchange.h"
 #include "fluid/mesh_scaling.h"
+#include "lammps_util/held_particles.h"
 #include "lammps_util/particle_columns.h"
 
 #include <Eigen/Core>
@@ -34,6 +35,7 @@ class ScaledMass : protected Pointers {
   {
     groupbit = groupbit_;
     last = &last_;
+    held.begin_run(modify);
   }
   bool wanted() const { return groupbit != 0; }
   // is anything scaled?  Known from the first evaluation of a run on, the same on all ranks.
@@ -69,6 +71,7 @@ class ScaledMass : protected Pointers {
   GhostExchange &ghosts;
   int groupbit = 0;
   ParticleColumns *last = nullptr;
+  HeldParticles held;
   bool any_vertices = false, any_pairs = false, kicks_known = false;
   std::vector<sphcloth::VertexGradients> gradients;    // over vertices, of owned fluid
   // s_i^2 times their trace, of all atoms; 0 of what has no vertex near

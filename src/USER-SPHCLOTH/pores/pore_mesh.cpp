@@ -18,7 +18,7 @@ void PoreMesh::rebuild()
   mesh.update_candidates(neighbor->skin, [this](int i) {
     return fluid.passes(atom->mask[i], atom->type[i]) ? fluid.width(atom->type[i]) : 0.0;
   });
-  for (std::vector<Vec3> *each : {&pushed, &passing, &filled, &part})
+  for (std::vector<Vec3> *each : {&pushed, &start, &velocity, &passing, &filled, &part})
     each->assign(set->halo.n_slots(), Vec3::Zero());
   find_areas();
 }
@@ -37,10 +37,27 @@ void PoreMesh::find_areas()
   }
 }
 
+// Particles have moved when this is called, held vertices perhaps, free ones and ghosts not: only
+// the start of the step is one time for all of them.
+
+void PoreMesh::load_start()
+{
+  VertexHalo &halo = set->halo;
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    start[s] = set->sweep_of(i).start;
+    velocity[s] = Vec3(atom->v[i]);
+  }
+  halo.forward_positions(0, start.data(), update->dt);
+  halo.forward_velocities(0, velocity.data());
+}
+
 void PoreMesh::find(double *flow)
 {
+  load_start();
   closest_points.clear();
-  mesh.find_closest_points(0, closest_points);
+  mesh.find_closest_points(0, closest_points, start,
+                           [this](int i) { return set->sweep_of(i).start; });
   const std::vector<int> &type = set->mesh->topology().triangles.type;
   const auto elsewhere = [&](const ClosestPoint &at) {
     return !fluid.is_porous(type[set->element[at.triangle]]) ||
@@ -56,14 +73,20 @@ void PoreMesh::find(double *flow)
 int PoreMesh::side_of(const ClosestPoint &at) const
 {
   const auto &[a, b, c] = at.vertices;
-  const Vec3 origin = set->position(a);
-  const Vec3 normal = (set->position(b) - origin).cross(set->position(c) - origin);
+  const Vec3 normal = (start[b] - start[a]).cross(start[c] - start[a]);
   return normal.dot(at.normal) > 0.0 ? 1 : -1;
 }
 
 double PoreMesh::share_of(const ClosestPoint &at) const
 {
   return share_in_layer(at.distance, fluid.width(atom->type[at.particle]));
+}
+
+PoreMesh::Vec3 PoreMesh::relative_velocity(const ClosestPoint &at) const
+{
+  Vec3 u = Vec3(atom->v[at.particle]);
+  for (int q = 0; q < 3; q++) u -= at.weight[q] * velocity[at.vertices[q]];
+  return u;
 }
 
 // of each vertex, by the particles beside it
@@ -78,7 +101,7 @@ void PoreMesh::follow_flow(double *flow)
     const double share = share_of(at);
     if (share == 0.0) continue;
     const double volume = atom_mass(atom, i) / fluid.density(type) * share;
-    const double up = side * update->dt * (Vec3(atom->v[i]) - mesh.velocity_at(at)).dot(at.normal);
+    const double up = side * update->dt * relative_velocity(at).dot(at.normal);
     for (int q = 0; q < 3; q++) {
       passing[at.vertices[q]] += at.weight[q] * share * Vec3(up, fluid.width(type), 1.0);
       filled[at.vertices[q]][side > 0 ? 0 : 1] += at.weight[q] * volume;
@@ -111,7 +134,7 @@ void PoreMesh::add_pair(const ClosestPoint &at)
   const double mass = atom_mass(atom, i), rho0 = fluid.density(type), by = mass / rho0 * share;
   PoreDrag drag{law.darcy, 0.0};
   if (!law.screen.empty()) {
-    const Vec3 u = Vec3(atom->v[i]) - mesh.velocity_at(at);
+    const Vec3 u = relative_velocity(at);
     const double across = u.dot(at.normal);
     const PoreDrag of_net = law.screen.drag(across, (u - across * at.normal).norm(), rho0);
     drag = {drag.across + of_net.across, of_net.along};
@@ -136,8 +159,7 @@ PoreMesh::Vec3 PoreMesh::slow_down(double &lost)
   for (const PorePair &pair : pairs) {
     double *const v = atom->v[pair.particle], *const x = atom->x[pair.particle];
     Vec3 u = Vec3(v);
-    for (int q = 0; q < 3; q++)
-      u -= pair.weight[q] * Vec3(atom->v[set->halo.atom_of(pair.vertices[q])]);
+    for (int q = 0; q < 3; q++) u -= pair.weight[q] * velocity[pair.vertices[q]];
     const Vec3 change = pair.taken_from(u, dt, 1.0 / pair.mass), impulse = pair.mass * change;
     for (int d = 0; d < 3; d++) {
       v[d] -= change[d];

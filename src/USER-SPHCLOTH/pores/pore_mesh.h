@@ -50,8 +50,7 @@ class PoreMesh : protected Pointers {
   std::vector<PorePair> pairs;    // of this step
 
   void rebuild();    // after each list build
-  // Where particles have moved to in a step, and vertices not yet.  flow: by atom, of vertices,
-  // which changes.  Collective.
+  // Once particles have moved in a step.  flow: by atom, of vertices, which changes.  Collective.
   void find(double *flow);
 
   // A mesh that does not give way: slows the particles of the pairs, and pushes it.  Returns the
@@ -66,19 +65,23 @@ class PoreMesh : protected Pointers {
 
   double bytes() const
   {
-    return sphcloth::bytes_of(pairs, closest_points, pushed, area, passing, filled, part);
+    return sphcloth::bytes_of(pairs, closest_points, pushed, start, velocity, area, passing, filled,
+                              part);
   }
 
  private:
   const PoreFluid &fluid;
   BoundaryMesh mesh;
   std::vector<Vec3> pushed;    // by slot, 0 between steps
+  std::vector<Vec3> start, velocity;    // by slot: at the start of the step
   // By slot: a third of the area of its triangles; shares of particles times upward displacements,
   // times widths, and shares; volumes times shares above and below; the parts of both layers
   std::vector<double> area;
   std::vector<Vec3> passing, filled, part;
   std::vector<ClosestPoint> closest_points;    // on porous triangles, not at the end of the mesh
 
+  void load_start();
+  Vec3 relative_velocity(const ClosestPoint &) const;    // of the particle to the mesh
   int side_of(const ClosestPoint &) const;
   double share_of(const ClosestPoint &) const;
   void find_areas();

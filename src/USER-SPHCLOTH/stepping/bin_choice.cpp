@@ -208,7 +208,10 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
   base.uniform = true;
   const double asked = parts.options.block.gain;
   const double gain = state.clock.uniform ? asked : std::max(1.0, GAIN_TO_GO_ON * asked);
-  if (!may_gain(shortest, gain)) {
+  const Sums sums = sum_everywhere(shortest);
+  state.clock.some_sleep = sums.at_rest > 0.0;
+  const double step = 1.0 + STEP_OVERHEAD;
+  if (!(step * sums.equal > gain * (sums.exact + STEP_OVERHEAD * sums.equal))) {
     base.length = step_towards(base.remaining, shortest);
     return base;
   }
@@ -222,19 +225,16 @@ BinChoice::BaseStep BinChoice::find_base_step(StepLimit tightest)
   return base;
 }
 
-// Could unequal steps gain enough, if each particle took exactly the step that it wants?
-
-bool BinChoice::may_gain(double shortest, double gain)
+BinChoice::Sums BinChoice::sum_everywhere(double shortest)
 {
   const std::vector<int> &active = fluid->active_particles();
   const double of_vertices = UPDATES_PER_VERTEX * find_vertices().n;
-  double exact = of_vertices;    // updates while a uniform step has `equal` of them
-  for (const int i : active) exact += shortest / wanted[i];
-  const double equal = of_vertices + static_cast<double>(active.size());
-  const double mine[2] = {exact, equal};
-  double all[2];
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  return (1.0 + STEP_OVERHEAD) * all[1] > gain * (all[0] + STEP_OVERHEAD * all[1]);
+  double mine[3] = {of_vertices, of_vertices + static_cast<double>(active.size()),
+                    static_cast<double>(state.n_at_rest)};
+  for (const int i : active) mine[0] += shortest / wanted[i];
+  double all[3];
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  return {all[0], all[1], all[2]};
 }
 
 /* ----------------------------------------------------------------------
@@ -266,6 +266,7 @@ void BinChoice::find_bins()
     its_bin[i] = wanted_bin;
     slowest = std::min(slowest, wanted_bin);
     finest = std::max(finest, rank(wanted_bin, static_cast<int>(by[i])));
+    if (state.is_new(i)) continue;    // its impulses reach nowhere yet
     reach[0] = std::max(reach[0], -its_reach[i]);
     reach[1] = std::max(reach[1], its_reach[i]);
   }
@@ -276,10 +277,10 @@ void BinChoice::find_bins()
   clock.deepest = static_cast<int>(all[0]) / LIMITS;
   clock.limit = static_cast<Limit>(LIMITS - 1 - static_cast<int>(all[0]) % LIMITS);
   finest_vertex = static_cast<int>(all[4]);
-  clock.uniform = clock.all_synchronized() && -all[1] >= clock.deepest && all[3] == -all[2] &&
-      parts.options.block.sleep == 0.0;
-  // impulses of new particles reach nowhere yet
-  clock.uniform_span = all[3] == 0.0 ? 1.0 : 0.5 - all[3] / clock.smallest_ticks();
+  const bool all_new = all[3] == -MAX;
+  const bool reach_equally = all_new || all[3] == -all[2];
+  clock.uniform = clock.all_synchronized() && -all[1] >= clock.deepest && reach_equally;
+  clock.uniform_span = all_new ? 1.0 : 0.5 - all[3] / clock.smallest_ticks();
 }
 
 // Time step limiter of Saitoh and Makino: no step is longer than `ratio` times a neighbor's, or
@@ -301,10 +302,7 @@ void BinChoice::limit_differences()
     if (scaled.on() && scaled.is_beside_vertices(i)) its_bin[i] = bin[i] = state.clock.deepest;
   }
   state.forward_bins();
-  // those of few are not worth a pass over all
-  constexpr std::size_t MANY = 8;
-  state.ranges_known = MANY * active.size() > static_cast<std::size_t>(atom->nlocal);
-  if (state.ranges_known) fluid->order().measure_block_ranges(bin.data());
+  state.measure_ranges();
   for (const int i : active)
     if (is_too_coarse(i)) its_bin[i] = std::min(state.clock.deepest, bin_beside(i));
   for (const int i : active) bin[i] = static_cast<int>(its_bin[i]);

@@ -38,6 +38,12 @@ class BinChoice : protected Pointers {
     bool uniform;    // all particles take it
   };
 
+  struct Sums {    // of all ranks
+    double exact = 0.0;    // updates if each particle took exactly the step that it wants,
+    double equal = 0.0;    // while a uniform step has so many
+    double at_rest = 0.0;    // particles that sleep, or will
+  };
+
   const SteppingParts parts;
   BlockState &state;
   FluidState *fluid;
@@ -60,7 +66,7 @@ class BinChoice : protected Pointers {
   BaseStep find_base_step(sphcloth::StepLimit tightest);
   void control_step();
   double longest_wanted() const;
-  bool may_gain(double shortest, double gain);
+  Sums sum_everywhere(double shortest);
   void find_bins();
   void limit_differences();
   int vertex_bin(int i) const;

@@ -55,7 +55,18 @@ void BlockImpulses::note_external_forces()
   for (int d = 0; d < 3; d++) external[d] = state.columns.external_force(d);
   for (const int i : state.fluid->active_particles())
     for (int d = 0; d < 3; d++) external[d][i] = atom->f[i][d] - total[3 * i + d];
+  if (state.held.any()) note_held();
   if (!state.clock.uniform) note_rates();
+}
+
+void BlockImpulses::note_held()
+{
+  double *held = state.columns[Columns::HELD];
+  for (const int i : state.fluid->active_particles()) {
+    int axes = 0;
+    for (int d = 0; d < 3; d++) axes |= state.held.is_held(atom->f[i][d]) << d;
+    held[i] = axes;
+  }
 }
 
 void BlockImpulses::note_rates()
@@ -133,11 +144,25 @@ void BlockImpulses::apply_uniform()
 {
   state.forget_inactive();
   state.fluid->push_boundaries();
-  const double times = state.clock.uniform_span;
-  if (times == 1.0) return;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
-  state.fluid->prolong_walls(times);
+  if (const double times = state.clock.uniform_span; times != 1.0) {
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++) atom->f[i][d] *= times;
+    state.fluid->prolong_walls(times);
+  }
+  if (state.clock.some_sleep) let_sleep();
+}
+
+// The forces on those that are awake are complete: neighbors that sleep have their last pressures.
+
+void BlockImpulses::let_sleep()
+{
+  state.find_sleeping();
+  state.measure_ranges();
+  for (const int i : state.fluid->active_particles())
+    if (state.is_asleep(i)) std::fill_n(atom->f[i], 3, 0.0);
+  state.select_giving();
+  tell_neighbors();
+  wake_marked();
 }
 
 void BlockImpulses::apply_by_bin()
@@ -149,11 +174,7 @@ void BlockImpulses::apply_by_bin()
   }
   for (const int i : state.giving) push_walls(i);
   state.refresh_inactive();
-  state.clear_ghost_marks();
-  state.marked.clear();
-  for (const int i : state.giving) mark_beside(i);
-  if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
-  state.reverse_given();
+  tell_neighbors();
   hand_out();
   wake_marked();
 }
@@ -183,6 +204,17 @@ void BlockImpulses::hand_out()
     for (int d = 0; d < 3; d++) atom->f[i][d] += per_step * state.given_to(i)[d];
   });
   state.end_giving();
+}
+
+// what they get, and what wakes them
+
+void BlockImpulses::tell_neighbors()
+{
+  state.clear_ghost_marks();
+  state.marked.clear();
+  for (const int i : state.giving) mark_beside(i);
+  if (sleeping.enabled()) sleeping.mark_beside_moving_boundaries();
+  state.reverse_given();
 }
 
 // Neighbors that sleep, and those whose steps are too long for the particle's: where all particles

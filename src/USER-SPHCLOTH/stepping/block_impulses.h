@@ -49,6 +49,8 @@ class BlockImpulses : protected Pointers {
 
   void copy_forces(std::vector<double> &to) const;
   void apply_uniform();
+  void let_sleep();
+  void tell_neighbors();
   void apply_by_bin();
   void find_spans();
   void push_walls(int i);
@@ -56,6 +58,7 @@ class BlockImpulses : protected Pointers {
   void mark_beside(int i);
   void mark_slow(int i, int type, int finest_allowed);
   void wake_marked();
+  void note_held();
   void note_rates();
   void wake_pushed();
 };

@@ -5,9 +5,11 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "core/neighbor/dual_lists.h"
 #include "core/util/bytes.h"
 #include "fluid/fluid_state.h"
 #include "lammps_util/atom_tools.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -28,6 +30,7 @@ void BlockState::init(FluidState *style)
 {
   fluid = style;
   inactive_known = false;
+  held.begin_run(modify);
 }
 
 double BlockState::half_step(int i) const
@@ -172,6 +175,13 @@ void BlockState::forward_bins()
 {
   stage = BINS;
   comm->forward_comm(fix, 1);
+}
+
+void BlockState::measure_ranges()
+{
+  constexpr std::size_t MANY = 8;    // those of few are not worth a pass over all
+  ranges_known = MANY * fluid->active_particles().size() > static_cast<std::size_t>(atom->nlocal);
+  if (ranges_known) fluid->order().measure_block_ranges(bin.data());
 }
 
 void BlockState::find_sleeping()

@@ -12,6 +12,7 @@
 #include "core/timestep/step_limits.h"
 #include "core/timestep/time_bins.h"
 #include "fix.h"
+#include "lammps_util/held_particles.h"
 #include "lammps_util/particle_columns.h"
 #include "stepping/step_options.h"
 
@@ -30,6 +31,7 @@ struct BlockClock {
   sphcloth::Limit limit = sphcloth::Limit::NONE;    // that asks for it
   bool uniform = true;    // all particles take that step, and took the same before
   double uniform_span = 1.0;    // for which impulses then act, over that step
+  bool some_sleep = false;    // where steps are uniform: particles of any rank
   bool chosen = false;    // steps, at this time, by this evaluation or the same one before
   bool reaches_output = false;    // the base step ends at an output time
   bool defers = false;    // vertices get deferred impulses in the coming step
@@ -71,6 +73,7 @@ class BlockColumns : public ParticleColumns {
     SUM,             // of KeptDensity
     GRADIENT,        // three
     CHANGE = GRADIENT + 3,
+    HELD,    // bits of the axes along which its last force was 0, where forces may be replaced
     N_COLUMNS
   };
   static constexpr int ASLEEP = -1;
@@ -101,6 +104,8 @@ class BlockState : protected Pointers {
   bool ranges_known = false;
   std::vector<int> asleep;    // 1 or 0; with sleeping water only
   bool any_asleep = false;    // here, ghosts too
+  HeldParticles held;
+  int n_at_rest = 0;    // owned particles that sleep, or will from this step on
   std::vector<double> given;    // impulses by source, see Impulses, force times ticks
   std::vector<double> kicks;    // changes of velocities [n][3]
   // owned active fluid that is not asleep; of it, by atom, in ticks: for how long it gives
@@ -119,6 +124,10 @@ class BlockState : protected Pointers {
   bool is_asleep(int i) const { return columns.is_asleep(i); }
   double half_step(int i) const;    // in ticks
   bool is_new(int i) const { return columns[BlockColumns::EVENT][i] == BlockColumns::NEW; }
+  bool is_held(int i, int d) const
+  {
+    return held.any() && static_cast<int>(columns[BlockColumns::HELD][i]) >> d & 1;
+  }
   // how far the last impulse reaches beyond now, in ticks, for the step that begins
   double ahead(int i) const;
 
@@ -149,6 +158,7 @@ class BlockState : protected Pointers {
   void clear_ghost_marks();
 
   void forward_bins();
+  void measure_ranges();    // of bins, where many will ask
   void find_sleeping();    // of all atoms, from the bins of owned ones
   void forward_kicks();    // adds them to the velocities of ghosts
   void reverse_given();    // and marks

@@ -35,6 +35,7 @@ void BlockSteps::init(FluidState *style, Change change)
   all_selected = false;
   state.init(style);
   bins.init(style);
+  sleeping.begin_run();
   fluid->set_step_hooks(this);
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();
@@ -99,7 +100,7 @@ bool BlockSteps::updates_all_next() const
 
 void BlockSteps::select_active()
 {
-  if (all_selected && state.clock.uniform) {
+  if (all_selected && state.clock.uniform && !state.clock.some_sleep) {
     parts.report.updates += static_cast<double>(fluid->active_particles().size());
     return tell_active(true);
   }
@@ -114,7 +115,8 @@ void BlockSteps::select_active()
   }
   parts.report.updates += n_active;
   // not by the particles of this rank alone: an inactive one may come from another in this step
-  const bool all = state.coarsest == 0 && n_active == n && !sleeping.enabled();
+  const bool none_sleep = state.clock.uniform ? !state.clock.some_sleep : !sleeping.enabled();
+  const bool all = state.coarsest == 0 && n_active == n && none_sleep;
   all_selected = all && state.clock.uniform;
   tell_active(all);
 }
@@ -132,6 +134,7 @@ const Impulses *BlockSteps::begin_impulses()
 void BlockSteps::choose_bins()
 {
   if (!state.clock.chosen) {
+    if (sleeping.enabled()) sleeping.find_resting();
     bins.choose();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;

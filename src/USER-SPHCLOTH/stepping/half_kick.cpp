@@ -81,6 +81,7 @@ void HalfKick::kick()
   for (const int i : state.fluid->active_particles()) {
     if (!(atom->mask[i] & state.fix->groupbit)) continue;
     for (int d = 0; d < 3; d++) {
+      if (state.is_held(i, d)) continue;
       kicks[3 * i + d] = step * limits.acceleration(i, atom->f[i][d]);
       atom->v[i][d] += kicks[3 * i + d];
     }

@@ -82,14 +82,20 @@ void OutputTimes::look_for_end()
 {
   if (until == 0.0) return;
   const double now = physical_time(update), slack = SLACK * update->dt;
-  if (now + slack >= until) return timer->force_timeout();
+  if (now + slack >= until) {
+    has_ended_run = has_ended_run || !timer->is_timeout();
+    return timer->force_timeout();
+  }
   const bigint next = update->ntimestep + 1;
   if (now + update->dt + slack < until) return;
   update->laststep = std::min(update->laststep, next);
   if (output->next_thermo > next) want_thermo(next);
 }
 
+// What something else has ended stays ended: fix halt ... error soft, timer timeout.
+
 void OutputTimes::end_run()
 {
-  if (until > 0.0) timer->reset_timeout();
+  if (has_ended_run) timer->reset_timeout();
+  has_ended_run = false;
 }

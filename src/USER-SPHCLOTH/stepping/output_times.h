@@ -41,6 +41,7 @@ class OutputTimes : protected Pointers {
  private:
   double whole = 0.0;
   bool arriving = false;
+  bool has_ended_run = false;
 
   void want_thermo(bigint step);
 };

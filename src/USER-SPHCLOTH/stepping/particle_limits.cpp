@@ -10,12 +10,14 @@
 #include "force.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "stepping/stability_watch.h"
 
 #include <cmath>
 #include <limits>
 
 using namespace LAMMPS_NS;
+using namespace FixConst;
 using namespace sphcloth;
 
 void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
@@ -63,6 +65,21 @@ double ParticleLimits::inverse_mass_of(int i) const
   return 0.0;
 }
 
+// What may hold water, or moves it, defined in any order.  Where others of this package act they
+// wake it.
+
+std::uint64_t ParticleLimits::fixes_that_hold() const
+{
+  std::uint64_t sum = 0;
+  for (int k = 0; k < modify->nfix; k++) {
+    const bool acts =
+        modify->fmask[k] & (INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | POST_FORCE);
+    if (acts && !utils::strmatch(modify->fix[k]->style, "^sph/"))
+      sum += hash_with(EMPTY_HASH, std::string_view(modify->fix[k]->id));
+  }
+  return sum;
+}
+
 std::uint64_t ParticleLimits::settings() const
 {
   std::uint64_t hash = hash_with(EMPTY_HASH, static_cast<std::uint64_t>(fluid->options.kernel));
@@ -83,8 +100,10 @@ std::uint64_t ParticleLimits::settings() const
   MPI_Allreduce(&mine, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
   for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
     hash = hash_with(hash, boundary->settings());
-  for (const Fix *contact : modify->get_fix_by_style("^cloth/contact$"))
-    hash = hash_with(hash, std::string_view(contact->id));
+  hash = hash_with(hash, fixes_that_hold());
+  for (int k = 0; k < neighbor->nex_type; k++)
+    for (const int type : {neighbor->ex1_type[k], neighbor->ex2_type[k]})
+      hash = hash_with(hash, static_cast<std::uint64_t>(type));
   // a box that a fix deforms is another one in each step
   const auto &fixes = modify->get_fix_list();
   if (std::none_of(fixes.begin(), fixes.end(), [](const Fix *fix) { return fix->box_change; })) {

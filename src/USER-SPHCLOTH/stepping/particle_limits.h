@@ -108,6 +108,7 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   bool interpolates_density = false;
   sphcloth::StepCoefficients lambda;    // of for_particles() and of vertices
 
+  std::uint64_t fixes_that_hold() const;
   void find(const int *particles, int n, const Rates &, sphcloth::StepLimits &) const;
   sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
   double set_motion(int i, const double *force, sphcloth::StepState &) const;

@@ -26,14 +26,6 @@ using Columns = BlockColumns;
 
 static constexpr double SLOW_BEFORE_SLEEP = 20.0, SLEEP_BESIDE_ACTIVE = 100.0;
 
-template <class Act> void SleepingWater::for_neighbors(int i, Act act)
-{
-  for (int t = 1; t <= atom->ntypes; t++) {
-    const NeighborSpan near = state.fluid->neighbors(i, t);
-    for (int k = 0; k < near.n; k++) act(near.of[k]);
-  }
-}
-
 bool SleepingWater::is_slow(int i) const
 {
   const double *v = atom->v[i], limit = state.options.sleep;
@@ -47,17 +39,31 @@ bool SleepingWater::is_at_rest(int i)
   if (!is_slow(i)) since = now;
   if (now - since < SLOW_BEFORE_SLEEP * limits.sound_time(i) || state.fluid->feels_moving_wall(i))
     return false;
-  bool others = true;
-  for_neighbors(
-      i, [&](int j) { others = others && (is_slow(j) || !state.fluid->inside_support(i, j)); });
-  return others;
+  return all_neighbors_are_slow(i);
 }
 
-void SleepingWater::fall_asleep()
+bool SleepingWater::all_neighbors_are_slow(int i) const
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const NeighborSpan near = state.fluid->neighbors(i, t);
+    for (int k = 0; k < near.n; k++)
+      if (!is_slow(near.of[k]) && state.fluid->inside_support(i, near.of[k])) return false;
+  }
+  return true;
+}
+
+void SleepingWater::find_resting()
 {
   resting.clear();
   for (const int i : state.fluid->active_particles())
     if (is_at_rest(i)) resting.push_back(i);
+  state.n_at_rest = static_cast<int>(resting.size());
+  for (int i = 0; i < atom->nlocal; i++)
+    state.n_at_rest += state.fluid->is_fluid(atom->type[i]) && state.is_asleep(i);
+}
+
+void SleepingWater::fall_asleep()
+{
   for (const int i : resting) {
     state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
     state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
@@ -72,6 +78,8 @@ void SleepingWater::fall_asleep()
 void SleepingWater::wake_disturbed()
 {
   if (!enabled()) return;
+  const bool some_vanished = atom->natoms < n_atoms;
+  n_atoms = atom->natoms;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
     double change_sq = 0.0;
@@ -79,7 +87,11 @@ void SleepingWater::wake_disturbed()
       const double change = atom->f[i][d] - state.columns.external_force(d)[i];
       change_sq += change * change;
     }
-    if (!is_slow(i) || gains_speed(i, change_sq) || state.fluid->feels_moving_wall(i)) wake(i);
+    if (some_vanished || !is_slow(i) || gains_speed(i, change_sq) ||
+        state.fluid->feels_moving_wall(i)) {
+      wake(i);
+      for (int d = 0; d < 3; d++) state.columns.external_force(d)[i] = atom->f[i][d];
+    }
   }
 }
 
@@ -93,6 +105,7 @@ void SleepingWater::disturb(int i)
 
 void SleepingWater::wake_beside(const std::vector<std::array<double, 3>> &positions)
 {
+  n_atoms -= static_cast<bigint>(positions.size());
   for (int i = 0; i < atom->nlocal; i++) {
     if (!state.fluid->is_fluid(atom->type[i]) || !state.is_asleep(i)) continue;
     const double support = state.fluid->support(atom->type[i]);
@@ -118,11 +131,19 @@ bool SleepingWater::gains_speed(int i, double force_sq) const
 void SleepingWater::mark_beside_moving_boundaries()
 {
   for (const int i : state.boundaries)
-    if (!is_slow(i))
-      for_neighbors(i, [&](int j) {
-        if (state.asleep[j] && state.fluid->inside_support(i, j))
-          state.mark_atom(j, BlockState::WAKE);
-      });
+    if (!is_slow(i)) wake_neighbors(i);
+}
+
+void SleepingWater::wake_neighbors(int i)
+{
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const NeighborSpan near = state.fluid->neighbors(i, t);
+    for (int k = 0; k < near.n; k++) {
+      const int j = near.of[k];
+      if (state.asleep[j] && state.fluid->inside_support(i, j))
+        state.mark_atom(j, BlockState::WAKE);
+    }
+  }
 }
 
 bool SleepingWater::has_slept_long(int i, double now) const

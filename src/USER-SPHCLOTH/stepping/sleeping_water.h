@@ -25,12 +25,16 @@ class SleepingWater : protected Pointers {
   bool enabled() const { return state.options.sleep > 0.0; }
   bool is_slow(int i) const;
   // active particles that have been slow for long, among others that are slow
-  void fall_asleep();
-  // particles that other styles have given speed or a force
+  void find_resting();
+  void fall_asleep();    // those
+  void begin_run() { n_atoms = atom->natoms; }
+  // Particles that other styles have given speed or a force; all, where other fixes have taken
+  // atoms away
   void wake_disturbed();
   // wakes one that sleeps in the next step
   void disturb(int i);
-  // the same of those within the support of these positions
+  // the same of those within the support of these positions, from which atoms of all ranks have
+  // been taken away
   void wake_beside(const std::vector<std::array<double, 3>> &);
   // marks sleeping particles beside moving boundaries
   void mark_beside_moving_boundaries();
@@ -44,10 +48,12 @@ class SleepingWater : protected Pointers {
   BlockState &state;
   const ParticleLimits &limits;
   std::vector<int> resting;
+  bigint n_atoms = 0;    // in the last step
 
   bool is_at_rest(int i);
   bool gains_speed(int i, double force_sq) const;
-  template <class Act> void for_neighbors(int i, Act act);
+  bool all_neighbors_are_slow(int i) const;
+  void wake_neighbors(int i);
 };
 
 }    // namespace LAMMPS_NS

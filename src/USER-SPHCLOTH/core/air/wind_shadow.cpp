@@ -12,7 +12,7 @@ using namespace sphcloth;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// of the mean size of a triangle: what is in front by less is taken to touch
+// of the mean length of an edge: what is in front by less is taken to touch
 static constexpr double TOUCHES = 1e-6;
 
 void WindShadow::build(const std::vector<Point> &points, const std::vector<Corners> &triangles,
@@ -32,8 +32,9 @@ void WindShadow::build(const std::vector<Point> &points, const std::vector<Corne
   for (const Corners &t : triangles) {
     Box box(seen[t[0]]);
     box.extend(seen[t[1]]).extend(seen[t[2]]);
-    const Vector3d sides = box.sizes();
-    size += std::max(sides[0], sides[1]) / static_cast<double>(triangles.size());
+    for (int q = 0; q < 3; q++)
+      size += (seen[t[q]] - seen[t[(q + 1) % 3]]).head<2>().norm() /
+          (3.0 * static_cast<double>(triangles.size()));
     nearest = std::min(nearest, box.min()[2]);
     farthest = std::max(farthest, box.max()[2]);
     box.min()[2] = box.max()[2] = 0.0;

@@ -28,8 +28,8 @@ class WindShadow {
   // from its middle to its corners
   double lee_share(const Corners &) const;
 
-  // mean over the triangles of the larger side of the box around their picture, and how far the
-  // points are apart along the wind; 0 without triangles
+  // mean length of the edges of the triangles in the picture, and how far the points are apart
+  // along the wind; 0 without triangles
   double mean_size() const { return size; }
   double depth() const { return range; }
   double bytes() const;

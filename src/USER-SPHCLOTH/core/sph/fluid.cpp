@@ -62,10 +62,10 @@ void Fluid::find_touched(const Particles &p)
   }
 }
 
-int Fluid::count_inside(const Particles &p, int owned, int type, int max)
+int Fluid::count_inside(const Particles &p, int owned, int type, int max) const
 {
   const double support_sq = model.pair(p.type[owned], type).kernel.support_sq;
-  const NeighborSpan list = neighbors(owned, type);
+  const NeighborSpan list = lists.without_pruning(lists.slot(owned), type);
   const double *x = p.x + 3 * owned;
   int n = 0;
   for (int k = 0; k < list.n && n < max; k++) {

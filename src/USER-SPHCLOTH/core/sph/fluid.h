@@ -296,7 +296,7 @@ class Fluid {
     return lists(lists.slot(owned), type);
   }
   // how many are inside the support; counts up to `max`
-  int count_inside(const Particles &, int owned, int type, int max);
+  int count_inside(const Particles &, int owned, int type, int max) const;
 
  protected:
   Points points(const Particles &p) const

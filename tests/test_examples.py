@@ -51,6 +51,17 @@ SCRIPTS = [
 ]
 
 
+@pytest.mark.parametrize("script", sorted(EXAMPLES.glob("*/in.*")), ids=lambda path: path.name)
+def test_no_script_reads_what_it_writes(script):
+    """So that it runs a second time in the same folder, and leaves the files of the package."""
+    text = script.read_text()
+    written = set(re.findall(r"write_data +(\S+)|^dump +\w+ +\S+ +\S+ +\S+ +(\S+)", text, re.MULTILINE))
+    names = {name for pair in written for name in pair if name}
+    assert f"{script.suffix[1:]}.lammpstrj" in names
+    read = set(re.findall(r"^(?:read_data|include|molecule +\w+) +(\S+)", text, re.MULTILINE))
+    assert not names & read
+
+
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
 def test_cloth_is_a_material(script):
     """A stiffness k follows the step, a compliance does not."""

@@ -137,8 +137,8 @@ double ComputeSPHAtom::value(Column column, int i) const
     default: break;
   }
   if (fluid->is_fluid(atom->type[i])) return value_of_fluid(column, i);
-  return column == Column::VOLUME && fluid->has_role(atom->type[i]) ? fluid->mass_or_volume_of(i)
-                                                                    : 0.0;
+  return column == Column::VOLUME && fluid->is_boundary(atom->type[i]) ? fluid->mass_or_volume_of(i)
+                                                                       : 0.0;
 }
 
 double ComputeSPHAtom::value_of_fluid(Column column, int i) const

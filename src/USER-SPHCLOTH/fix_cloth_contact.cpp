@@ -82,6 +82,13 @@ void FixClothContact::init()
   vertex_bits = 0;
   cloths = cloths_before(lmp, this, label);
   for (const FixPBDCloth *cloth : cloths) vertex_bits |= cloth->groupbit;
+  // a fix before its cloths is an error: all have the same
+  together = {this};
+  if (!cloths.empty()) {
+    together.clear();
+    for (Fix *fix : modify->get_fix_by_style("^cloth/contact$"))
+      together.push_back(static_cast<FixClothContact *>(fix));
+  }
   check_group();
   warn_of_reflection_after(lmp, this, label);
   for (FixPBDCloth *cloth : cloths) surfaces.push_back(make_surface(cloth));
@@ -317,18 +324,24 @@ static double missed_share(const ContactCounts &counts, MPI_Comm world)
 
 void FixClothContact::post_integrate()
 {
-  const auto resolve = [this] {
-    bool any = false;
-    for (MeshContact *contact : contacts) any = contact->resolve() || any;
-    return any;
-  };
+  if (together.back() != this) return;
   bool any = false;
   for (int round = 0; round < MAX_ROUNDS; round++) {
-    const bool again = resolve();
+    bool again = false;
+    std::size_t meshes = 0;
+    for (const FixClothContact *fix : together) {
+      for (MeshContact *contact : fix->contacts) again = contact->resolve() || again;
+      meshes += fix->contacts.size();
+    }
     any = any || again;
-    if (!again || contacts.size() == 1) break;
+    if (!again || meshes == 1) break;
   }
-  if (any)
+  for (FixClothContact *fix : together) fix->end_step(any);
+}
+
+void FixClothContact::end_step(bool any_contact)
+{
+  if (any_contact)
     if (const double share = missed_share(counts, world); share > 0.0)
       for (FixPBDCloth *cloth : cloths) cloth->missed_in_contact(share);
   if (!excess_velocities.empty()) subtract_excess_velocities();
@@ -377,15 +390,6 @@ void FixClothContact::pre_reverse(int, int)
         for (int d = 0; d < 3; d++) atom->f[i][d] += impulses.force(d, i, force->ftm2v);
 }
 
-int FixClothContact::side_of(int i) const
-{
-  if (!rules.sides || static_cast<std::size_t>(i) >= side.size() || side[i] == 0) return 0;
-  for (int sheet = 0; sheet < sphcloth::MAX_SHEETS; sheet++)
-    for (int sign : {1, -1})
-      if (side[i] & sphcloth::side_of_sheet(sheet, sign > 0)) return sign;
-  return 0;
-}
-
 // LAMMPS has put atoms back into the box.  It may be another box by the end of the next step.
 
 void FixClothContact::wrap_last_positions()
@@ -421,10 +425,6 @@ double FixClothContact::compute_vector(int n)
   MPI_Allreduce(&mine[n], &all, 1, MPI_DOUBLE, op, world);
   return all;
 }
-
-/* ----------------------------------------------------------------------
-   per atom
-------------------------------------------------------------------------- */
 
 int FixClothContact::pack_forward_comm(int n, int *sendlist, double *buf, int, int *)
 {

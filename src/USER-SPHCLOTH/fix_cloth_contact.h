@@ -74,7 +74,15 @@ class FixClothContact : public Fix, public SideSource {
   int maxsize_restart() override { return 1 + impulses.count(); }
   double memory_usage() override;
 
-  int side_of(int owned_atom) const;    // 1 above, -1 below a sheet that is near, 0: none is
+  // 1: the owned atom is above a sheet that is near, -1: below, 0: none is near
+  int side_of(int i) const
+  {
+    if (!rules.sides || static_cast<std::size_t>(i) >= side.size() || side[i] == 0) return 0;
+    for (int sheet = 0; sheet < sphcloth::MAX_SHEETS; sheet++)
+      for (int sign : {1, -1})
+        if (side[i] & sphcloth::side_of_sheet(sheet, sign > 0)) return sign;
+    return 0;
+  }
   // of all atoms, ghosts too, since the last list build
   const sphcloth::Sides *sides() const override { return side.data(); }
   sphcloth::Parting *layers() override { return sheet_layers.any() ? &sheet_layers : nullptr; }
@@ -117,6 +125,7 @@ class FixClothContact : public Fix, public SideSource {
   ObstacleImpulses impulses;    // if there are obstacles
   FixSPHIntegrate *stepping = nullptr;    // null: nothing sleeps
   std::vector<FixPBDCloth *> cloths;    // those before this fix
+  std::vector<FixClothContact *> together;    // those of the same cloths, this one too, in order
   std::vector<std::unique_ptr<ContactSurface>> surfaces;    // one per cloth
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<std::unique_ptr<ContactSurface>> obstacle_surfaces;    // one per obstacle
@@ -168,6 +177,7 @@ class FixClothContact : public Fix, public SideSource {
   }
   void wrap_last_positions();
   void subtract_excess_velocities();
+  void end_step(bool any_contact);
   void find_sides();
   void check_group();
   void make_contacts();

@@ -88,6 +88,7 @@ void FixWallSPH::read_walls(ArgReader &args)
     } else
       wall.given.read(args, position);
     wall.position = wall.given.value();
+    if (wall.has_place()) wall.last_position = wall.position;
     walls.push_back(wall);
   }
   if (walls.empty()) {
@@ -207,18 +208,22 @@ void FixWallSPH::find_open_space()
   }
 }
 
-// A moving plane has the velocity of its last step.
+// A moving plane has the velocity of its last step.  Between runs it may have been moved, too.
 
 void FixWallSPH::locate(Wall &wall, double elapsed)
 {
-  const double before = wall.last_position = wall.position;
+  const double before = wall.position;
   if (wall.at_edge)
     wall.position = wall.face % 2 == 0 ? domain->boxlo[wall.axis()] : domain->boxhi[wall.axis()];
   else if (wall.given.is_variable())
     wall.position = wall.given.value();
   else
     return;
-  if (elapsed > 0.0) wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
+  if (elapsed > 0.0) {
+    wall.last_position = before;
+    wall.velocity[wall.axis()] = (wall.position - before) / elapsed;
+  } else if (!wall.last_position)
+    wall.last_position = wall.position;
 }
 
 // false if no wall is in reach of particle i; otherwise `near` has those that are
@@ -435,24 +440,31 @@ void *FixWallSPH::extract(const char *name, int &)
 }
 
 /* ----------------------------------------------------------------------
-   restart: velocities of walls that move, which are those of the last step
+   restart: velocities of walls that move, which are those of the last step, and where they were
+   before it
 ------------------------------------------------------------------------- */
 
 struct FixWallSPH::Record {
-  double velocity[6];    // across each face
+  double velocity[6], last_position[6];    // across each face
 };
 
 void FixWallSPH::write_restart(FILE *fp)
 {
   if (comm->me) return;
   Record record{};
-  for (const Wall &wall : walls) record.velocity[wall.face] = wall.velocity[wall.axis()];
+  for (const Wall &wall : walls) {
+    record.velocity[wall.face] = wall.velocity[wall.axis()];
+    record.last_position[wall.face] = wall.last_position.value_or(wall.position);
+  }
   write_record(fp, record);
 }
 
 void FixWallSPH::restart(char *buf)
 {
   const auto record = read_record<Record>(buf, label, error);
-  for (Wall &wall : walls)
-    if (!wall.has_place()) wall.velocity[wall.axis()] = record.velocity[wall.face];
+  for (Wall &wall : walls) {
+    if (wall.has_place()) continue;
+    wall.velocity[wall.axis()] = record.velocity[wall.face];
+    wall.last_position = record.last_position[wall.face];
+  }
 }

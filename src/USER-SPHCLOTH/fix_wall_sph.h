@@ -23,7 +23,9 @@ FixStyle(wall/sph,FixWallSPH);
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -44,7 +46,13 @@ class FixWallSPH : public Fix, public FluidBoundary {
   double compute_vector(int) override;
   void *extract(const char *, int &) override;
 
-  std::uint64_t settings() const override { return words_hash; }
+  // another fix, of the same words, may have had its walls elsewhere
+  std::uint64_t settings() const override
+  {
+    const bool is_new = std::any_of(walls.begin(), walls.end(),
+                                    [](const Wall &wall) { return !wall.last_position; });
+    return is_new ? hash_with(words_hash, std::string_view(id)) : words_hash;
+  }
   void begin() override;
   double density(int i, double of_particles) override;
   double density_rate(int i, double of_particles, double back) override;
@@ -68,15 +76,20 @@ class FixWallSPH : public Fix, public FluidBoundary {
     int face;             // 0 to 5: xlo, xhi, ylo, yhi, zlo, zhi
     bool at_edge;         // of the box, wherever that is
     NumberOrVariable given;
-    double position, last_position;
+    double position;
+    std::optional<double> last_position;    // before the last step
     double velocity[3];    // along the plane as given, across it from the motion of the plane
 
     int axis() const { return face / 2; }
     bool has_place() const { return !at_edge && !given.is_variable(); }
-    bool moves() const { return velocity[0] != 0.0 || velocity[1] != 0.0 || velocity[2] != 0.0; }
+    bool moves() const
+    {
+      return velocity[0] != 0.0 || velocity[1] != 0.0 || velocity[2] != 0.0 ||
+          last_position != position;
+    }
     double inwards() const { return face % 2 == 0 ? 1.0 : -1.0; }
     double distance(const double *x) const { return inwards() * (x[axis()] - position); }
-    double last_distance(const double *x) const { return inwards() * (x[axis()] - last_position); }
+    double last_distance(const double *x) const { return inwards() * (x[axis()] - *last_position); }
   };
 
   struct Press {    // of a wall on a particle

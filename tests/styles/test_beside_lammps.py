@@ -59,36 +59,104 @@ def test_water_whose_forces_are_replaced_does_not_move(scheme, limits, z):
     assert (moved[~frozen] > 1e-4).any(axis=1).all()
 
 
+# a light sheet that goes up into a block of water
+RISING = (
+    header("p p f")
+    + cloth_box("-0.5 0.5 -0.5 0.5 -0.6 1.0", 3)
+    + "mass * 0.125\n"
+    + lattice()
+    + filled("block", "-0.2 0.2 -0.2 0.2 0.03 0.33")
+    + "group fluid type 1\nset group all sph/rho 1000\n"
+    + sheet(2, 4.0, "0.9 0.9", 0.05)
+    + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1", "2 2 {role}", "3 3 none")
+    + cloth_styles()
+    + neighbor(0.03)
+    + """timestep 0.002
+fix step fluid sph/integrate global
+run_style sph/adaptive {scheme}
+fix sheet cloth pbd/cloth {pin}
+fix contact fluid cloth/contact {contact}
+velocity cloth set 0 0 3
+{held}
+run 0
+"""
+)
+PINNED = """region held block -0.44 0.44 INF INF INF INF side out
+group pins region held
+group pins intersect pins cloth
+"""
+
+
 def test_mass_scaling_does_not_move_water_whose_forces_are_replaced():
     lmp = instance()
     lmp.commands_string(
-        header("p p f")
-        + cloth_box("-0.5 0.5 -0.5 0.5 -0.6 1.0", 3)
-        + "mass * 0.125\n"
-        + lattice()
-        + filled("block", "-0.2 0.2 -0.2 0.2 0.03 0.33")
-        + "group fluid type 1\nset group all sph/rho 1000\n"
-        + sheet(2, 4.0, "0.9 0.9", 0.05)
-        + "region held block -0.44 0.44 INF INF INF INF side out\ngroup pins region held\n"
-        + "group pins intersect pins cloth\n"
-        + sph_tait("1 1 fluid 1000 c0 30 alpha 0.1", "2 2 boundary", "3 3 none")
-        + cloth_styles()
-        + neighbor(0.03)
-        + """timestep 0.002
-fix step fluid sph/integrate global
-run_style sph/adaptive global
-fix sheet cloth pbd/cloth pin pins reference 0.0005
-fix contact fluid cloth/contact 0.015
-velocity cloth set 0 0 3
-fix frozen fluid setforce 0 0 0
-run 0
-"""
+        RISING.replace("fix sheet", PINNED + "fix sheet").format(
+            role="boundary",
+            scheme="global",
+            pin="pin pins reference 0.0005",
+            contact="0.015",
+            held="fix frozen fluid setforce 0 0 0",
+        )
     )
     water = by_id(lmp, "type") == 1
     before = by_id(lmp, "x")[water]
     lmp.command("run 40")
     assert np.array_equal(by_id(lmp, "x")[water], before)
     assert not by_id(lmp, "v")[water].any()
+
+
+WALL = {"role": "none", "pin": "", "contact": "0.02 wall yes"}
+HOLDS = {
+    "an empty group": "group empty empty\nfix frozen empty setforce 0 0 0",
+    "another group": "fix frozen cloth setforce NULL NULL NULL",
+    "no axis": "fix frozen fluid setforce NULL NULL NULL",
+    "a region without water": "region above block INF INF INF INF 0.8 INF units box\n"
+    "fix frozen fluid setforce 0 0 0 region above",
+}
+
+
+@pytest.fixture(scope="module", params=["global", "block"])
+def not_held(request):
+    lmp = instance()
+    lmp.commands_string(RISING.format(scheme=request.param, held="", **WALL) + "run 40")
+    return request.param, by_id(lmp, "v")
+
+
+@pytest.mark.parametrize("held", HOLDS)
+def test_a_fix_moves_no_water_that_it_does_not_hold(not_held, held):
+    """Water in free flight feels no force along some axes, either."""
+    scheme, v = not_held
+    lmp = instance()
+    lmp.commands_string(RISING.format(scheme=scheme, held=HOLDS[held], **WALL) + "run 40")
+    assert np.array_equal(by_id(lmp, "v"), v)
+
+
+def momentum(lmp):
+    """Of all particles, without what the sheet has got ahead of time, from its first step on."""
+    mass = lmp.numpy.extract_atom("mass")[by_id(lmp, "type")]
+    ahead = [lmp.extract_fix("sheet", 0, 1, 7 + d) for d in range(3)]
+    return mass @ by_id(lmp, "v") - ahead
+
+
+@pytest.mark.parametrize("scheme", ["global", "block"])
+def test_water_is_held_along_one_axis_and_in_a_region(scheme):
+    """There its velocity stays; along the others momentum is that of water and sheet."""
+    lmp = instance()
+    held = """velocity fluid set 0.2 0.1 -0.5 units box
+region left block INF 0 INF INF INF INF units box
+fix frozen fluid setforce NULL 0 NULL region left"""
+    lmp.commands_string(RISING.format(scheme=scheme, held=held, **WALL))
+    lmp.command("run 1")
+    before, held = momentum(lmp), by_id(lmp, "type") == 1
+    free = held.copy()
+    for _ in range(20):
+        x = by_id(lmp, "x")[:, 0]
+        held, free = held & (x < 0), free & (x > 0)
+        lmp.command("run 1")
+    v, change = by_id(lmp, "v"), momentum(lmp) - before
+    assert (v[held, 1] == 0.1).all() and (v[held, 0] != 0.2).any()
+    assert (v[free, 1] != 0.1).any()
+    assert np.abs(change[[0, 2]]).max() < 1e-12 < 1e-6 < abs(change[1])
 
 
 @pytest.mark.parametrize("scheme", ["global", "block"])

@@ -84,6 +84,16 @@ def test_neighbors_and_volumes_of_the_floor_against_all_distances(ran):
     np.testing.assert_allclose(c["volume"][floor], volume, rtol=1e-12)
 
 
+def test_particles_without_a_role_have_nothing():
+    lmp = instance()
+    styles = STYLES.replace("3 3 boundary", "3 3 none")
+    lmp.commands_string(f"{TWO_FLUIDS}{styles}compute c all sph/atom {KEYWORDS}\nrun 1")
+    kind, found = by_id(lmp, "type"), columns(lmp)
+    assert (kind == 3).any() and (found["volume"][kind < 3] > 0).all()
+    for name, values in found.items():
+        assert not values[kind == 3].any(), name
+
+
 def test_the_smallest_of_the_own_steps_is_the_next_step(ran):
     c, fluid = columns(ran), by_id(ran, "type") < 3
     assert ran.extract_fix("step", 0, 1, 0) in (1, 2, 3, 4, 5)  # a particle sets it

@@ -7,7 +7,9 @@ from scenes import (
     FREE_SHEET,
     cloth_box,
     cloth_styles,
+    filled,
     header,
+    lattice,
     neighbor,
     sheet,
     sph_tait,
@@ -81,6 +83,51 @@ def test_from_below_and_grazing(velocity, low, high, tmp_path):
     lmp = shower(velocity, low=low, high=high)
     assert crossed(lmp, tmp_path, 60) == 0
     assert lmp.extract_fix("contact", 0, 1, 0) > 0
+
+
+GRAINS = (
+    header("f f f")
+    + cloth_box("-4 4 -4 4 -4 4", types=3)
+    + "region rim block -0.39 0.39 -0.39 0.39 INF INF side out\n"
+    + sheet(2, 0.05, "0.8 0.8", 0.1, "group cloth pin rim pins")
+    + "mass 1 0.325\nmass 3 0.325\n"
+    + lattice()
+    + filled("above", "-0.15 0.15 -0.15 0.15 0.05 0.2", kind=1)
+    + filled("below", "-0.17 0.17 -0.17 0.17 -0.2 -0.05", kind=3)
+    + """group grains type 1 3
+group above type 1
+group below type 3
+velocity above set 0 0 -30 units box
+velocity below set 0 0 30 units box
+pair_style zero 0.1
+pair_coeff * *
+"""
+    + cloth_styles("compliance 1e-5", "compliance 50")
+    + neighbor(0.03)
+    + """timestep 0.002
+fix step grains nve
+fix sheet cloth pbd/cloth pin pins
+"""
+)
+
+
+@pytest.mark.parametrize("first", ["above", "below"])
+def test_nothing_passes_where_fixes_share_a_cloth(first, tmp_path):
+    """Grains from both sides, each guarded by a fix of its own that moves the same vertices."""
+    second = "below" if first == "above" else "above"
+    lmp = instance()
+    lmp.commands_string(GRAINS)
+    lmp.command(f"fix contact {first} cloth/contact 0.02 sides no")
+    lmp.command(f"fix other {second} cloth/contact 0.02 sides no")
+    dump, data = tmp_path / "grains.lammpstrj", tmp_path / "grains.data"
+    lmp.command(f"write_data {data} nofix")
+    lmp.command(f"dump all all custom 1 {dump} id type x y z")
+    lmp.command("dump_modify all sort id format float %.17g")
+    lmp.command("run 12")
+    lmp.command("undump all")
+    mesh, steps = ClothMesh.read(data), Trajectory(dump)
+    assert [crossings(mesh, steps, kind).count for kind in (1, 3)] == [0, 0]
+    assert min(lmp.extract_fix(name, 0, 1, 0) for name in ("contact", "other")) > 100
 
 
 def test_contact_does_nothing_when_far():

@@ -52,6 +52,18 @@ SCENES = {
         "",
         "",
     ),
+    "a plane whose variable changes": (
+        "variable x equal 0.2",
+        "xlo -0.2 xhi v_x zlo 0",
+        "",
+        "variable x equal 1.4",
+    ),
+    "a plane at an edge of the box that goes away": (
+        "change_box all x final -0.5 0.2 units box",
+        "xlo -0.2 xhi EDGE zlo 0",
+        "",
+        "change_box all x final -0.5 1.5 units box",
+    ),
     "a gate of particles that is displaced": (
         "region gate block 0.2 0.3 -0.2 0.2 0 0.45 units box\n"
         "create_atoms 2 region gate\ngroup gate type 2",
@@ -209,3 +221,91 @@ def test_water_sleeps_on_beside_fixes_that_move_nothing():
         before = by_id(lmp, "x")
         lmp.commands_string("fix mean all ave/time 1 1 1 c_thermo_temp\nrun 20")
         assert np.array_equal(by_id(lmp, "x"), before)
+
+
+# Water at rest between planes, one of which jumps away.
+GATE = (
+    header("f f f", FLUID)
+    + box("-0.1 {edge} -0.1 0.3 -0.1 0.5")
+    + lattice(0.05)
+    + filled("water", "0 0.3 0 0.2 0 0.3")
+    + sph_tait("1 1 fluid 1000 c0 20 alpha 0.5 spacing 0.05", options="density calibrated")
+    + neighbor(0.03)
+    + """timestep 4e-3
+variable x equal {x}
+fix gravity all gravity 9.81 vector 0 0 -1
+fix planes all wall/sph xlo 0 xhi {gate} ylo 0 yhi 0.2 zlo 0
+fix step all sph/integrate global sleep 0.3 gain 1
+run_style sph/adaptive block
+"""
+)
+SLEEPS, FALLS = 300, 60
+
+
+def go_on(folder, script):
+    """A new instance, with the state at the end of the run before in a restart file."""
+    lmp = instance()
+    lmp.command(f"read_restart {folder}/gate.rst")
+    lmp.commands_string(neighbor(0.03) + script[script.index("pair_style") :])
+    return lmp
+
+
+@pytest.mark.parametrize("between", ["two runs", "a restart file"])
+def test_a_plane_that_jumps_in_the_last_step_of_a_run_wakes(tmp_path, between):
+    script = GATE.format(edge=0.8, gate="v_x", x=f"0.3+0.4*(step>={SLEEPS})")
+    found = []
+    for parted in (False, True):
+        lmp = instance()
+        lmp.commands_string(script)
+        lmp.command(f"run {SLEEPS - 1}")
+        before, asleep = by_id(lmp, "x"), lmp.extract_fix("step", 0, 1, 29)
+        assert asleep == len(before) == 144
+        lmp.command(f"run {1 if parted else 1 + FALLS}")
+        if parted and between == "a restart file":
+            lmp.command(f"write_restart {tmp_path}/gate.rst")
+            lmp = go_on(tmp_path, script)
+        if parted:
+            lmp.command(f"run {FALLS}")
+        found.append(by_id(lmp, "x"))
+    assert found[0][:, 2].mean() < before[:, 2].mean() - 0.02
+    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-12)
+
+
+# edge of the box, place of the plane, and commands before and after a restart file
+MOVES = {
+    "at an edge of the box": (0.3, "EDGE", "change_box all x final -0.1 0.8 units box", ""),
+    "by a variable": (0.8, "v_x", "", "variable x equal 0.7"),
+}
+PARTS = ["a run of no steps", "another fix", "a restart file", "a restart file and another fix"]
+
+
+@pytest.mark.parametrize("between", PARTS)
+@pytest.mark.parametrize("plane", MOVES)
+def test_a_plane_that_jumps_between_runs_wakes(tmp_path, plane, between):
+    edge, gate, of_box, of_variable = MOVES[plane]
+    script = GATE.format(edge=edge, gate=gate, x=0.3)
+    lmp = instance()
+    lmp.commands_string(f"{script}run {SLEEPS}")
+    before = by_id(lmp, "x")
+    assert lmp.extract_fix("step", 0, 1, 29) == len(before)
+    lmp.commands_string(of_box)
+    if "restart" in between:
+        lmp.command(f"write_restart {tmp_path}/gate.rst")
+        name = "other" if "fix" in between else "planes"
+        lmp = go_on(tmp_path, script.replace("fix planes", f"fix {name}"))
+    elif "fix" in between:
+        lmp.commands_string(f"unfix planes\n{script[script.index('fix planes') :].splitlines()[0]}")
+    lmp.commands_string(f"{of_variable}\nrun 0\nrun {FALLS}")
+    assert by_id(lmp, "x")[:, 2].mean() < before[:, 2].mean() - 0.02
+
+
+def test_planes_that_stay_let_water_sleep_between_runs(tmp_path):
+    script = GATE.format(edge=0.3, gate="EDGE", x=0.3)
+    lmp = instance()
+    lmp.commands_string(f"{script}run {SLEEPS}")
+    before = by_id(lmp, "x")
+    lmp.commands_string(f"run 10\nwrite_restart {tmp_path}/gate.rst")
+    assert np.array_equal(by_id(lmp, "x"), before)
+    lmp = go_on(tmp_path, script)
+    lmp.command("run 10")
+    assert np.array_equal(by_id(lmp, "x"), before)

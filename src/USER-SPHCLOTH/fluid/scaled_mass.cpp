@@ -134,7 +134,13 @@ void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
                 [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
 }
 
-// The fluid has drifted already.
+// The fluid has drifted already, from where its forces were replaced.
+
+int ScaledMass::held_in_step(int i, double dt) const
+{
+  const Vec3 before = Vec3::Map(atom->x[i]) - dt * Vec3::Map(atom->v[i]);
+  return held.axes(atom->mask[i], before.data(), atom->f[i]);
+}
 
 void ScaledMass::move_fluid(double dt, double part_of_step)
 {
@@ -150,8 +156,9 @@ void ScaledMass::move_fluid(double dt, double part_of_step)
   for (const int i : beside) {
     if (i < atom->nlocal) {
       const Vec3 change = impulses[i] / atom_mass(atom, i);
+      const int held_axes = held.any() ? held_in_step(i, dt) : 0;
       for (int d = 0; d < 3; d++) {
-        if (held.is_held(atom->f[i][d])) continue;
+        if (held_axes >> d & 1) continue;
         atom->v[i][d] += change[d];
         atom->x[i][d] += dt * change[d];
       }

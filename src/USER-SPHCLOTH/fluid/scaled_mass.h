@@ -89,6 +89,7 @@ class ScaledMass : protected Pointers {
   std::vector<Vec3> impulses;
 
   void note_springs(double dt);
+  int held_in_step(int i, double dt) const;
   int row_of(int vertex);
 };
 

@@ -4,29 +4,24 @@
 #ifndef SPHCLOTH_LAMMPS_UTIL_HELD_PARTICLES_H
 #define SPHCLOTH_LAMMPS_UTIL_HELD_PARTICLES_H
 
-#include "fix.h"
-#include "modify.h"
-#include "utils.h"
-
-#include <algorithm>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 class HeldParticles {
  public:
-  void begin_run(Modify *modify)
-  {
-    const auto &fixes = modify->get_fix_list();
-    there_may_be = std::any_of(fixes.begin(), fixes.end(), [](const Fix *fix) {
-      return utils::strmatch(fix->style, "^setforce") || utils::strmatch(fix->style, "^freeze");
-    });
-  }
-  bool any() const { return there_may_be; }
-  // along one axis, by all forces of the last step: nothing else is 0 to the last bit
-  bool is_held(double force) const { return there_may_be && force == 0.0; }
+  void begin_run(class Modify *);
+  bool any() const { return !holders.empty(); }
+  // The axes, a bit each, along which a fix has set this force to 0: of a particle of these groups
+  // that was here then.
+  int axes(int mask, const double *x, const double *f) const;
 
  private:
-  bool there_may_be = false;
+  struct Holder {
+    int groupbit, axes;
+    class Region *const *region;    // of the fix, which finds it anew for each run; null: none
+  };
+  std::vector<Holder> holders;
 };
 
 }    // namespace LAMMPS_NS

@@ -62,11 +62,8 @@ void BlockImpulses::note_external_forces()
 void BlockImpulses::note_held()
 {
   double *held = state.columns[Columns::HELD];
-  for (const int i : state.fluid->active_particles()) {
-    int axes = 0;
-    for (int d = 0; d < 3; d++) axes |= state.held.is_held(atom->f[i][d]) << d;
-    held[i] = axes;
-  }
+  for (const int i : state.fluid->active_particles())
+    held[i] = state.held.axes(atom->mask[i], atom->x[i], atom->f[i]);
 }
 
 void BlockImpulses::note_rates()

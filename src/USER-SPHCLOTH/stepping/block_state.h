@@ -73,7 +73,7 @@ class BlockColumns : public ParticleColumns {
     SUM,             // of KeptDensity
     GRADIENT,        // three
     CHANGE = GRADIENT + 3,
-    HELD,    // bits of the axes along which its last force was 0, where forces may be replaced
+    HELD,    // bits of the axes along which a fix set its last force to 0
     N_COLUMNS
   };
   static constexpr int ASLEEP = -1;

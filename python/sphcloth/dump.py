@@ -128,7 +128,7 @@ def _check_columns(columns: list[str], path: Path) -> None:
     if absent:
         raise UserError(
             f"{path} lacks the column {' '.join(absent)}: write it with "
-            "'dump ID all custom N FILE id type x y z vx vy vz rho'"
+            "'dump ID all custom N FILE id type x y z vx vy vz'"
         )
     if len(set(columns)) < len(columns):
         raise UserError(f"{path} has two columns of one name: {' '.join(columns)}")

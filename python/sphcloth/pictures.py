@@ -10,6 +10,7 @@ from sphcloth.log import ThermoTable
 from sphcloth.rendering.command import draw_frames, make_scene
 from sphcloth.rendering.movie import write_pictures
 from sphcloth.rendering.scene_roles import SceneRoles
+from sphcloth.results import SUMMARY_PICTURES
 from sphcloth.trajectory import Frame, Trajectory, evenly_spaced
 
 SHEET_PICTURES = 6
@@ -37,7 +38,7 @@ def draw(
     scene = make_scene(some, scene_roles)
     images = draw_frames(trajectory, scene, chosen)
     pictures = list(write_pictures(images, "png", folder / "pictures", ""))
-    sheet, history = folder / "contact_sheet.png", folder / "history.png"
+    sheet, history = (folder / name for name in SUMMARY_PICTURES)
     shown = evenly_spaced(len(pictures), SHEET_PICTURES)
     captions = [f"t = {trajectory.times[chosen[place]]:.3g}" for place in shown]
     plots.contact_sheet([pictures[place] for place in shown], captions, sheet)

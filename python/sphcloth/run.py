@@ -25,7 +25,7 @@ from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.programs import endings_interrupt, kill, lammps_on
-from sphcloth.results import make_folder
+from sphcloth.results import SUMMARY_PICTURES, make_folder
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -146,7 +146,8 @@ def _remove_old_run(out: Path, name: str) -> None:
 
 def _remove_old_results(out: Path) -> None:
     """Remove what was found in an earlier run, lest one that fails early shows its numbers."""
-    _remove([out / "summary.json", *out.glob("pictures/frame_*.png"), *out.glob("*.png")])
+    summaries = [out / name for name in ("summary.json", *SUMMARY_PICTURES)]
+    _remove([*summaries, *out.glob("pictures/frame_[0-9]*.png")])
 
 
 def _remove(files: Iterable[Path]) -> None:

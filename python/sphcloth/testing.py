@@ -135,6 +135,8 @@ def assert_momentum_kept(
         totals.append(metrics.momentum(frame, each))
         scale = max(scale, float(np.sum(each * np.linalg.norm(frame.velocities, axis=1))))
         steps.append(frame.step)
+    if not totals:
+        raise AssertionError("there is no frame")
     changes = np.linalg.norm(np.array(totals) - totals[0], axis=1) / (scale or 1.0)
     worst = int(np.argmax(changes))
     if not changes[worst] <= within:
@@ -149,14 +151,20 @@ def assert_density_within(
 ) -> None:
     """Assert that no density in any frame is off by more than a share of the one at rest."""
     __tracebackhide__ = True
+    import numpy as np
+
     from sphcloth import metrics
 
-    off, step = max(
-        (metrics.density_deviation(frame, rest_density, fluid_type), frame.step) for frame in frames
-    )
-    if not off <= within:
+    off, steps = [], []
+    for frame in frames:
+        off.append(metrics.density_deviation(frame, rest_density, fluid_type))
+        steps.append(frame.step)
+    if not off:
+        raise AssertionError("there is no frame")
+    worst = int(np.argmax(off))  # of what is no number the first
+    if not off[worst] <= within:
         raise AssertionError(
-            f"a density is off by {off:.3%} of {rest_density:g} at step {step}, "
+            f"a density is off by {off[worst]:.3%} of {rest_density:g} at step {steps[worst]}, "
             f"{within:.3%} allowed"
         )
 

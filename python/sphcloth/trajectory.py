@@ -11,6 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 from MDAnalysis.coordinates.LAMMPS import DumpReader
@@ -98,7 +99,10 @@ class Frame:
         """Return some columns side by side, shape (N, number of names); UserError if absent."""
         absent = [name for name in names if name not in self.columns]
         if absent:
-            raise UserError(f"the dump has no column {' '.join(absent)}: add it to 'dump custom'")
+            raise UserError(
+                f"the dump has no column {' '.join(absent)}: add it to 'dump custom', what a "
+                "compute finds as c_ID with 'dump_modify colname c_ID NAME'"
+            )
         return np.stack([self.columns[name] for name in names], axis=1)
 
 
@@ -142,8 +146,14 @@ class Trajectory(Sequence[Frame]):
     def __len__(self) -> int:
         return len(self._entries)
 
-    def __getitem__(self, index: int) -> Frame:  # type: ignore[override]
-        """Read one frame; negative indices count from the end."""
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        """Read one frame, or those of a slice; negative indices count from the end."""
+        if isinstance(index, slice):
+            return [self[place] for place in range(*index.indices(len(self)))]
         entry = self._entries[index]
         names = [name for name in entry.columns if self._columns is None or name in self._columns]
         columns = _read_columns(self.path, entry, names)

@@ -101,9 +101,30 @@ void PairSPHTait::init_style()
                "{}: minimize moves particles without velocities, and 'density continuity' follows "
                "velocities: use 'density summation' or 'density calibrated'",
                STYLE);
+  if (fluid.options.precision == sphcloth::Precision::MIXED) check_range();
   fluid.lattices.set_masses();    // 'mass' may have come since
   comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;
   fluid.begin_run();
+}
+
+// Only lengths are in a unit of their own.
+
+void PairSPHTait::check_range()
+{
+  constexpr double LARGEST = 1e30;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!fluid.is_fluid(t)) continue;
+    const double rho0 = fluid.equation_of_state(t).rho0;
+    const double sound = fluid.equation_of_state(t).sound_speed();
+    for (const double number : {rho0, sound, sound * sound / rho0})
+      if (!(number > 1.0 / LARGEST && number < LARGEST))
+        error->all(
+            FLERR,
+            "{}: precision mixed: density {:.3g}, speed of sound {:.3g} and c0^2/rho0 {:.3g} "
+            "of type {} must be between {:.0e} and {:.0e}: take 'precision double', or other "
+            "units",
+            STYLE, rho0, sound, sound * sound / rho0, t, 1.0 / LARGEST, LARGEST);
+  }
 }
 
 double PairSPHTait::init_one(int i, int j)

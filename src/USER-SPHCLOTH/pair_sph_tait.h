@@ -47,6 +47,7 @@ class PairSPHTait : public Pair, public GhostExchange {
   GhostData for_ghosts = GhostData::DENSITY;    // in the communication that is under way
 
   void allocate();
+  void check_range();    // of single precision
   bool excluded(int, int) const;
   void tally_virial();
   void tally_energy();

@@ -90,6 +90,12 @@ def test_a_log_without_thermo_output_says_what_is_missing(tmp_path: Path) -> Non
     assert error_lines(tmp_path / "log.lammps") == ["ERROR: Unknown command: rum 10"]
 
 
+def test_an_echo_of_the_script_is_no_error(tmp_path: Path) -> None:
+    log = tmp_path / "log.lammps"
+    log.write_text("""if "foo != bar" then "print 'ERROR: no bar'" quit\nERROR: no bar\n""")
+    assert error_lines(log) == ["ERROR: no bar"]
+
+
 @pytest.mark.parametrize("more", [b"---\n...\n", b"\xff\n", b"Step Temp\n1 2\n3 x\n"])
 def test_errors_are_found_whatever_else_a_log_holds(tmp_path: Path, more: bytes) -> None:
     log = tmp_path / "log.lammps"

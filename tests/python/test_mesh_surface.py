@@ -12,6 +12,7 @@ from test_meshing import grid
 
 from sphcloth.errors import UserError
 from sphcloth.meshing import Material, Seams, Surface, build_cloth, read_surface
+from sphcloth.meshing.command import group_names
 from sphcloth.meshing.lammps_files import _id_ranges
 from sphcloth.meshing.load import mend_flat, merge_vertices, repair
 from sphcloth.meshing.pins import select_vertices
@@ -202,3 +203,10 @@ def test_room_per_atom_is_what_lammps_stores() -> None:
     room = cloth.room_per_atom()
     assert room["bond"] <= 6
     assert room["special"] == 36 - 1 + 0  # next to a vertex with five edges nothing has all 36
+
+
+def test_names_of_groups_differ() -> None:
+    names = group_names(
+        [Path(name) for name in ("g_3.obj", "g.obj", "b/g.obj", "all.obj", "g.ply")]
+    )
+    assert names == ["g_3", "g", "g_4", "all_4", "g_5"]

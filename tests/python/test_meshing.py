@@ -480,6 +480,16 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(
     assert [path.name for path in tmp_path.iterdir()] == ["flag.obj"]
 
 
+@pytest.mark.parametrize("name", ["a#b.data", "a b.data", "a$b.data", "a&.data"])
+def test_a_path_is_one_word_of_the_script(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, tmp_path: Path, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    grid(2, 2).export("flag.obj")
+    assert mesh_command(monkeypatch, "flag.obj", "--areal-mass", "1", "--data", name) == 0
+    assert f'read_data "{name}"' in capsys.readouterr().out
+
+
 def test_the_help_shows_examples(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:

@@ -184,11 +184,14 @@ def test_size_and_settings_reach_the_script(drop: Path) -> None:
 
 def test_an_error_of_lammps_is_shown_and_leaves_no_old_summary(drop: Path) -> None:
     run(drop, "tiny")
+    for name in ("contact_sheet.png", "history.png", "holiday.png"):
+        (drop / name).touch()
     code, text = run(drop, "tiny", floor="high")
     assert code == 1
     assert "ERROR" in text
     assert "log.lammps" in text
     assert not (drop / "summary.json").exists()
+    assert [path.name for path in drop.glob("*.png")] == ["holiday.png"]
 
 
 def test_unknown_names_say_what_there_is(drop: Path) -> None:

@@ -120,6 +120,30 @@ def test_references_show_the_worst_value() -> None:
         testing.assert_close_to_reference([1.0, np.nan, 3.0], exact, 0.01)
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 900.0])
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_a_density_that_is_off_in_any_frame_is_found(bad: float, place: int) -> None:
+    frame = make_frame(0, [[0, 0, 0]], np.empty((0, 3)))
+    frames = [
+        replace(frame, step=step, columns=frame.columns | {"rho": np.array([1000.0 + step])})
+        for step in range(3)
+    ]
+    kind = int(frame.types[0])
+    testing.assert_density_within(frames, 1000.0, 0.01, kind)
+    frames[place] = replace(
+        frame, step=place, columns=frame.columns | {"rho": np.array([float(bad)])}
+    )
+    with pytest.raises(AssertionError, match=f"is off by .* at step {place}"):
+        testing.assert_density_within(frames, 1000.0, 0.01, kind)
+
+
+def test_no_frame_has_nothing_that_holds() -> None:
+    with pytest.raises(AssertionError, match="there is no frame"):
+        testing.assert_density_within([], 1000.0, 0.01)
+    with pytest.raises(AssertionError, match="there is no frame"):
+        testing.assert_momentum_kept([], 1.0, 0.01)
+
+
 def test_momentum_that_is_not_a_number_is_not_kept() -> None:
     frame = make_frame(0, [[0, 0, 0]], np.empty((0, 3)))
     flying = replace(

@@ -26,6 +26,8 @@ def test_frames_differ_in_their_number_of_atoms(write_dump: WriteDump) -> None:
     assert [len(frame) for frame in trajectory] == [2, 4, 0]
     assert trajectory.steps.tolist() == [0, 5, 9]
     assert trajectory[-2].step == 5
+    assert [frame.step for frame in trajectory[1:]] == [5, 9]
+    assert [frame.step for frame in trajectory[::-2]] == [9, 0]
     with pytest.raises(IndexError):
         trajectory[3]
 

@@ -55,3 +55,33 @@ def test_mixed_precision_does_not_depend_on_where_the_box_is():
 
     near, far = forces(0.0), forces(1000.0)
     np.testing.assert_allclose(far, near, atol=1e-5 * np.abs(near).max())
+
+
+@pytest.mark.parametrize(
+    ("rho0", "sound", "refused"),
+    [
+        (1e3, 20, False),
+        (1e-10, 1e9, False),
+        (1e38, 20, True),
+        (1e-20, 1e9, True),  # c0^2/rho0 is 1e38, and what is summed of it no number
+        (1e20, 1e-8, True),
+    ],
+)
+def test_what_single_precision_cannot_hold_is_refused(rho0, sound, refused):
+    def forces(precision):
+        lmp = lattice(setting=f"precision {precision}")
+        lmp.commands_string(f"""
+            mass * {rho0 * 0.05**3}
+            set group all sph/rho {1.01 * rho0}
+            pair_coeff * * fluid {rho0} c0 {sound}
+            run 0""")
+        return by_id(lmp, "f")
+
+    double = forces("double")
+    if refused:
+        with pytest.raises(
+            Exception, match=r"sph/tait: precision mixed: density .* of type 1 must"
+        ):
+            forces("mixed")
+    else:
+        np.testing.assert_allclose(forces("mixed"), double, atol=1e-5 * np.abs(double).max())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -352,9 +353,11 @@ def group_names(files: Sequence[Path]) -> list[str]:
     """Return a name for each file that LAMMPS takes for a group; no two are equal."""
     names: list[str] = []
     for number, file in enumerate(files, 1):
-        name = re.sub(r"\W", "_", Path(file).stem, flags=re.ASCII) or "mesh"
-        taken = name in names or name in RESERVED_GROUPS
-        names.append(f"{name}_{number}" if taken else name)
+        name = stem = re.sub(r"\W", "_", Path(file).stem, flags=re.ASCII) or "mesh"
+        numbers = itertools.count(number)
+        while name in names or name in RESERVED_GROUPS:
+            name = f"{stem}_{next(numbers)}"
+        names.append(name)
     return names
 
 

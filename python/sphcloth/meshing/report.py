@@ -164,7 +164,7 @@ def mass_notes(cloth: Cloth, for_data: bool) -> list[str]:
 
 def _word(path: Path) -> str:
     """Return a path as one word of an input script."""
-    return f'"{path}"' if re.search(r"\s", str(path)) else str(path)
+    return f'"{path}"' if re.search(r"[^\w./-]", str(path)) else str(path)
 
 
 def _motion(cloth: Cloth) -> list[str]:

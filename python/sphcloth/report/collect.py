@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sphcloth.errors import UserError
+from sphcloth.results import SUMMARY_PICTURES
 
 # what a result must have to be one of its kind, and the type of each
 KINDS = {
@@ -116,7 +117,7 @@ def _pictures(kind: str, path: Path, values: dict) -> list[Path]:
             for each in values.get("quantities", [])
             if isinstance(each, dict)
         ],
-        "run": ["contact_sheet.png", "history.png"],
+        "run": list(SUMMARY_PICTURES),
     }
     # neither a name nor a link is a way out of the folder
     plain = [folder / name for name in names.get(kind, []) if Path(name).name == name]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// First members of LAMMPS 4 Feb to 22 Jul 2025; see README.md in this folder.
+// First members of LAMMPS 29 Aug 2024 to 22 Jul 2025; see README.md in this folder.
 
 #ifndef LMP_FIX_SET_FORCE_H
 #define LMP_FIX_SET_FORCE_H

@@ -37,6 +37,16 @@ def test_a_particle_that_rounds_the_border_is_not_counted() -> None:
     assert metrics.crossings(MESH, around).count == 0
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_position_that_is_not_finite_is_named(bad: float) -> None:
+    with pytest.raises(UserError, match=r"particle 1001 has a position .* not finite at step 2"):
+        metrics.crossings(MESH, path([0.3, 0.3, 0.2], [0.3, 0.3, 0.1], [0.3, 0.3, bad]))
+    frames = path([0.3, 0.3, 0.2], [0.3, 0.3, 0.1])
+    frames[1] = make_frame(1, [[0.3, 0.3, 0.1]], np.full_like(SHEET, bad))
+    with pytest.raises(UserError, match=r"a vertex has a position .* not finite at step 1"):
+        metrics.crossings(MESH, frames)
+
+
 def test_a_moving_sheet_sweeps_over_a_resting_particle() -> None:
     frames = [
         make_frame(0, [[0.3, 0.4, 0.5]], SHEET),

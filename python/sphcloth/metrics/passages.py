@@ -49,6 +49,9 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
     interval a particle's passes in the two directions are weighed against each other, so a line
     that cuts through a fold and comes out again is no crossing. A particle that rounds the border
     is seen to do so only if the frames are close enough to show it.
+
+    Raises:
+        UserError: there is one frame, or a position that is not finite.
     """
     found = [
         _crossings_between(mesh, before, after, fluid_type)
@@ -83,10 +86,14 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     """Compare the paths of the particles present in both frames with that of the sheet."""
     start, end = before.select(fluid_type), after.select(fluid_type)
     ids, first, second = np.intersect1d(start.ids, end.ids, True, return_indices=True)
-    here = start.positions[first]
-    there = here + before.shortest(end.positions[second] - here)
+    paths = np.stack([start.positions[first], end.positions[second]])
+    if not np.isfinite(paths).all():
+        bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
+        raise UserError(f"particle {bad} has a position that is not finite at step {after.step}")
+    paths[1] = paths[0] + before.shortest(paths[1] - paths[0])
     corners = np.stack([mesh.corners(before), mesh.corners(after)])
-    paths = np.stack([here, there])
+    if not np.isfinite(corners).all():
+        raise UserError(f"a vertex has a position that is not finite at step {after.step}")
     crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
     for block in np.array_split(np.arange(len(ids)), len(ids) // _BLOCK + 1):
         through, where = _net_passes(paths[:, block], corners)

@@ -332,6 +332,19 @@ def test_settings_are_called_set_as_in_other_commands(tmp_path: Path) -> None:
         assert "probe of" in done.output and "5 steps" in done.output
 
 
+def test_a_variable_that_no_script_mentions_is_refused(tmp_path: Path) -> None:
+    script = write(tmp_path, WATER, COLUMN)
+    probe = Probe(script, {"spacng": "3"}, 1, 2, 600.0)
+    with pytest.raises(UserError, match=r"^in.scene has no variable 'spacng'$"):
+        advise(probe, Console(quiet=True))
+    scene, more = script.read_text(), tmp_path / "in.more"
+    more.write_text("print '${spacng}'\nquit 3\n")
+    for include in (f"include {more}\n", f"variable file index {more}\ninclude ${{file}}\n"):
+        script.write_text(include + scene)
+        with pytest.raises(UserError, match=r"in.scene fails: "):  # by LAMMPS, which has the word
+            advise(probe, Console(quiet=True))
+
+
 @pytest.mark.parametrize(
     ("option", "value"),
     [("--speed", "nan"), ("--speed", "-1"), ("--probe-time", "inf"), ("--stretch", "inf")],

@@ -68,7 +68,8 @@ class Probe:
             edits: style of a fix -> what to append to its command.
 
         Raises:
-            UserError: no script, no run command in it, or LAMMPS failed.
+            UserError: no script, no run command in it, a variable that it does not mention, or
+                LAMMPS failed.
         """
         copy = self._copy(folder, before, edits or {})
         command = lammps_command(Path(copy.name), self.ranks, self.variables)
@@ -83,6 +84,7 @@ class Probe:
     def _copy(self, folder: Path, before: Sequence[str], edits: Mapping[str, str]) -> Path:
         """Write the script and the files that it reads to a folder; returns the copy."""
         texts = gather(self.script)
+        self._check_variables("\n".join(texts.values()))
         fixes = _fixes("\n".join(texts.values()))
         runs: list[str] = []
         folder.mkdir(parents=True)
@@ -99,6 +101,14 @@ class Probe:
         clock = f"variable advise_used equal 0\ntimer timeout 0:0:{self.seconds:.0f} every 10\n"
         copy.write_text(clock + copy.read_text(encoding="utf-8"), encoding="utf-8")
         return copy
+
+    def _check_variables(self, text: str) -> None:
+        """Raise UserError for a variable that the script and what it includes do not mention."""
+        if re.search(r"^\s*include\s+\S*\$", text, re.MULTILINE):
+            return  # which file that is, LAMMPS knows
+        for name in self.variables:
+            if not re.search(rf"\b{name}\b", text):
+                raise UserError(f"{self.script.name} has no variable '{name}'")
 
     def _hook(self, run: str, fixes: Sequence[re.Match], before: Sequence[str]) -> list[str]:
         """Return the commands in the place of ``run``, whose arguments are given as text."""

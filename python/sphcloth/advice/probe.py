@@ -84,8 +84,9 @@ class Probe:
     def _copy(self, folder: Path, before: Sequence[str], edits: Mapping[str, str]) -> Path:
         """Write the script and the files that it reads to a folder; returns the copy."""
         texts = gather(self.script)
-        self._check_variables("\n".join(texts.values()))
-        fixes = _fixes("\n".join(texts.values()))
+        whole = "\n".join(texts.values())
+        self._check_variables(whole)
+        fixes = _fixes(whole)
         runs: list[str] = []
         folder.mkdir(parents=True)
         for path, text in texts.items():

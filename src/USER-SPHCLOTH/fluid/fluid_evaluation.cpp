@@ -156,7 +156,7 @@ void FluidEvaluation::find_forces()
     core->impulses(particles(), *impulses);
   else
     core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
-  if (surface.on()) core->turn_forces(particles());
+  if (surface.on()) surface.push(*core, particles(), boundaries);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
   if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
@@ -345,7 +345,7 @@ void FluidEvaluation::find_densities(const Particles &p)
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
       core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
-    if (surface.on()) surface.complete(*core, p);
+    if (surface.on()) surface.complete(*core, p, boundaries);
     if (!lattices.adapts_density()) return;
     return core->for_active_fluid(
         [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });

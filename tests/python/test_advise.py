@@ -221,6 +221,10 @@ def test_a_skin_that_is_too_thin(tmp_path: Path) -> None:
 def test_walls_that_nothing_touches(tmp_path: Path) -> None:
     found = topics(water(tmp_path, walls="xlo 0.0 xhi 7.9 ylo 0.0 yhi 2.9"))
     assert found == {"wall xhi, yhi": "fix tank water wall/sph xlo 0.0 ylo 0.0"}
+    moving = "xlo 0.0 ylo 0.0 xhi 7.9 yhi 2.9 slip yes velocity ylo 0.2 0 0 pressure mirror"
+    found = topics(water(tmp_path, walls=f"{moving} velocity xhi 0 0.1 0", steps="60"))
+    left = "xlo 0.0 ylo 0.0 slip yes velocity ylo 0.2 0 0 pressure mirror"
+    assert found["wall xhi, yhi"] == f"fix tank water wall/sph {left}"
 
 
 def test_limits_that_set_no_step(tmp_path: Path) -> None:

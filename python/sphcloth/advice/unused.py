@@ -89,9 +89,8 @@ def _walls(run: Evidence) -> Iterator[Finding]:
         pushes = [_push(run, fix, place) for place in range(len(faces))]
         idle = [face for face, push in zip(faces, pushes, strict=True) if push == 0]
         if idle:
-            kept = [face for face in faces if face not in idle]
-            words = " ".join(f"{face} {fix.value(face, '')}" for face in kept)
-            line = f"{fix.line} {words}" if kept else f"# {fix.line}"
+            is_left = len(idle) < len(faces)
+            line = f"{fix.line} {_without_faces(fix, idle)}" if is_left else f"# {fix.line}"
             yield Finding(f"wall {', '.join(idle)}", "its force was 0 all the time", line)
 
 
@@ -99,6 +98,20 @@ def _faces_end(fix: Fix) -> int:
     """Return where the faces of fix wall/sph end and its keywords begin."""
     words = fix.arguments
     return next((n for n, word in enumerate(words) if n % 2 == 0 and word not in FACES), len(words))
+
+
+def _without_faces(fix: Fix, idle: list[str]) -> str:
+    """Return the arguments of fix wall/sph less some faces and their velocities."""
+    words, kept = list(fix.arguments), []
+    while words:
+        word = words.pop(0)
+        if word == "velocity" and words[0] in idle:
+            words = words[4:]
+        elif word in idle:
+            words = words[1:]
+        else:
+            kept.append(word)
+    return " ".join(kept)
 
 
 def _push(run: Evidence, fix: Fix, place: int) -> float | None:

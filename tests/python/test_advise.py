@@ -194,6 +194,21 @@ def test_a_ceiling_that_sets_the_step(tmp_path: Path) -> None:
     assert found["time step"] == "fix step water sph/integrate ... max 0.0002"
 
 
+@pytest.mark.parametrize("is_quoted", [False, True])
+def test_keywords_for_a_fix_without_a_scheme_come_with_one(tmp_path: Path, is_quoted: bool) -> None:
+    """The lines are right as they are printed, and so is the command that is tried."""
+    text, plain = WATER, "fix             step water sph/integrate {scheme}\n"
+    if is_quoted:
+        text = WATER.replace(plain, f'if "1 > 0" then "{plain.strip()}" else "print none"\n')
+    advice = ask(write(tmp_path, text, COLUMN, scheme="", dt="1e-4", steps="100"))
+    found = topics(advice)
+    assert found["time step"] == "fix step water sph/integrate global max 0.0002"
+    (step,) = [each for each in advice.needs if each.topic == "time step"]
+    assert "with max 0.0002 steps are " in step.measured and "fails" not in step.measured
+    (limits,) = [line for topic, line in found.items() if topic.startswith("limit")]
+    assert limits == "fix step water sph/integrate global velocity 0 force 0 density 0"
+
+
 def test_a_constant_step_that_is_short(tmp_path: Path) -> None:
     found = topics(water(tmp_path, scheme="constant", dt="1e-4", steps="50"))
     assert float(found["time step"].split()[1]) == pytest.approx(0.5 * 0.075 / 50, rel=0.02)

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sphcloth.advice.commands import Commands
+from sphcloth.advice.commands import Commands, appended
 from sphcloth.advice.evidence import Evidence
 from sphcloth.errors import UserError
 from sphcloth.run import LOG, copy_companions, lammps_command, last_words, wait_for_lammps
@@ -226,9 +226,18 @@ def _hooked(line: str, runs: list[str]) -> str:
 
 def _edited(line: str, edits: Mapping[str, str]) -> str:
     """Append what is to be appended to the fixes of some styles."""
+    # in an `if` a command ends with its quotes
+    until = r"[^\"']*" if line.split()[:1] == ["if"] else ".*"
+
+    def longer(fix: re.Match) -> str:
+        name, group, style, words = fix.groups()
+        if style not in edits:
+            return fix[0]
+        return f"fix {name} {group} {style} {appended(style, words.split(), edits[style])}"
+
     code = line.partition("#")[0]
-    found = _FIX.search(code)
-    return f"{code.rstrip()} {edits[found[3]]}" if found and found[3] in edits else line
+    edited = re.sub(f"{_FIX.pattern}({until})", longer, code)
+    return line if edited == code else edited
 
 
 def _columns(fix: re.Match) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sphcloth.advice.commands import Fix
+from sphcloth.advice.commands import Fix, appended
 from sphcloth.advice.evidence import Evidence
 from sphcloth.fix_values import LIMITS
 
@@ -50,7 +50,7 @@ def _limits(run: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"limit{'s' * (len(off) > 1)} {', '.join(off)}",
             f"set none of {total} steps",
-            f"{stepper.line} {' '.join(_without(stepper, off))} {keywords}",
+            f"{stepper.line} {appended(stepper.style, _without(stepper, off), keywords)}",
         )
 
 

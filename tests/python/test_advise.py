@@ -249,6 +249,14 @@ def test_limits_that_set_no_step(tmp_path: Path) -> None:
     assert line.endswith("density 0")
 
 
+def test_limits_that_accuracy_stands_for_are_not_switched_off(tmp_path: Path) -> None:
+    """They are errors beside it; those that it leaves alone may go."""
+    scheme = "global accuracy 0.02 relative 100"
+    found = topics(water(tmp_path, scheme=scheme, dt="1e-4", steps="60"))
+    assert found["limit relative"] == "fix step water sph/integrate global accuracy 0.02 relative 0"
+    assert not [topic for topic in found if "velocity" in topic or "density" in topic]
+
+
 def test_viscosity_that_does_nothing(tmp_path: Path) -> None:
     """Water that flies freely has no use for it; water that collapses has."""
     flying = {"walls": "ylo -0.15", "more": "nu 1e-9", "steps": "60"}

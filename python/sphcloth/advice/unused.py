@@ -41,7 +41,9 @@ def _limits(run: Evidence) -> Iterator[Finding]:
     stepper, set_by = run.commands.stepper, run.commands.steps_by_limit
     if stepper is None or not sum(set_by.values()):
         return
-    off = [name for name in DEFAULTS if _is_on(stepper, name, DEFAULTS[name])]
+    # accuracy stands for all of the defaults, and allows none of them beside it
+    defaults = {} if "accuracy" in stepper.arguments else DEFAULTS
+    off = [name for name in defaults if _is_on(stepper, name, defaults[name])]
     off += [name for name in OPTIONAL if _is_on(stepper, name, "0")]
     off = [name for name in off if not set_by.get(name) and not _particles(run, stepper, name)]
     if off:

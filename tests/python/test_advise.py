@@ -314,6 +314,20 @@ def test_runs_in_loops_branches_and_includes_are_probed(tmp_path: Path) -> None:
     assert (run.steps, run.whole) == (33, False)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("end", ["quit 3", 'if "1 > 0" then "quit 3"'])
+def test_a_script_may_end_with_a_status_of_its_own(tmp_path: Path, end: str, ranks: int) -> None:
+    script = write(tmp_path, WATER + end + "\n", COLUMN, steps="20")
+    run = Probe(script, {}, ranks, 1000, 600.0).run(tmp_path / "probe")
+    assert (run.steps, run.whole) == (20, True)
+
+
+def test_an_error_behind_a_run_is_an_error(tmp_path: Path) -> None:
+    script = write(tmp_path, WATER + "no_such_command\nquit 3\n", COLUMN, steps="20")
+    with pytest.raises(UserError, match=r"in.scene fails: ERROR: Unknown command: no_such_command"):
+        ask(script)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -76,7 +76,7 @@ class Probe:
         begin = time.monotonic()
         status = wait_for_lammps(command, folder, TIMEOUT_FACTOR * self.seconds + GRACE_SECONDS)
         # one that took too long is read as far as it came
-        if status:
+        if status and not _has_quit(folder):
             reason = " ".join(last_words(folder)) or f"exit status {status}"
             raise UserError(f"{self.script} fails: {reason}")
         return self._read(folder, time.monotonic() - begin < self.seconds)
@@ -204,6 +204,16 @@ def _fixes(text: str) -> list[re.Match]:
     """Return the fixes of this package that a script may define, each ID once."""
     lines = "\n".join(line.partition("#")[0] for line in text.splitlines())
     return list({found[1]: found for found in _FIX.finditer(lines)}.values())
+
+
+def _has_quit(folder: Path) -> bool:
+    """Tell whether a script that has run something ended by ``quit``, whatever its status."""
+    log = folder / LOG
+    if not (folder / USED).is_file() or not log.is_file():
+        return False
+    # commands are in the log before they are executed, and errors behind them
+    text = log.read_text(encoding="utf-8", errors="replace").rstrip()
+    return text.rpartition("\n")[2].split()[:1] == ["quit"]
 
 
 def _hook_name(number: int) -> str:

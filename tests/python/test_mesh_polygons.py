@@ -15,7 +15,7 @@ from sphcloth.errors import UserError
 from sphcloth.meshing import Surface, read_surface
 
 RNG = np.random.default_rng(5)
-# counterclockwise; a fan from the second corner of each folds
+# in the positive sense; a fan from the second corner of each folds
 ELL = np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [1, 2, 0], [0, 2, 0]], float)
 DART = np.array([[0, 0, 0], [1, 2, 0], [0, 0.5, 0], [-1, 2, 0]])
 TENTHS = np.arange(10) * np.pi / 5

@@ -37,9 +37,10 @@ void ClothOptions::read(ArgReader &args)
       pinbit = group->bitmask[pin_group];
     } else if (keyword == "velocity")
       pin_motion.read(args);
-    else if (keyword == "attach")
-      attachbit = group->bitmask[read_held(args, keyword)];
-    else if (keyword == "damping")
+    else if (keyword == "attach") {
+      attach_group = read_held(args, keyword);
+      attachbit = group->bitmask[attach_group];
+    } else if (keyword == "damping")
       solving.damping = args.at_least("damping rate", 0.0);
     else if (keyword == "rest")
       rest_property = args.word("rest property");
@@ -73,6 +74,12 @@ void ClothOptions::check(ArgReader &args)
   if (solving.tolerance > 0.0 && solving.solver == ClothSolver::SUBSTEPS)
     args.fail("tolerance", std::to_string(solving.tolerance),
               "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
+}
+
+void ClothOptions::check_groups() const
+{
+  if (pinbit) refuse_dynamic_group(lmp, owner, "pin", pin_group);
+  if (attachbit) refuse_dynamic_group(lmp, owner, "attach", attach_group);
 }
 
 // group of the vertices that something else moves

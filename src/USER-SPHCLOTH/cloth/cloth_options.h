@@ -35,7 +35,7 @@ class ClothOptions : protected Pointers {
   const int igroup;
   bool solver_given = false, iterations_given = false, strain_given = false;
 
-  int read_held(ArgReader &, const std::string &keyword);
+  void read_held(ArgReader &, const std::string &keyword, int &held, int &bit);
   void check(ArgReader &);
 };
 

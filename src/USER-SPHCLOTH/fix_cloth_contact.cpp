@@ -224,6 +224,7 @@ void FixClothContact::add_obstacle(int obstacle_group)
 {
   const int bit = group->bitmask[obstacle_group];
   const char *name = group->names[obstacle_group];
+  refuse_dynamic_group(lmp, label, "obstacle", obstacle_group);
   for (const FixPBDCloth *cloth : cloths)
     if (share_atoms(atom, bit, cloth->groupbit, world))
       error->all(FLERR, "{}: obstacle group {} holds vertices of fix {}: an obstacle is no cloth",

@@ -253,11 +253,10 @@ void FluidEvaluation::select(const Particles &p)
 
 Fluid::Box FluidEvaluation::box() const
 {
-  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo, *prd = domain->prd;
   const double tilt = std::fabs(domain->xy) + std::fabs(domain->xz) + std::fabs(domain->yz);
-  return {{lo[0], lo[1], lo[2]},
-          {domain->prd[0], domain->prd[1], domain->prd[2]},
-          comm->get_comm_cutoff() + neighbor->skin + tilt};
+  const double reach = comm->get_comm_cutoff() + neighbor->skin;
+  return {{lo[0], lo[1], lo[2]}, {prd[0], prd[1], prd[2]}, reach, tilt};
 }
 
 // From velocities and a usual acoustic step: the step itself is another after a restart than

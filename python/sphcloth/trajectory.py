@@ -82,7 +82,7 @@ class Frame:
         return cell
 
     def shortest(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return displacements, shape (N, 3), without the periodic wraps that are in them.
+        """Return displacements, shape (..., 3), without the periodic wraps that are in them.
 
         They must be shorter than half the distance of opposite faces of the box.
         """

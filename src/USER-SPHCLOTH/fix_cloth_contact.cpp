@@ -17,7 +17,6 @@
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
-#include "lammps_util/lammps_version.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -36,7 +35,8 @@ static constexpr int MAX_ROUNDS = 10;
 
 FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} cloth/contact", id)), options(lmp, label),
-    rules(options.rules), ghosts(lmp, label), view_distance(0.0), vertex_bits(0), particle_bits(0)
+    rules(options.rules), ghosts(lmp, label), step_start(lmp), view_distance(0.0), vertex_bits(0),
+    particle_bits(0)
 {
   vector_flag = 1;
   size_vector = 15;
@@ -51,7 +51,7 @@ FixClothContact::FixClothContact(LAMMPS *lmp_, int narg, char **arg) :
   counts.cloth_gap = options.cloth_rules.thickness;    // none is nearer before the first step
   if (options.walls) walls = std::make_unique<MeshBoundary>(lmp, label, groupbit);
   restart_peratom = !options.obstacle_groups.empty();
-  last_positions.create(3, atom->nmax);
+  step_start.positions.create(3, atom->nmax);
   if (!options.obstacle_groups.empty()) impulses.create(atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothContact::set_arrays(i);
   atom->add_callback(Atom::GROW);
@@ -169,7 +169,7 @@ void FixClothContact::join()
     meshes.obstacle_bits |= obstacle->groupbit;
   }
   joined = std::make_unique<JoinedContact>(lmp, meshes, label, particle_bits, meeting_rules(),
-                                           counts, last_positions);
+                                           counts, step_start);
   contacts.push_back(&joined->contact);
   FixPBDCloth::solve_together(cloths);
   for (std::size_t k = 0; k < cloths.size(); k++) cloths[k]->register_coupling(joined->parts[k]);
@@ -224,6 +224,7 @@ void FixClothContact::add_obstacle(int obstacle_group)
 {
   const int bit = group->bitmask[obstacle_group];
   const char *name = group->names[obstacle_group];
+  refuse_dynamic_group(lmp, label, "obstacle", obstacle_group);
   for (const FixPBDCloth *cloth : cloths)
     if (share_atoms(atom, bit, cloth->groupbit, world))
       error->all(FLERR, "{}: obstacle group {} holds vertices of fix {}: an obstacle is no cloth",
@@ -256,7 +257,8 @@ void FixClothContact::setup_post_neighbor()
                "{}: the cloth has no triangles: they are LAMMPS angles, create_cloth makes them, a "
                "data file needs an Angles section",
                label);
-  store_positions();
+  step_start.atoms_moved();
+  step_start.take_positions();
   sheets.clear();
   if (rules.sides) sheets = find_sheets();
   if (sheets.size() > sphcloth::MAX_SHEETS)
@@ -270,7 +272,7 @@ void FixClothContact::setup_post_neighbor()
 
 void FixClothContact::post_neighbor()
 {
-  wrap_last_positions();
+  step_start.rebuild();
   const double distance = reach_of_triangles();
   for_all_surfaces([distance](ContactSurface &s) { s.triangles.rebuild(distance); });
   if (joined) joined->triangles.rebuild(std::max(distance, options.cloth_rules.thickness));
@@ -349,7 +351,8 @@ void FixClothContact::end_step(bool any_contact)
     for (MeshContact *contact : contacts)
       contact->for_particles_at_moving_triangles(stepping->sleeping_speed() * update->dt,
                                                  [this](int i) { stepping->disturb(i); });
-  store_positions();
+  if (any_contact) step_start.atoms_moved();
+  step_start.take_positions();
 }
 
 // Vertices, and particles in contact, end a step with the velocity of its last substep, which is
@@ -361,7 +364,7 @@ void FixClothContact::subtract_excess_velocities()
   const auto subtract = [&](int i) {
     double *v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      const double excess = v[d] - (atom->x[i][d] - last_positions[d][i]) / update->dt;
+      const double excess = v[d] - (atom->x[i][d] - step_start.positions[d][i]) / update->dt;
       excess_velocities[d][i] += excess;
       v[d] -= excess;
     }
@@ -388,18 +391,6 @@ void FixClothContact::pre_reverse(int, int)
     for (int i = 0; i < atom->nlocal; i++)
       if (obstacle->has_vertex(i))
         for (int d = 0; d < 3; d++) atom->f[i][d] += impulses.force(d, i, force->ftm2v);
-}
-
-// LAMMPS has put atoms back into the box.  It may be another box by the end of the next step.
-
-void FixClothContact::wrap_last_positions()
-{
-  for (int i = 0; i < atom->nlocal; i++) {
-    double displacement[3];
-    for (int d = 0; d < 3; d++) displacement[d] = atom->x[i][d] - last_positions[d][i];
-    release::minimum_image(domain, displacement);
-    for (int d = 0; d < 3; d++) last_positions[d][i] = atom->x[i][d] - displacement[d];
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -446,7 +437,7 @@ void FixClothContact::unpack_forward_comm(int n, int first, double *buf)
 void FixClothContact::set_arrays(int i)
 {
   for (ParticleColumns *each : columns()) each->clear(i);
-  last_positions.unpack(i, atom->x[i]);
+  step_start.positions.unpack(i, atom->x[i]);
 }
 
 int FixClothContact::pack_exchange(int i, double *buf)

@@ -119,9 +119,9 @@ class FixClothContact : public Fix, public SideSource {
   const ContactRules &rules;    // of particles
   GhostReach ghosts;
   ContactCounts counts;    // of this rank, since the fix was made
-  // x, y, z of owned atoms: positions at the end of the last step; and velocity minus displacement
-  // over the step, if densities follow displacements
-  ParticleColumns last_positions, excess_velocities;
+  StepStart step_start;
+  // velocity minus displacement over the step, if densities follow displacements
+  ParticleColumns excess_velocities;
   ObstacleImpulses impulses;    // if there are obstacles
   FixSPHIntegrate *stepping = nullptr;    // null: nothing sleeps
   std::vector<FixPBDCloth *> cloths;    // those before this fix
@@ -143,7 +143,7 @@ class FixClothContact : public Fix, public SideSource {
 
   std::array<ParticleColumns *, 3> columns()
   {
-    return {&last_positions, &impulses, &excess_velocities};
+    return {&step_start.positions, &impulses, &excess_velocities};
   }
   double reach_of_triangles() const
   {
@@ -171,11 +171,6 @@ class FixClothContact : public Fix, public SideSource {
       if (surface->triangles.is_open()) found.push_back(surface.get());
     return found;
   }
-  void store_positions()
-  {
-    for (int i = 0; i < atom->nlocal; i++) last_positions.unpack(i, atom->x[i]);
-  }
-  void wrap_last_positions();
   void subtract_excess_velocities();
   void end_step(bool any_contact);
   void find_sides();
@@ -190,7 +185,7 @@ class FixClothContact : public Fix, public SideSource {
   std::unique_ptr<ContactSurface> make_surface(ContactMesh *mesh)
   {
     return std::make_unique<ContactSurface>(lmp, mesh, label, particle_bits, rules, counts,
-                                            last_positions);
+                                            step_start);
   }
   void add_obstacle(int group);
   template <class Do> void for_all_surfaces(Do something)

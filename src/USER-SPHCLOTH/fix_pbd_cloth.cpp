@@ -125,6 +125,7 @@ void FixPBDCloth::init()
   scaled.init();
   const ClothInput made_of(lmp, this, label);
   made_of.check_vertices();
+  options.check_groups();
   held.stop_pins();
   mesh.gather(groupbit);
   if (!mesh.edges.size())

@@ -132,12 +132,11 @@ void FixSPHIntegrate::use_scheme(SteppingScheme wanted, const BlockClock &clock)
 
 void FixSPHIntegrate::check_group()
 {
-  if (const int type = fluid->boundary_type_in(groupbit))
+  if (const int type = fluid->foreign_type_in(groupbit))
     error->all(
         FLERR,
-        "{}: group {} holds type {}, a boundary type: integrate cloth with fix pbd/cloth, leave "
-        "walls out",
-        label, group->names[igroup], type);
+        "{}: group {} holds type {}, {}: integrate cloth with fix pbd/cloth, leave walls out",
+        label, group->names[igroup], type, fluid->kind(type));
 }
 
 // The step of the script is the ceiling.  How far ghosts reach, and by that the order of sums,

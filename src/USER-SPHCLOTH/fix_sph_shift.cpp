@@ -95,9 +95,9 @@ void FixSPHShift::init()
   cloth_bits = 0;
   for (const Fix *fix : modify->get_fix_by_style("^pbd/cloth$")) cloth_bits |= fix->groupbit;
 
-  if (const int type = fluid->boundary_type_in(groupbit))
-    error->all(FLERR, "{}: group {} holds type {}, a boundary type: give a group of fluid", label,
-               group->names[igroup], type);
+  if (const int type = fluid->foreign_type_in(groupbit))
+    error->all(FLERR, "{}: group {} holds type {}, {}: give a group of fluid", label,
+               group->names[igroup], type, fluid->kind(type));
 }
 
 /* ----------------------------------------------------------------------

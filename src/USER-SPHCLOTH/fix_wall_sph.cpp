@@ -293,13 +293,6 @@ double FixWallSPH::density_rate(int i, double of_particles, double back)
 // The pressure is the gradient of the fluid's energy with the density sum that the walls take part
 // in, as for boundary particles; behind a wall a spring as stiff as the fluid is added.
 
-void FixWallSPH::push(int i, double p_over_rho2) { push(i, p_over_rho2, 1.0, true); }
-
-void FixWallSPH::push_more(int i, double p_over_rho2, double times)
-{
-  push(i, p_over_rho2, times, false);
-}
-
 void FixWallSPH::prolong(double times)
 {
   for (std::size_t k = 0; k + 1 < mine.size(); k++) mine[k] *= times;    // the energy stays
@@ -340,6 +333,36 @@ void FixWallSPH::push(int i, double p_over_rho2, double times, bool first)
     atom->drho[i] += denser * speed;
     if (thermo_virial) presses.push_back({i, axis, to_force * pressure * delta * support});
     mine.back() += 0.5 * mass * type.stiffness * strain * strain * force->mvv2e;
+  }
+}
+
+void FixWallSPH::complete_gradient(int i, double *gradient)
+{
+  if (!query(i)) return;
+  for (std::size_t n = 0; n < near.size(); n++) {
+    const Wall &wall = walls[near[n].wall];
+    gradient[wall.axis()] += lacking(i) * wall.inwards() * slope(i, n);
+  }
+}
+
+// by the change of that gradient with the position
+
+void FixWallSPH::push_turn(int i, const Eigen::Vector3d &turn)
+{
+  if (!query(i)) return;
+  const OfType &type = types[atom->type[i]];
+  const double to_force = atom_mass(atom, i) / force->ftm2v, support = type.support;
+  const double scale = -reflection * lacking(i) * type.rho0 / (support * support);
+  for (std::size_t n = 0; n < near.size(); n++) {
+    const int k = near[n].wall, axis = walls[k].axis();
+    double away = 0.0;
+    for (std::size_t m = 0; m < near.size(); m++) {
+      const Wall &other = walls[near[m].wall];
+      away += scale * near.curvature(n, m) * other.inwards() * turn[other.axis()];
+    }
+    atom->f[i][axis] += to_force * walls[k].inwards() * away;
+    mine[3 * k + axis] -= to_force * walls[k].inwards() * away;
+    if (thermo_virial) presses.push_back({i, axis, to_force * away * near[n].delta * support});
   }
 }
 

@@ -56,8 +56,14 @@ class FixWallSPH : public Fix, public FluidBoundary {
   void begin() override;
   double density(int i, double of_particles) override;
   double density_rate(int i, double of_particles, double back) override;
-  void push(int i, double p_over_rho2) override;
-  void push_more(int i, double p_over_rho2, double times) override;
+  void push(int i, double p_over_rho2) override { push(i, p_over_rho2, 1.0, true); }
+  void push_more(int i, double p_over_rho2, double times) override
+  {
+    push(i, p_over_rho2, times, false);
+  }
+  bool knows_gradients() const override { return true; }
+  void complete_gradient(int i, double *) override;
+  void push_turn(int i, const Eigen::Vector3d &) override;
   void defer(const Take &) override { std::fill(mine.begin(), mine.end(), 0.0); }
   void prolong(double times) override;
 
@@ -140,6 +146,9 @@ class FixWallSPH : public Fix, public FluidBoundary {
     const OfType &type = types[atom->type[i]];
     return type.rho0 * near.slope(n) / type.support;
   }
+  // The gradient that a layer lacks over that of what a wall adds: a profile makes up for forces
+  // that are not doubled.
+  double lacking(int i) const { return profiles[atom->type[i]].changes() ? 0.5 * reflection : 1.0; }
   // velocity of particle i away from wall k
   double departure(int i, std::size_t k) const
   {

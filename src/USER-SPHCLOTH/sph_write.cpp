@@ -104,6 +104,9 @@ int SPHWrite::read_type(ArgReader &args, const std::string &what) const
   if (!fluid->has_role(itype))
     error->all(FLERR, "{}: nothing was said of type {}: use 'pair_coeff {} {} fluid ...' before",
                STYLE, itype, itype, itype);
+  if (!fluid->is_fluid(itype) && !fluid->is_boundary(itype))
+    error->all(FLERR, "{}: type {} is {}, without kernel and equation of state: give a fluid type",
+               STYLE, itype, fluid->kind(itype));
   return itype;
 }
 

@@ -4,9 +4,11 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 using namespace sphcloth;
@@ -63,6 +65,46 @@ void check_lists(const Cloud &p, int n_owned, int n_types, const std::vector<dou
   BOOST_CHECK(static_cast<int>(seen.size()) == n_owned);
 }
 
+// Layers that part every third pair, and count for which they were asked
+
+class EveryThird : public Parting {
+ public:
+  std::multiset<std::pair<int, int>> asked;
+
+  static bool parts(int i, int j) { return (i + j) % 3 == 0; }
+  bool part(int i, int j, Sides, Sides) override
+  {
+    asked.insert(std::minmax(i, j));
+    return parts(i, j);
+  }
+};
+
+std::multiset<int> listed(const CellLists &lists, int slot, int other)
+{
+  const NeighborSpan s = lists(slot, other);
+  return {s.of, s.of + s.n};
+}
+
+// as without layers, but for pairs that they part; returns how many these are
+
+int check_parted(const CellLists &all, const CellLists &parts, int n_types)
+{
+  int n = 0;
+  for (int slot = 0; slot < all.slots(); slot++) {
+    BOOST_CHECK(all.at(slot) == parts.at(slot));
+    for (int other = 1; other <= n_types; other++) {
+      std::multiset<int> expected;
+      for (int j : listed(all, slot, other))
+        if (EveryThird::parts(all.at(slot), j))
+          n++;
+        else
+          expected.insert(j);
+      BOOST_CHECK(listed(parts, slot, other) == expected);
+    }
+  }
+  return n;
+}
+
 }    // namespace
 
 BOOST_AUTO_TEST_SUITE(cell_lists)
@@ -115,17 +157,63 @@ BOOST_AUTO_TEST_CASE(pairs_parted_by_a_sheet_are_left_out_and_no_others)
   parts.build({p.x.data(), p.type.data(), 500, 600, 1, sides.data()}, reach.data());
   int left_out = 0;
   for (int slot = 0; slot < all.slots(); slot++) {
-    const NeighborSpan one = all(slot, 1), other = parts(slot, 1);
-    std::multiset<int> expected, listed(other.of, other.of + other.n);
+    const NeighborSpan one = all(slot, 1);
+    std::multiset<int> expected;
     for (int k = 0; k < one.n; k++)
       if (parted(sides[all.at(slot)], sides[one.of[k]]))
         left_out++;
       else
         expected.insert(one.of[k]);
     BOOST_CHECK(all.at(slot) == parts.at(slot));
-    BOOST_CHECK(listed == expected);
+    BOOST_CHECK(listed(parts, slot, 1) == expected);
   }
   BOOST_CHECK(left_out > 500);
+}
+
+BOOST_AUTO_TEST_CASE(layers_are_asked_once_of_a_pair_of_owned_particles)
+{
+  const int n = 600, owned = 500;
+  const Cloud p = cloud(n, 2, 1.0, 1.0, 1.0, 13);
+  const std::vector<Sides> sides(n, NEAR_SHEET | LAYERED);
+  const std::vector<double> reach{0, 0, 0, 0, 0.2, 0.15, 0, 0.15, 0.25};
+  EveryThird layers;
+  CellLists all, parts;
+  all.build({p.x.data(), p.type.data(), owned, n, 2}, reach.data());
+  parts.build({p.x.data(), p.type.data(), owned, n, 2, sides.data(), &layers}, reach.data());
+  BOOST_CHECK(check_parted(all, parts, 2) > 1000);
+  BOOST_CHECK(layers.asked.size() > 4000);
+  for (const auto &pair : layers.asked) BOOST_CHECK(layers.asked.count(pair) == 1);
+}
+
+BOOST_AUTO_TEST_CASE(layers_are_not_asked_again_of_a_pair_that_is_listed)
+{
+  const int n = 600, owned = 500;
+  Cloud p = cloud(n, 1, 1.0, 1.0, 1.0, 14);
+  const std::vector<Sides> sides(n, NEAR_SHEET | LAYERED);
+  const std::vector<double> reach{0, 0, 0, 0.2};
+  EveryThird layers;
+  CellLists all, parts;
+  all.build({p.x.data(), p.type.data(), owned, n, 1}, reach.data());
+  parts.build({p.x.data(), p.type.data(), owned, n, 1, sides.data(), &layers}, reach.data());
+  std::vector<std::multiset<int>> before;
+  for (int slot = 0; slot < parts.slots(); slot++) before.push_back(listed(parts, slot, 1));
+  layers.asked.clear();
+  for (int i = 0; i < n; i++) p.x[3 * i] += 0.02 * std::sin(1.0 * i);
+  const auto every = [](int, int, int) { return true; };
+  std::vector<int> near(owned, 0);
+  const std::vector<double> nothing(4, 0.0);
+  const std::vector<int> region(n, 0);
+  const CellLists::Near inner{nothing.data(), region.data()};
+  all.renew({p.x.data(), p.type.data(), owned, n, 1}, reach.data(), inner, near, every);
+  parts.renew({p.x.data(), p.type.data(), owned, n, 1, sides.data(), &layers}, reach.data(), inner,
+              near, every);
+  BOOST_CHECK(check_parted(all, parts, 1) > 1000);
+  std::size_t listed_before = 0, n_asked = 0;
+  for (int slot = 0; slot < parts.slots(); slot++)
+    for (int j : listed(parts, slot, 1)) listed_before += before[slot].count(j);
+  for (int slot = 0; slot < all.slots(); slot++) n_asked += listed(all, slot, 1).size();
+  BOOST_CHECK(listed_before > 3000);
+  BOOST_CHECK(layers.asked.size() == n_asked - listed_before);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -148,6 +148,16 @@ BOOST_AUTO_TEST_CASE(edges_of_two_walls)
           return at(delta, [](const JointWalls &walls) { return walls.lambda(); });
         };
         const double slope = at(a, [](const JointWalls &walls) { return walls.slope(0); });
+        for (int k = 0; k < 3; k++) {
+          const auto its_slope = [&](double delta) {
+            return at(delta, [k](const JointWalls &walls) { return walls.slope(k); });
+          };
+          const double bend = at(a, [k](const JointWalls &walls) { return walls.curvature(k, 0); });
+          BOOST_TEST(bend == at(a, [k](const JointWalls &walls) { return walls.curvature(0, k); }),
+                     boost::test_tools::tolerance(1e-12));
+          const double found = (its_slope(a + h) - its_slope(a - h)) / (2.0 * h);
+          BOOST_CHECK_SMALL((bend - found) / (std::fabs(bend) + 0.1), 1e-3);
+        }
         BOOST_CHECK_SMALL(slope - (lambda(a + h) - lambda(a - h)) / (2.0 * h), 1e-6);
         BOOST_CHECK(at(a, [](const JointWalls &walls) { return walls.share(0); }) > 0.0);
       }

@@ -194,6 +194,21 @@ def test_a_ceiling_that_sets_the_step(tmp_path: Path) -> None:
     assert found["time step"] == "fix step water sph/integrate ... max 0.0002"
 
 
+@pytest.mark.parametrize("is_quoted", [False, True])
+def test_keywords_for_a_fix_without_a_scheme_come_with_one(tmp_path: Path, is_quoted: bool) -> None:
+    """The lines are right as they are printed, and so is the command that is tried."""
+    text, plain = WATER, "fix             step water sph/integrate {scheme}\n"
+    if is_quoted:
+        text = WATER.replace(plain, f'if "1 > 0" then "{plain.strip()}" else "print none"\n')
+    advice = ask(write(tmp_path, text, COLUMN, scheme="", dt="1e-4", steps="100"))
+    found = topics(advice)
+    assert found["time step"] == "fix step water sph/integrate global max 0.0002"
+    (step,) = [each for each in advice.needs if each.topic == "time step"]
+    assert "with max 0.0002 steps are " in step.measured and "fails" not in step.measured
+    (limits,) = [line for topic, line in found.items() if topic.startswith("limit")]
+    assert limits == "fix step water sph/integrate global velocity 0 force 0 density 0"
+
+
 def test_a_constant_step_that_is_short(tmp_path: Path) -> None:
     found = topics(water(tmp_path, scheme="constant", dt="1e-4", steps="50"))
     assert float(found["time step"].split()[1]) == pytest.approx(0.5 * 0.075 / 50, rel=0.02)
@@ -221,6 +236,10 @@ def test_a_skin_that_is_too_thin(tmp_path: Path) -> None:
 def test_walls_that_nothing_touches(tmp_path: Path) -> None:
     found = topics(water(tmp_path, walls="xlo 0.0 xhi 7.9 ylo 0.0 yhi 2.9"))
     assert found == {"wall xhi, yhi": "fix tank water wall/sph xlo 0.0 ylo 0.0"}
+    moving = "xlo 0.0 ylo 0.0 xhi 7.9 yhi 2.9 slip yes velocity ylo 0.2 0 0 pressure mirror"
+    found = topics(water(tmp_path, walls=f"{moving} velocity xhi 0 0.1 0", steps="60"))
+    left = "xlo 0.0 ylo 0.0 slip yes velocity ylo 0.2 0 0 pressure mirror"
+    assert found["wall xhi, yhi"] == f"fix tank water wall/sph {left}"
 
 
 def test_limits_that_set_no_step(tmp_path: Path) -> None:
@@ -228,6 +247,14 @@ def test_limits_that_set_no_step(tmp_path: Path) -> None:
     (line,) = found.values()
     assert line.startswith("fix step water sph/integrate global acoustic 0.8 viscous 0 ")
     assert line.endswith("density 0")
+
+
+def test_limits_that_accuracy_stands_for_are_not_switched_off(tmp_path: Path) -> None:
+    """They are errors beside it; those that it leaves alone may go."""
+    scheme = "global accuracy 0.02 relative 100"
+    found = topics(water(tmp_path, scheme=scheme, dt="1e-4", steps="60"))
+    assert found["limit relative"] == "fix step water sph/integrate global accuracy 0.02 relative 0"
+    assert not [topic for topic in found if "velocity" in topic or "density" in topic]
 
 
 def test_viscosity_that_does_nothing(tmp_path: Path) -> None:
@@ -285,6 +312,20 @@ def test_runs_in_loops_branches_and_includes_are_probed(tmp_path: Path) -> None:
     assert (run.steps, run.whole) == (57, True)
     run = Probe(script, {}, 1, 33, 600.0).run(tmp_path / "part")
     assert (run.steps, run.whole) == (33, False)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("end", ["quit 3", 'if "1 > 0" then "quit 3"'])
+def test_a_script_may_end_with_a_status_of_its_own(tmp_path: Path, end: str, ranks: int) -> None:
+    script = write(tmp_path, WATER + end + "\n", COLUMN, steps="20")
+    run = Probe(script, {}, ranks, 1000, 600.0).run(tmp_path / "probe")
+    assert (run.steps, run.whole) == (20, True)
+
+
+def test_an_error_behind_a_run_is_an_error(tmp_path: Path) -> None:
+    script = write(tmp_path, WATER + "no_such_command\nquit 3\n", COLUMN, steps="20")
+    with pytest.raises(UserError, match=r"in.scene fails: ERROR: Unknown command: no_such_command"):
+        ask(script)
 
 
 @pytest.mark.parametrize(

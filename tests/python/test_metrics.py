@@ -11,6 +11,7 @@ from conftest import make_frame, square_sheet
 from sphcloth import metrics
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
+from sphcloth.mesh import ClothMesh
 from sphcloth.trajectory import Frame
 
 MESH, SHEET = square_sheet(4)
@@ -123,6 +124,79 @@ def test_a_wrap_around_a_tilted_box_is_no_flight_through_the_sheet() -> None:
         metrics.crossings(MESH, [replace(f, box=box, tilt=(0, 20, 0)) for f in frames]).count == 0
     )
     assert metrics.crossings(MESH, [replace(f, box=box, tilt=(0, 0, 0)) for f in frames]).count == 1
+
+
+def in_unit_box(frames: list[Frame], **changes: object) -> list[Frame]:
+    """Return the frames in a periodic box from 0 to 1, as a dump has them, or in another one."""
+    box = np.array([[0.0] * 3, [1.0] * 3])
+    return [replace(frame, **{"box": box} | changes) for frame in frames]
+
+
+# height of the particle before and after, then that of the sheet
+@pytest.mark.parametrize(
+    ("particle", "sheet", "expected"),
+    [
+        ((0.02, 0.98), (0.01, 0.01), 1),
+        ((0.99, 0.01), (0.005, 0.005), 1),
+        ((0.98, 0.01), (0.995, 0.99), 1),
+        ((0.002, 0.002), (0.005, 0.995), 1),
+        ((0.998, 0.998), (0.995, 0.001), 1),
+        ((0.5, 0.5), (0.99, 0.01), 0),
+        ((0.99, 0.02), (0.98, 0.01), 0),
+        ((0.97, 0.99), (0.02, 0.01), 0),
+    ],
+)
+def test_passes_through_a_periodic_face_are_found(
+    particle: tuple[float, float], sheet: tuple[float, float], expected: int
+) -> None:
+    frames = [
+        make_frame(step, [[0.4, 0.35, z]], 0.8 * SHEET + [0.1, 0.1, height])
+        for step, (z, height) in enumerate(zip(particle, sheet, strict=True))
+    ]
+    assert metrics.crossings(MESH, in_unit_box(frames)).count == expected
+
+
+@pytest.mark.parametrize("tilt", [(0.0, 0.0, 0.0), (0.3, -0.2, 0.4)])
+def test_a_sheet_through_all_faces_is_crossed_as_one_in_the_middle(
+    tilt: tuple[float, float, float],
+) -> None:
+    """Random paths and a moving wavy sheet, the same counts wherever the box is cut."""
+    sheet = 0.8 * SHEET + 0.1
+    sheet[:, 2] += 0.4 + 0.05 * np.sin(9 * sheet[:, 0])
+    later = sheet + np.array([0.02, 0.01, -0.06])
+    start = RNG.random((500, 3)) * [1, 1, 0.3] + [0, 0, 0.35]
+    end = start + (RNG.random((500, 3)) - 0.5) * 0.3
+    cell = np.eye(3)
+    cell[[1, 2, 2], [0, 0, 1]] = tilt
+    low = np.array([min(0, *tilt[:2], tilt[0] + tilt[1]), min(0, tilt[2]), 0])
+    high = np.array([1 + max(0, *tilt[:2], tilt[0] + tilt[1]), 1 + max(0, tilt[2]), 1])
+
+    def counted(shift: list[float]) -> list[int]:
+        inside = [((each + shift) % 1) @ cell for each in (start, sheet, end, later)]
+        frames = [make_frame(0, *inside[:2]), make_frame(1, *inside[2:])]
+        boxed = in_unit_box(frames, box=np.array([low, high]), tilt=tilt)
+        return sorted(metrics.crossings(MESH, boxed).ids)
+
+    whole = counted([0, 0, 0])
+    assert 50 < len(whole) < 450
+    for shift in ([0, 0, 0.5], [0.5, 0.3, 0], [0.4, 0.7, 0.45]):
+        assert counted(shift) == whole
+
+
+def test_a_sheet_that_closes_through_the_box_has_no_hole_there() -> None:
+    """Four rows of triangles along y, the last one of which ends at the first vertices."""
+    number = np.arange(20).reshape(5, 4)
+    a, b = number[:-1], number[1:]
+    c, d = np.roll(b, -1, axis=1), np.roll(a, -1, axis=1)
+    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]).reshape(-1, 3)
+    x, y = np.meshgrid(np.linspace(0.1, 0.9, 5), np.arange(4) / 4, indexing="ij")
+    sheet = np.stack([x.ravel(), y.ravel(), np.full(20, 0.5)], axis=1)
+    over = np.column_stack([np.full(40, 0.37), np.arange(40) / 40 + 0.011, np.full(40, 0.6)])
+    frames = [make_frame(0, over, sheet), make_frame(1, over - [0, 0, 0.2], sheet)]
+    ring = ClothMesh(np.arange(1, 21), triangles)
+    assert metrics.crossings(ring, in_unit_box(frames)).count == 40
+    closed = in_unit_box(frames, periodic=(True, False, True))
+    assert metrics.crossings(ring, closed).count < 40
 
 
 def test_one_frame_is_too_few() -> None:

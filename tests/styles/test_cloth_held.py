@@ -191,6 +191,8 @@ def test_the_order_of_the_fixes_does_not_matter():
         ("group no empty\nfix s cloth pbd/cloth attach no", "attach group is 'no'.*no vertex"),
         (BODY + "solver substeps", "solver is 'substeps'.*solver gs"),
         (BODY + "pin bar", "in the group of pin and in that of attach"),
+        (BODY + "attach pins", "attach group is 'pins': bar is .*'group ID union bar pins'"),
+        (BODY + "pin pins pin all", "pin group is 'all': pins is .*'group ID union pins all'"),
     ],
 )
 def test_errors_of_held_vertices(commands, words):

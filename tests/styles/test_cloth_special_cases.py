@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from cloth_data import EPS, Cloth, motion, start
-from harness import instance
+from harness import by_id, instance
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +118,32 @@ def test_a_bond_that_is_written_twice_is_one(folder):
     once, _, _ = motion(one_cloth(*pair, bond_coeffs=["0.5"]), folder)
     twice = one_cloth(*pair, bond_coeffs=["0.5"], bonds=[(0, 1, 1), (1, 0, 1), (0, 1, 1)])
     assert (motion(twice, folder)[0] == once).all()
+
+
+COPIES = {
+    "reversed": [(0, 1, 2, 3, 1), (3, 2, 1, 0, 1)],
+    "wings exchanged": [(0, 1, 2, 3, 1), (3, 1, 2, 0, 1)],
+    "wings exchanged, the other first": [(3, 1, 2, 0, 1), (0, 1, 2, 3, 1)],
+    "all": [(3, 1, 2, 0, 1), (0, 2, 1, 3, 1), (3, 2, 1, 0, 1), (0, 1, 2, 3, 1)],
+}
+
+
+@pytest.mark.parametrize("copies", COPIES.values(), ids=COPIES)
+@pytest.mark.parametrize("newton", ["on", "off"])
+def test_a_hinge_that_is_written_twice_is_one(folder, copies, newton):
+    """In any order of its vertices; its angle has the sign of one way to write it."""
+    angles = "compute angles all pbd/local sheet hinge id1 id4 angle"
+    ends = []
+    for hinges in ([(0, 1, 2, 3, 1)], copies):
+        bent = one_cloth(
+            [[0.2, 0.8, 0.5], *SQUARE[1:]], SQUARE, **(FREE_HINGE | {"hinges": hinges})
+        )
+        bent.hinge_coeffs = ["0.5"]
+        with start(bent, folder, newton) as lmp:
+            lmp.commands_string(f"{angles}\nrun 3")
+            ends.append((by_id(lmp, "x"), np.array(lmp.numpy.extract_compute("angles", 2, 2))))
+    assert (ends[1][0] == ends[0][0]).all()
+    assert ends[1][1].shape == (1, 3) and (ends[1][1] == ends[0][1]).all()
 
 
 @pytest.mark.parametrize("bonds", [[(0, 1, 1), (0, 1, 2)], [(0, 1, 2), (1, 0, 1)]])

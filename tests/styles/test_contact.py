@@ -130,6 +130,21 @@ def test_nothing_passes_where_fixes_share_a_cloth(first, tmp_path):
     assert min(lmp.extract_fix(name, 0, 1, 0) for name in ("contact", "other")) > 100
 
 
+@pytest.mark.parametrize(("speed", "dt"), [(30, 2e-3), (3, 2e-3), (1000, 2e-3)])
+def test_nothing_passes_that_comes_from_afar_on_old_lists(speed, dt, tmp_path):
+    """Far from the sheet particles are not looked at one by one, until any may have come near."""
+    lmp = instance()
+    lmp.commands_string(GRAINS)
+    lmp.command("displace_atoms above move 0 0 1 units box")
+    lmp.command("velocity below set 0 0 0 units box")
+    lmp.command(f"velocity above set 0 0 {-speed} units box")
+    lmp.command("fix contact grains cloth/contact 0.02 sides no")
+    lmp.command("neigh_modify every 10000 delay 10000 check no")
+    lmp.command(f"timestep {dt}")
+    assert crossed(lmp, tmp_path, int(1.3 / speed / dt) + 1) == 0
+    assert lmp.extract_fix("contact", 0, 1, 0) > 0
+
+
 def test_contact_does_nothing_when_far():
     lmp = shower("0 0 0", low=0.3, high=0.4)
     before = by_id(lmp, "x")

@@ -68,6 +68,26 @@ def test_inside_nothing_changes():
     np.testing.assert_allclose(by_id(whole, "rho")[inside], by_id(plain, "rho")[inside], rtol=1e-9)
 
 
+@pytest.mark.parametrize("pressure", ["own", "mirror"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_at_a_wall_a_calibrated_lattice_is_complete(dimension, pressure):
+    walls = f"fix wall all wall/sph xlo 0 pressure {pressure}\n"
+    plain, whole = (
+        block(f"surface {word} density calibrated", dimension, cells=12, more=walls)
+        for word in ("no", "yes")
+    )
+    x = by_id(whole, "x")
+    along = x[:, 1:dimension]
+    at_wall = (x[:, 0] < 0.4) & np.all((along > 0.13) & (along < 0.47), axis=1)
+    assert np.count_nonzero(x[at_wall, 0] < 0.03) > 5
+    np.testing.assert_allclose(by_id(whole, "rho")[at_wall], RHO0, rtol=3e-4)
+    np.testing.assert_allclose(
+        by_id(whole, "rho")[at_wall], by_id(plain, "rho")[at_wall], rtol=3e-4
+    )
+    without = block("density calibrated", dimension, cells=12)
+    assert np.abs(by_id(without, "rho")[at_wall] / RHO0 - 1).max() > 0.01
+
+
 @pytest.mark.parametrize("options", ["", "density calibrated"])
 def test_pressures_are_those_of_the_densities(options):
     more = "compute state all sph/atom pressure\n"
@@ -82,23 +102,35 @@ def energy(lmp):
     return lmp.get_thermo("pe")
 
 
+# in a corner, and between two planes
+CORNER = "fix wall all wall/sph xlo -0.02 ylo -0.015 zlo -0.022\n"
+SLOT = "fix wall all wall/sph xlo -0.02 xhi 0.2 ylo -0.02\n"
+
+
 @pytest.mark.parametrize("kernel", ["wendland/c2", "wendland/c4", "cubic", "quintic"])
 @pytest.mark.parametrize(
-    ("options", "dimension", "floor"),
+    ("options", "dimension", "floor", "walls"),
     [
-        ("", 3, ""),
-        ("tension yes", 2, ""),
-        ("density calibrated", 3, ""),
-        ("", 2, f"2 2 boundary pressure own volume {DX**2}"),
+        ("", 3, "", ""),
+        ("tension yes", 2, "", ""),
+        ("density calibrated", 3, "", ""),
+        ("", 2, f"2 2 boundary pressure own volume {DX**2}", ""),
+        ("tension yes", 3, "", CORNER),
+        ("density calibrated", 3, "", CORNER),
+        ("density calibrated tension yes", 2, "", SLOT),
+        ("", 2, f"2 2 boundary pressure own volume {DX**2}", SLOT),
     ],
 )
-def test_forces_are_the_gradient_of_the_energy(kernel, options, dimension, floor):
-    lmp = block(f"kernel {kernel} {options}", dimension, 0.93 * DX, 4, 0.006, floor)
+def test_forces_are_the_gradient_of_the_energy(kernel, options, dimension, floor, walls):
+    lmp = block(f"kernel {kernel} {options}", dimension, 0.93 * DX, 4, 0.006, floor, walls)
     water = lmp.numpy.extract_atom("type")[: lmp.get_natoms()] == 1
     force, tags = by_id(lmp, "f").copy(), np.sort(lmp.numpy.extract_atom("id")[: len(water)][water])
     largest, h = np.abs(force).max(), 1e-6
     assert largest > 0
-    np.testing.assert_allclose(force.sum(axis=0), 0, atol=1e-11 * largest)
+    on_walls = np.zeros(3)
+    for k in range(walls.count("lo") + walls.count("hi")):
+        on_walls += [lmp.extract_fix("wall", 0, 1, 3 * k + d) for d in range(3)]
+    np.testing.assert_allclose(force.sum(axis=0) + on_walls, 0, atol=1e-11 * largest)
     for atom in tags[:: max(1, len(tags) // 6)]:
         for axis in range(dimension):
             found = []
@@ -178,7 +210,9 @@ HEAPS = (
     + "timestep 5e-4\n"
 )
 HEAPS_FIXES = (
-    HEAPS_SETTINGS + "fix step fluids sph/integrate global\nrun_style sph/adaptive ${scheme}\n"
+    HEAPS_SETTINGS
+    + "fix step fluids sph/integrate global\nfix lid fluids wall/sph zhi 0.25\n"
+    + "run_style sph/adaptive ${scheme}\n"
 )
 HEAPS_AGAIN = (
     "variable steps index 30\nvariable scheme index global\nvariable dump index again.txt\n"
@@ -217,8 +251,15 @@ def test_restart_continues_to_the_last_bit(heaps, ranks, scheme):
 
 
 @pytest.mark.parametrize("scheme", ["global", "constant"])
-@pytest.mark.parametrize("boundary", ["s s p", "p s p"])
-def test_energy_and_momentum_of_undamped_drops(boundary, scheme):
+@pytest.mark.parametrize(
+    ("boundary", "walls"),
+    [
+        ("s s p", ""),
+        ("p s p", ""),
+        ("s s p", "fix wall all wall/sph ylo -0.02\nfix_modify wall energy yes\n"),
+    ],
+)
+def test_energy_and_momentum_of_undamped_drops(boundary, walls, scheme):
     """Of two fluids side by side, from disorder under pressure until they have come apart."""
     lmp = instance()
     lmp.commands_string(
@@ -237,6 +278,7 @@ def test_energy_and_momentum_of_undamped_drops(boundary, scheme):
         + neighbor(0.03)
         + f"timestep {0.05 * 0.06 / C0 if scheme == 'constant' else 1}\n"
         + f"fix step all sph/integrate global accuracy 3e-4\nrun_style sph/adaptive {scheme}\n"
+        + walls
         + "thermo_style custom step etotal ke\nthermo_modify norm no\nrun 0\n"
     )
     start = lmp.get_thermo("etotal")
@@ -244,7 +286,7 @@ def test_energy_and_momentum_of_undamped_drops(boundary, scheme):
     assert lmp.get_thermo("ke") > 0.2 * start
     assert lmp.get_thermo("etotal") == pytest.approx(start, rel=3e-3)
     mass = np.take(lmp.numpy.extract_atom("mass"), by_id(lmp, "type")).reshape(-1, 1)
-    momenta = mass * by_id(lmp, "v")
+    momenta = (mass * by_id(lmp, "v"))[:, : 1 if walls else 3]
     np.testing.assert_allclose(momenta.sum(axis=0), 0, atol=1e-11 * np.abs(momenta).sum())
 
 
@@ -294,7 +336,6 @@ STEP = "fix step all sph/integrate global\n"
     ("options", "more", "words"),
     [
         ("density continuity", "", "surface is 'yes'.*'density continuity'.*leave out one of them"),
-        ("", "fix wall all wall/sph zlo 0\n", "surface is 'yes'.*wall/sph.*use boundary particles"),
         *(
             (
                 "",

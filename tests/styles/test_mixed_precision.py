@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from harness import by_id, instance
 from reference_sph import lattice
-from scenes import box, header, sph_tait
+from scenes import FLUID, box, filled, header, jitter, neighbor, sph_tait
+from scenes import lattice as lattice_of
 
 
 @pytest.mark.parametrize("length", [1e-9, 1e10])
@@ -55,6 +56,32 @@ def test_mixed_precision_does_not_depend_on_where_the_box_is():
 
     near, far = forces(0.0), forces(1000.0)
     np.testing.assert_allclose(far, near, atol=1e-5 * np.abs(near).max())
+
+
+@pytest.mark.parametrize(
+    ("shape", "length"), [("block", 1e2), ("block", 1e4), ("block", 1e6), ("prism", 1e2)]
+)
+def test_mixed_precision_does_not_depend_on_how_long_the_box_is(shape, length):
+    """Water on both sides of the periodic face at its end, in supports of 0.1."""
+
+    def forces(precision):
+        lmp = instance()
+        tilt = f" 0 0 {0.3 * length}" if shape == "prism" else ""
+        lmp.commands_string(
+            header(atoms=FLUID)
+            + box(f"-0.2 0.2 -0.2 0.2 {-0.3 * length} {0.7 * length}{tilt}", 1, shape)
+            + lattice_of()
+            + filled("water", f"INF INF INF INF {-0.3 * length} {-0.3 * length + 0.4}")
+            + f"mass 1 0.125\n{jitter(0.004, 7)}displace_atoms all move 0 0 -0.21 units box\n"
+            + sph_tait("1 1 fluid 1000 c0 20", options=f"tension yes precision {precision}")
+            + neighbor(0.03)
+            + "run 0\n"
+        )
+        return by_id(lmp, "x"), by_id(lmp, "f")
+
+    (x, double), (_, mixed) = forces("double"), forces("mixed")
+    assert len(x) == 512 and np.ptp(x[:, 2]) > 0.9 * length
+    np.testing.assert_allclose(mixed, double, atol=1e-5 * np.abs(double).max())
 
 
 @pytest.mark.parametrize(

@@ -256,3 +256,13 @@ def test_lists_that_do_not_fit_the_memory_are_named():
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     words = "pair_style sph/tait: not enough memory for the neighbors of 12000 particles within"
     assert words in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("fix", ["sph/integrate constant", "sph/shift"])
+@pytest.mark.parametrize(
+    ("role", "kind"), [("boundary", "a boundary type"), ("none", "a type of the role none")]
+)
+def test_a_group_of_fluid_names_the_role_of_what_else_it_holds(fix, role, kind):
+    lmp = two_particles(0.05, second=f"pair_coeff 2 2 {role}")
+    with pytest.raises(Exception, match=f"group all holds type 2, {kind}: "):
+        lmp.commands_string(f"fix step all {fix}\nrun 0")

@@ -107,6 +107,14 @@ ERRORS = {
         r"types 3 and 4 are boundaries that never.*fluid",
     ),
     "wall": ("sph_write state 3 5 x 1 2", r"type 3 is a boundary.*give a fluid"),
+    "none": (
+        "pair_coeff 4 4 none\nsph_write state 4 5 x 1 2",
+        r"type 4 is a type of the role none",
+    ),
+    "no kernel": (
+        "pair_coeff 4 4 none\nsph_write kernel 1 4 5 x",
+        r"type 4 is a type of the role none, without kernel.*give a fluid",
+    ),
     "range": ("sph_write state 1 5 x 2 1", r"density 2 to 1 is no range"),
     "density": ("sph_write state 1 5 x 0 1", r"lowest density is '0'.*> 0"),
     "short": ("sph_write state 1 5 x 1", r"highest density is missing"),

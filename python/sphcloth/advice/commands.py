@@ -15,6 +15,8 @@ from sphcloth.mesh import ClothMesh
 # what fix sph/integrate prints at the end of a run
 STEPS_BY_LIMIT = "sph/integrate: steps by limit:"
 
+# styles whose keywords need a word before them, and what stands for it if nothing follows
+LEADING = {"sph/integrate": ("global",)}
 # keywords of a fluid, each with one value
 VISCOSITY = ("alpha", "nu", "switch")
 
@@ -94,6 +96,12 @@ class Fix:
     def line(self) -> str:
         """The command without its keywords."""
         return f"fix {self.id} {self.group} {self.style}"
+
+    def extended(self, keywords: str) -> str:
+        """Return the command with keywords behind its own, for which dots stand."""
+        if not self.arguments:
+            return f"{self.line} {appended(self.style, self.arguments, keywords)}"
+        return f"{self.line} ... {keywords}"
 
 
 @dataclass(frozen=True)
@@ -186,6 +194,11 @@ class Commands:
     def stepper(self) -> Fix | None:
         """The fix sph/integrate."""
         return next(iter(self.styled("sph/integrate")), None)
+
+
+def appended(style: str, arguments: Sequence[str], keywords: str) -> str:
+    """Return the arguments of a fix with keywords behind them."""
+    return " ".join([*(arguments or LEADING.get(style, ())), keywords])
 
 
 def _is_number(words: Sequence[str]) -> bool:

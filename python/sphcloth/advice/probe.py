@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sphcloth.advice.commands import Commands
+from sphcloth.advice.commands import Commands, appended
 from sphcloth.advice.evidence import Evidence
 from sphcloth.errors import UserError
 from sphcloth.run import LOG, copy_companions, lammps_command, last_words, wait_for_lammps
@@ -76,7 +76,7 @@ class Probe:
         begin = time.monotonic()
         status = wait_for_lammps(command, folder, TIMEOUT_FACTOR * self.seconds + GRACE_SECONDS)
         # one that took too long is read as far as it came
-        if status:
+        if status and not _has_quit(folder):
             reason = " ".join(last_words(folder)) or f"exit status {status}"
             raise UserError(f"{self.script} fails: {reason}")
         return self._read(folder, time.monotonic() - begin < self.seconds)
@@ -206,6 +206,16 @@ def _fixes(text: str) -> list[re.Match]:
     return list({found[1]: found for found in _FIX.finditer(lines)}.values())
 
 
+def _has_quit(folder: Path) -> bool:
+    """Tell whether a script that has run something ended by ``quit``, whatever its status."""
+    log = folder / LOG
+    if not (folder / USED).is_file() or not log.is_file():
+        return False
+    # commands are in the log before they are executed, and errors behind them
+    text = log.read_text(encoding="utf-8", errors="replace").rstrip()
+    return text.rpartition("\n")[2].split()[:1] == ["quit"]
+
+
 def _hook_name(number: int) -> str:
     return f"advise.run{number}"
 
@@ -226,9 +236,18 @@ def _hooked(line: str, runs: list[str]) -> str:
 
 def _edited(line: str, edits: Mapping[str, str]) -> str:
     """Append what is to be appended to the fixes of some styles."""
+    # in an `if` a command ends with its quotes
+    until = r"[^\"']*" if line.split()[:1] == ["if"] else ".*"
+
+    def longer(fix: re.Match) -> str:
+        name, group, style, words = fix.groups()
+        if style not in edits:
+            return fix[0]
+        return f"fix {name} {group} {style} {appended(style, words.split(), edits[style])}"
+
     code = line.partition("#")[0]
-    found = _FIX.search(code)
-    return f"{code.rstrip()} {edits[found[3]]}" if found and found[3] in edits else line
+    edited = re.sub(f"{_FIX.pattern}({until})", longer, code)
+    return line if edited == code else edited
 
 
 def _columns(fix: re.Match) -> list[str]:

@@ -118,8 +118,8 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
     if shared is not None:
         measured += f", tightest for {shared:.3g} of {atoms:.0f} particles"
     if name == "max":
-        line = f"{stepper.line} ... max {2 * run.largest('v_advise_dt'):.3g}"
-        yield Finding("time step", measured, line), _longer(line.split(" ... ")[1])
+        higher = f"max {2 * run.largest('v_advise_dt'):.3g}"
+        yield Finding("time step", measured, stepper.extended(higher)), _longer(higher)
     elif shared and shared < FEW * atoms and scheme != ("block",):
         block = "run_style sph/adaptive block"
         yield Finding("time step", measured, block), Trial(_saves_updates, before=(block,))
@@ -128,7 +128,7 @@ def _limit(run: Evidence) -> Iterator[Proposal]:
         now = float(stepper.value(name, stepper.value("acoustic", LOUDER)))
         louder = f"{name} {LOUDER}"
         if now < float(LOUDER):
-            yield Finding("time step", measured, f"{stepper.line} ... {louder}"), _longer(louder)
+            yield Finding("time step", measured, stepper.extended(louder)), _longer(louder)
 
 
 def _limited(run: Evidence, stepper: Fix, name: str) -> float | None:
@@ -271,7 +271,7 @@ def _stretch(run: Evidence, wanted: float) -> Iterator[Proposal]:
             return f"{left:.2%} with {more}", left < (was + wanted) / 2
 
         trial = Trial(judge, edits={"pbd/cloth": better})
-        yield Finding("stretch", measured, f"{fix.line} ... {better}"), trial
+        yield Finding("stretch", measured, fix.extended(better)), trial
 
 
 def _remedy(fix: Fix, strain: float, wanted: float) -> tuple[str, str]:

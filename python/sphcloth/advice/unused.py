@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sphcloth.advice.commands import Fix
+from sphcloth.advice.commands import Fix, appended
 from sphcloth.advice.evidence import Evidence
 from sphcloth.fix_values import LIMITS
 
@@ -41,7 +41,9 @@ def _limits(run: Evidence) -> Iterator[Finding]:
     stepper, set_by = run.commands.stepper, run.commands.steps_by_limit
     if stepper is None or not sum(set_by.values()):
         return
-    off = [name for name in DEFAULTS if _is_on(stepper, name, DEFAULTS[name])]
+    # accuracy stands for all of the defaults, and allows none of them beside it
+    defaults = {} if "accuracy" in stepper.arguments else DEFAULTS
+    off = [name for name in defaults if _is_on(stepper, name, defaults[name])]
     off += [name for name in OPTIONAL if _is_on(stepper, name, "0")]
     off = [name for name in off if not set_by.get(name) and not _particles(run, stepper, name)]
     if off:
@@ -50,7 +52,7 @@ def _limits(run: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"limit{'s' * (len(off) > 1)} {', '.join(off)}",
             f"set none of {total} steps",
-            f"{stepper.line} {' '.join(_without(stepper, off))} {keywords}",
+            f"{stepper.line} {appended(stepper.style, _without(stepper, off), keywords)}",
         )
 
 
@@ -89,9 +91,8 @@ def _walls(run: Evidence) -> Iterator[Finding]:
         pushes = [_push(run, fix, place) for place in range(len(faces))]
         idle = [face for face, push in zip(faces, pushes, strict=True) if push == 0]
         if idle:
-            kept = [face for face in faces if face not in idle]
-            words = " ".join(f"{face} {fix.value(face, '')}" for face in kept)
-            line = f"{fix.line} {words}" if kept else f"# {fix.line}"
+            is_left = len(idle) < len(faces)
+            line = f"{fix.line} {_without_faces(fix, idle)}" if is_left else f"# {fix.line}"
             yield Finding(f"wall {', '.join(idle)}", "its force was 0 all the time", line)
 
 
@@ -99,6 +100,20 @@ def _faces_end(fix: Fix) -> int:
     """Return where the faces of fix wall/sph end and its keywords begin."""
     words = fix.arguments
     return next((n for n, word in enumerate(words) if n % 2 == 0 and word not in FACES), len(words))
+
+
+def _without_faces(fix: Fix, idle: list[str]) -> str:
+    """Return the arguments of fix wall/sph less some faces and their velocities."""
+    words, kept = list(fix.arguments), []
+    while words:
+        word = words.pop(0)
+        if word == "velocity" and words[0] in idle:
+            words = words[4:]
+        elif word in idle:
+            words = words[1:]
+        else:
+            kept.append(word)
+    return " ".join(kept)
 
 
 def _push(run: Evidence, fix: Fix, place: int) -> float | None:

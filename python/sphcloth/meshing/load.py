@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from trimesh.grouping import unique_rows
 
 from sphcloth.errors import UserError
+from sphcloth.meshing.polygons import Polygons, cut_folded, read_polygons
 from sphcloth.meshing.surface import Surface, clusters
 
 # squares of coordinates must be numbers, and so must their sums
@@ -43,12 +44,12 @@ def read_surface(path: str | Path, merge: float | None = None) -> tuple[Surface,
 
     Raises:
         UserError: no such file, not a mesh, no triangle, coordinates that are no numbers, or
-            flat triangles that cannot be mended.
+            flat triangles that cannot be mended, or a polygon that crosses itself.
     """
     path = Path(path)
-    surface = _read(path)
+    surface, polygons = _read(path)
     try:
-        return repair(surface, merge)
+        return repair(cut_folded(surface, polygons), merge)
     except UserError as error:
         raise UserError(f"{path}: {error}") from None
 
@@ -172,8 +173,8 @@ def _cut_neighbors(surface: Surface, flat: NDArray[np.bool_]) -> tuple[Surface, 
     return kept, cut + int(np.count_nonzero(gone))
 
 
-def _read(path: Path) -> Surface:
-    """Return the triangles of a file as trimesh reads them."""
+def _read(path: Path) -> tuple[Surface, Polygons | None]:
+    """Return the triangles of a file as trimesh reads them, and the polygons that they are of."""
     if not path.is_file():
         raise UserError(f"no mesh file {path}")
     if not path.stat().st_size:
@@ -182,6 +183,7 @@ def _read(path: Path) -> Surface:
     try:
         loaded = trimesh.load_mesh(path, process=False, skip_materials=True)
         vertices, triangles = np.asarray(loaded.vertices), np.asarray(loaded.faces)
+        polygons = read_polygons(path, loaded) if len(triangles) else None
     # trimesh's readers fail in many ways on files of another form
     except Exception as error:
         raise UserError(
@@ -194,7 +196,7 @@ def _read(path: Path) -> Surface:
         raise UserError(f"{path}: a vertex has not 3 coordinates, or a triangle not 3 vertices")
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise UserError(f"{path}: a triangle has a vertex that is not in the file")
-    return Surface.of(vertices, triangles)
+    return Surface.of(vertices, triangles), polygons
 
 
 def _check_coordinates(surface: Surface) -> None:

@@ -50,6 +50,9 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
     that cuts through a fold and comes out again is no crossing. A particle that rounds the border
     is seen to do so only if the frames are close enough to show it.
 
+    Through periodic faces, edges and paths are taken to be the shortest ones: both must be shorter
+    than half the distance of opposite faces of the box.
+
     Raises:
         UserError: there is one frame, or a position that is not finite.
     """
@@ -90,33 +93,55 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     if not np.isfinite(paths).all():
         bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
         raise UserError(f"particle {bad} has a position that is not finite at step {after.step}")
-    paths[1] = paths[0] + before.shortest(paths[1] - paths[0])
     corners = np.stack([mesh.corners(before), mesh.corners(after)])
     if not np.isfinite(corners).all():
         raise UserError(f"a vertex has a position that is not finite at step {after.step}")
+    paths[1] = paths[0] + before.shortest(paths[1] - paths[0])
+    corners = _unwrapped(corners, before)
     crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
     for block in np.array_split(np.arange(len(ids)), len(ids) // _BLOCK + 1):
-        through, where = _net_passes(paths[:, block], corners)
+        through, where = _net_passes(paths[:, block], corners, before)
         crossed.append(ids[block[through]])
         points.append(where)
     found = np.concatenate(crossed)
     return Crossings(found, np.full(len(found), after.step), np.concatenate(points))
 
 
-def _net_passes(paths: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:
+def _unwrapped(corners: NDArray, frame: Frame) -> NDArray[np.float64]:
+    """Put the corners of each triangle side by side, before, and go on from there, after.
+
+    Each triangle by itself: a sheet that closes through a periodic boundary has no place as a
+    whole.
+
+    Args:
+        corners: triangle corners before and after, shape (2, T, 3 corners, 3).
+        frame: before, with the box.
+    """
+    if not any(frame.periodic):
+        return corners
+    start, end = corners
+    first = start[:, :1]
+    start = first + frame.shortest(start - first)
+    return np.stack([start, start + frame.shortest(end - start)])
+
+
+def _net_passes(paths: NDArray, corners: NDArray, frame: Frame) -> tuple[NDArray, NDArray]:
     """Return the particles whose passes through the triangles do not cancel, and one point each.
 
     Args:
         paths: positions before and after, shape (2, P, 3).
         corners: triangle corners before and after, shape (2, T, 3 corners, 3).
+        frame: before, with the box.
 
     Returns:
         Indices of the particles, shape (K,), and where they passed, shape (K, 3).
     """
+    owner, shifts = _images(paths, corners, frame)
+    images = paths[:, owner] + shifts
     sweeps = _boxes([*corners[0].swapaxes(0, 1), *corners[1].swapaxes(0, 1)])
-    particle, triangle = _overlapping_boxes(_boxes(paths), sweeps)
-    pair, moment, direction = _passes(paths[:, particle], corners[:, triangle])
-    passing = particle[pair]
+    image, triangle = _overlapping_boxes(_boxes(images), sweeps)
+    pair, moment, direction = _passes(images[:, image], corners[:, triangle])
+    passing = owner[image[pair]]
     net = np.bincount(passing, weights=direction, minlength=paths.shape[1])
     through = np.flatnonzero(net)
     # passes come in no order: the first one listed of each particle stands for it
@@ -124,6 +149,27 @@ def _net_passes(paths: NDArray, corners: NDArray) -> tuple[NDArray, NDArray]:
     first = first[np.isin(listed, through)]
     start, end = paths[:, passing[first]]
     return through, start + moment[first, None] * (end - start)
+
+
+def _images(paths: NDArray, corners: NDArray, frame: Frame) -> tuple[NDArray, NDArray]:
+    """Return the periodic images of paths that may meet the triangles: path and shift of each.
+
+    A path has those images whose box, along the edges of the cell, meets the one of the sheet.
+    """
+    if not any(frame.periodic) or not corners.size:
+        return np.arange(paths.shape[1]), np.zeros(3)
+    inverse = np.linalg.inv(frame.cell)
+    low, high = _boxes(paths @ inverse)
+    sheet = corners.reshape(-1, 3) @ inverse
+    least = np.ceil(sheet.min(axis=0) - high - _EDGE_SLACK) * frame.periodic
+    most = np.floor(sheet.max(axis=0) - low + _EDGE_SLACK) * frame.periodic
+    ranges = zip(least.min(axis=0, initial=0), most.max(axis=0, initial=0), strict=True)
+    owners, shifts = [], []
+    for wraps in itertools.product(*(np.arange(a, b + 1) for a, b in ranges)):
+        near = np.flatnonzero(np.all((least <= wraps) & (wraps <= most), axis=1))
+        owners.append(near)
+        shifts.append(np.broadcast_to(wraps @ frame.cell, (len(near), 3)))
+    return np.concatenate(owners), np.concatenate(shifts)
 
 
 def _passes(paths: NDArray, corners: NDArray) -> tuple[NDArray, NDArray, NDArray]:

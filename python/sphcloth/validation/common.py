@@ -82,3 +82,7 @@ WALL = Parameter(
     "pressure of the base",
     choices=("extrapolate", "mirror", "own"),
 )
+
+SURFACE = Parameter(
+    "surface", "no", "1", "whether a sum is completed at the surface", choices=("no", "yes")
+)

@@ -32,13 +32,12 @@ void ClothOptions::read(ArgReader &args)
       solving.tolerance = args.positive(keyword);
     else if (keyword == "reference")
       reference = args.positive(keyword);
-    else if (keyword == "pin") {
-      pin_group = read_held(args, keyword);
-      pinbit = group->bitmask[pin_group];
-    } else if (keyword == "velocity")
+    else if (keyword == "pin")
+      read_held(args, keyword, pin_group, pinbit);
+    else if (keyword == "velocity")
       pin_motion.read(args);
     else if (keyword == "attach")
-      attachbit = group->bitmask[read_held(args, keyword)];
+      read_held(args, keyword, attach_group, attachbit);
     else if (keyword == "damping")
       solving.damping = args.at_least("damping rate", 0.0);
     else if (keyword == "rest")
@@ -75,18 +74,29 @@ void ClothOptions::check(ArgReader &args)
               "substeps have one sweep each: use 'solver gs' or 'solver jacobi'");
 }
 
+void ClothOptions::check_groups() const
+{
+  if (pinbit) refuse_dynamic_group(lmp, owner, "pin", pin_group);
+  if (attachbit) refuse_dynamic_group(lmp, owner, "attach", attach_group);
+}
+
 // group of the vertices that something else moves
 
-int ClothOptions::read_held(ArgReader &args, const std::string &keyword)
+void ClothOptions::read_held(ArgReader &args, const std::string &keyword, int &held, int &bit)
 {
   const std::string name = args.word(keyword + " group");
-  const int held = group->find(name);
-  if (held < 0) args.fail(keyword + " group", name, "define it with the group command first");
-  if (!share_atoms(atom, group->bitmask[igroup], group->bitmask[held], world))
+  if (bit)
+    args.fail(keyword + " group", name,
+              fmt::format("{} is that group already: make one of both with 'group ID union {} {}'",
+                          group->names[held], group->names[held], name));
+  const int found = group->find(name);
+  if (found < 0) args.fail(keyword + " group", name, "define it with the group command first");
+  if (!share_atoms(atom, group->bitmask[igroup], group->bitmask[found], world))
     args.fail(
         keyword + " group", name,
         fmt::format("it has no vertex of group {}: choose among the cloth's vertices or leave "
                     "the keyword away",
                     group->names[igroup]));
-  return held;
+  held = found;
+  bit = group->bitmask[held];
 }

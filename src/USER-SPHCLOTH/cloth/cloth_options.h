@@ -17,7 +17,8 @@ class ClothOptions : protected Pointers {
   Substepping::Options solving;
   double reference = 0.0;    // step for which k holds, 0: not given
   int pin_group = 0, pinbit = 0;    // bit 0: nothing is pinned
-  int attachbit = 0;    // vertices that another fix integrates, with the pull of the cloth on them
+  // vertices that another fix integrates, with the pull of the cloth on them
+  int attach_group = 0, attachbit = 0;
   PinMotion pin_motion;
   std::string rest_property;    // with the rest positions; empty: they are where vertices are now
 
@@ -26,6 +27,7 @@ class ClothOptions : protected Pointers {
   {
   }
   void read(ArgReader &);
+  void check_groups() const;    // before each run, as a group may have become dynamic
   int heldbits() const { return pinbit | attachbit; }
 
  private:
@@ -33,7 +35,7 @@ class ClothOptions : protected Pointers {
   const int igroup;
   bool solver_given = false, iterations_given = false, strain_given = false;
 
-  int read_held(ArgReader &, const std::string &keyword);
+  void read_held(ArgReader &, const std::string &keyword, int &held, int &bit);
   void check(ArgReader &);
 };
 

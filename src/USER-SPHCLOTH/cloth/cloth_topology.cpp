@@ -37,6 +37,16 @@ static void canonical(std::array<int, 4> &h)
   if (h[1] > h[2]) std::reverse(h.begin(), h.end());
 }
 
+// What two copies of a canonical element have in common.  A hinge with its wings exchanged is the
+// same one, with the other sign of its angle.
+
+template <std::size_t N> static std::array<int, N> identity(const std::array<int, N> &e)
+{
+  std::array<int, N> same = e;
+  if (N == 4 && e.front() > e.back()) std::swap(same.front(), same.back());
+  return same;
+}
+
 int ClothTopology::index_of(tagint id) const
 {
   // most often they are numbers in a row
@@ -189,16 +199,20 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
     canonical(sorted[m].vertices);
     sorted[m].type = static_cast<int>(record[N]);
   }
-  // Copies of an element are one.  Those of another type are constraints of their own, but a
-  // triangle is none: it has its lowest type.
-  const auto key = [](const Element &e) { return std::tie(e.vertices, e.type); };
-  std::sort(sorted.begin(), sorted.end(),
-            [&](const Element &a, const Element &b) { return key(a) < key(b); });
+  // Copies of an element are one, written as that with the lowest IDs first.  Those of another type
+  // are constraints of their own, but a triangle is none: it has its lowest type.
+  std::sort(sorted.begin(), sorted.end(), [](const Element &a, const Element &b) {
+    return std::make_tuple(identity(a.vertices), a.type, a.vertices) <
+        std::make_tuple(identity(b.vertices), b.type, b.vertices);
+  });
   const auto last =
-      std::unique(sorted.begin(), sorted.end(), [&](const Element &a, const Element &b) {
-        return N == 3 ? a.vertices == b.vertices : key(a) == key(b);
+      std::unique(sorted.begin(), sorted.end(), [](const Element &a, const Element &b) {
+        return identity(a.vertices) == identity(b.vertices) && (N == 3 || a.type == b.type);
       });
   sorted.erase(last, sorted.end());
+  std::sort(sorted.begin(), sorted.end(), [](const Element &a, const Element &b) {
+    return std::tie(a.vertices, a.type) < std::tie(b.vertices, b.type);
+  });
 
   elements.vertices.clear();
   elements.type.clear();

@@ -29,18 +29,23 @@ void CandidatePairs::update(double max_stride)
 {
   if (none()) return;
   const bool holds = triangles_hold(max_stride);
+  const bool all_hold = holds && others_hold();
   asked.clear();
   if (!holds) {
     for (int i = 0; i < atom->nlocal; i++)
       if (mesh.collides(i)) asked.push_back(i);
-  } else if (count_beyond_room() > 0) {
-    for (int i = 0; i < atom->nlocal; i++)
+  } else if (all_hold) {
+    for (const int i : near)
       if (is_beyond_room(i)) asked.push_back(i);
-  } else if (candidates.empty())
-    return;
+    if (asked.empty() && candidates.empty()) return;
+  } else {
+    for (int i = 0; i < atom->nlocal; i++)
+      if (room[i] >= room_of_others() || is_beyond_room(i)) asked.push_back(i);
+  }
   measure_strides(max_stride);
   if (!holds) sort_triangles();
   if (!asked.empty()) find();
+  if (!all_hold) find_near();
   measure_paths();
 }
 
@@ -103,8 +108,12 @@ void CandidatePairs::find()
 void CandidatePairs::find_of(int i)
 {
   const Sweep particle = mesh.sweep_of(i);
+  const double cutoff = max_reach() + 2.0 * margin(),
+               distance = discs.grid.min_distance(particle.start);
+  for (int d = 0; d < 3; d++) positions_then[d][i] = particle.start[d];
+  room[i] = std::max(margin(), distance - max_reach() - margin());
+  if (distance > cutoff + (particle.end - particle.start).norm()) return;
   const std::size_t first = merged.size();
-  const double cutoff = max_reach() + 2.0 * margin();
   discs.grid.within(particle.start, cutoff + (particle.end - particle.start).norm(), [&](int t) {
     if (mesh.lets_through(t, atom->mask[i])) return;
     const auto &[a, b, c] = mesh.triangles[t];
@@ -113,8 +122,6 @@ void CandidatePairs::find_of(int i)
   });
   std::sort(merged.begin() + first, merged.end(),    // whatever the order of cells
             [](const Candidate &a, const Candidate &b) { return a.triangle < b.triangle; });
-  for (int d = 0; d < 3; d++) positions_then[d][i] = particle.start[d];
-  room[i] = std::max(margin(), discs.grid.min_distance(particle.start) - max_reach() - margin());
 }
 
 // Does the list hold all triangles that particles within their room may meet in this step?
@@ -138,28 +145,28 @@ double CandidatePairs::longest_path_of_vertices(double max_stride) const
   return std::min(std::sqrt(max_stride_sq), max_stride) + std::sqrt(max_before_sq);
 }
 
-// How many particles have left their room?  All of them, twice in each step: one loop without
-// branches.
+// about as far as atoms come until the next list build
 
-int CandidatePairs::count_beyond_room() const
+double CandidatePairs::room_of_others() const { return std::max(2.0 * margin(), neighbor->skin); }
+
+// of which all others have been asked for in this step
+
+void CandidatePairs::find_near()
 {
-  const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
-  if (n == 0) return 0;
-  const ParticleColumns &last = mesh.last_positions;
-  const double *const x = atom->x[0], *const limit = room.data();
-  const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
-  const double *const x1 = positions_then[0].data(), *const y1 = positions_then[1].data(),
-                      *const z1 = positions_then[2].data();
-  int beyond = 0;
-#pragma omp simd reduction(+ : beyond)
-  for (int i = 0; i < n; i++) {
-    const double dx = x[3 * i] - x0[i], dy = x[3 * i + 1] - y0[i], dz = x[3 * i + 2] - z0[i];
-    const double ex = x0[i] - x1[i], ey = y0[i] - y1[i], ez = z0[i] - z1[i];
-    const double moved =
-        std::sqrt(dx * dx + dy * dy + dz * dz) + std::sqrt(ex * ex + ey * ey + ez * ez);
-    beyond += ((mask[i] & groupbits) != 0) & !(moved <= limit[i]);
-  }
-  return beyond;
+  const double limit = room_of_others();
+  near.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (room[i] < limit) near.push_back(i);
+  path_then = mesh.step_start.longest_path();
+}
+
+// Those that are not near share a room.
+
+bool CandidatePairs::others_hold() const
+{
+  StepStart &start = mesh.step_start;
+  if (near.size() == static_cast<std::size_t>(atom->nlocal)) return true;
+  return start.longest_path() - path_then + start.longest_sweep() <= room_of_others();
 }
 
 bool CandidatePairs::is_beyond_room(int i) const
@@ -175,5 +182,5 @@ double CandidatePairs::memory_usage() const
 {
   return discs.bytes() +
       bytes_of(candidates, merged, positions_then[0], positions_then[1], positions_then[2],
-               vertices_then, stride, path, room, asked);
+               vertices_then, stride, path, room, near, asked);
 }

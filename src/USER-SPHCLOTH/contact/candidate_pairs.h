@@ -2,7 +2,8 @@
 // Broad phase: the particles and triangles of a mesh that may collide in a step.
 // The list is made with a margin, and holds until the next list build of LAMMPS, while vertices
 // stay within it and, for each particle, while that does; update() makes it anew where it holds no
-// longer.  Which pairs are visited does not depend on when that was.
+// longer.  Particles that are far from the mesh are not looked at before any atom may have come
+// near.  Which pairs are visited does not depend on when lists were made.
 
 #ifndef SPHCLOTH_CONTACT_CANDIDATE_PAIRS_H
 #define SPHCLOTH_CONTACT_CANDIDATE_PAIRS_H
@@ -75,6 +76,8 @@ class CandidatePairs : protected Pointers {
   std::array<std::vector<double>, 3> positions_then;
   std::vector<Vec3> vertices_then;
   std::vector<double> room;    // of owned atoms: how far their candidates hold
+  std::vector<int> near;    // owned atoms with less room than others share
+  double path_then = 0.0;    // StepStart::longest_path(), when the others were asked for
   std::vector<int> asked;    // owned atoms whose candidates are found anew
   std::vector<double> stride, path;    // of vertices: in this step; from then to its start
   TriangleDiscs discs;
@@ -87,7 +90,9 @@ class CandidatePairs : protected Pointers {
   bool triangles_hold(double max_stride) const;
   double margin() const;
   double longest_path_of_vertices(double max_stride) const;
-  int count_beyond_room() const;
+  double room_of_others() const;
+  void find_near();
+  bool others_hold() const;
   bool is_beyond_room(int i) const;
   Vec3 position_then(int i) const
   {

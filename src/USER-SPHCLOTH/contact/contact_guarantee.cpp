@@ -87,7 +87,10 @@ void ContactGuarantee::find_collisions(bool triangles_moved)
   of_cloth.update();
   of_cloth.for_near(0.0,
                     [this](const ContactPair &pair, const ClosestPoints &at) { follow(pair, at); });
-  if (triangles_moved) of_particles.update();
+  if (triangles_moved) {
+    mesh.step_start.atoms_moved();
+    of_particles.update();
+  }
   find_collisions_of_particles();
   masses.begin(mesh.end.size());
   for (const ContactRow &row : rows) masses.count(row);

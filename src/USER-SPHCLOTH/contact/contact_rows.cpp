@@ -52,6 +52,7 @@ void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero())
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
+  mesh.step_start.atoms_moved();
   mesh.forget_particles();
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     mesh.start[s] = Vec3(step_start[s].x, step_start[s].y, step_start[s].z);

@@ -14,9 +14,8 @@ namespace LAMMPS_NS {
 struct ContactSurface {
   // see MovingTriangles
   ContactSurface(LAMMPS *lmp, ContactMesh *mesh, const std::string &label, int groupbits,
-                 const ContactRules &rules, ContactCounts &counts,
-                 const ParticleColumns &last_positions) :
-      triangles(lmp, mesh, label, groupbits, rules, counts, last_positions), sides(lmp, triangles)
+                 const ContactRules &rules, ContactCounts &counts, StepStart &step_start) :
+      triangles(lmp, mesh, label, groupbits, rules, counts, step_start), sides(lmp, triangles)
   {
   }
   ContactSurface(const ContactSurface &) = delete;    // one refers to the other

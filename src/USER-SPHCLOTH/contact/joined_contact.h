@@ -21,10 +21,9 @@ class JoinedContact {
 
   // see MovingTriangles and MeshContact for the others
   JoinedContact(LAMMPS *lmp, const Meshes &meshes, const std::string &label, int particle_bits,
-                const MeetingRules &rules, ContactCounts &counts,
-                const ParticleColumns &last_positions) :
+                const MeetingRules &rules, ContactCounts &counts, StepStart &step_start) :
       joined(lmp, label, all_of(meshes), meshes.cloth_bits | meshes.obstacle_bits),
-      triangles(lmp, &joined, label, particle_bits, rules.others, counts, last_positions),
+      triangles(lmp, &joined, label, particle_bits, rules.others, counts, step_start),
       contact(lmp, triangles, true, meshes.obstacle_bits, rules),
       coupling(lmp, contact.rows(), triangles, contact.edges())
   {

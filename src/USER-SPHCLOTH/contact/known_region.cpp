@@ -77,6 +77,8 @@ void KnownRegion::check(double vertex_displacement) const
 {
   if (!bounded) return;
   const double near = mesh.rules.thickness + vertex_displacement, margin = near + longest_edge;
+  const double path = mesh.step_start.longest_path() + mesh.step_start.longest_sweep();
+  if (path + margin <= reach) return;
   const std::array<Interval, 3> all = around_sweeps();
   if (missing({all[0].low, all[1].low, all[2].low}, {all[0].high, all[1].high, all[2].high},
               margin) == 0.0)
@@ -104,7 +106,7 @@ std::array<KnownRegion::Interval, 3> KnownRegion::around_sweeps() const
   constexpr double INFINITE = std::numeric_limits<double>::infinity();
   const int n = atom->nlocal, groupbits = mesh.groupbits, *const mask = atom->mask;
   const double *const x = n > 0 ? atom->x[0] : nullptr;
-  const ParticleColumns &last = mesh.last_positions;
+  const ParticleColumns &last = mesh.step_start.positions;
   const double *const x0 = last[0], *const y0 = last[1], *const z0 = last[2];
   const Vec3 origin = in_box(Vec3::Zero()),
              along[3] = {in_box(Vec3::UnitX()) - origin, in_box(Vec3::UnitY()) - origin,

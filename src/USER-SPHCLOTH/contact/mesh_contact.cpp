@@ -39,6 +39,7 @@ void MeshContact::rebuild()
 bool MeshContact::resolve()
 {
   const WallTimer clock(triangles.counts.seconds);
+  triangles.step_start.atoms_moved();
   triangles.load_step();
   const bool any = gaps.keep();
   return guarantee.resolve_collisions() || any;

@@ -16,9 +16,9 @@ using namespace sphcloth;
 
 MovingTriangles::MovingTriangles(LAMMPS *lmp_, ContactMesh *mesh_, const std::string &label_,
                                  int groupbits_, const ContactRules &rules_, ContactCounts &counts_,
-                                 const ParticleColumns &last_positions_) :
+                                 StepStart &step_start_) :
     TriangleSet(lmp_, mesh_, label_), groupbits(groupbits_), rules(rules_), counts(counts_),
-    last_positions(last_positions_)
+    step_start(step_start_)
 {
 }
 
@@ -64,15 +64,6 @@ double MovingTriangles::max_displacement(const std::vector<Vec3> &from) const
     max_sq =
         std::max({max_sq, (start[s] - from[s]).squaredNorm(), (end[s] - from[s]).squaredNorm()});
   return std::sqrt(max_sq);
-}
-
-// from where the last step has left it to where it is
-
-Sweep MovingTriangles::sweep_of(int i) const
-{
-  const double *x = atom->x[i];
-  const ParticleColumns &last = last_positions;
-  return {Vec3(last[0][i], last[1][i], last[2][i]), Vec3(x[0], x[1], x[2])};
 }
 
 int MovingTriangles::slot_of_particle(int i)

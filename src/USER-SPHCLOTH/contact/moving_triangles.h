@@ -8,8 +8,8 @@
 
 #include "atom.h"
 #include "contact/contact_pair.h"
+#include "contact/step_start.h"
 #include "contact/triangle_set.h"
-#include "lammps_util/particle_columns.h"
 
 #include <string>
 #include <vector>
@@ -18,10 +18,9 @@ namespace LAMMPS_NS {
 
 class MovingTriangles : public TriangleSet {
  public:
-  // groupbits: of the atoms that collide with the mesh; last_positions: x, y, z of all owned atoms
-  // at the end of the last step
+  // groupbits: of the atoms that collide with the mesh
   MovingTriangles(LAMMPS *, ContactMesh *, const std::string &label, int groupbits,
-                  const ContactRules &, ContactCounts &, const ParticleColumns &last_positions);
+                  const ContactRules &, ContactCounts &, StepStart &);
 
   const int groupbits;
   const ContactRules &rules;
@@ -44,8 +43,8 @@ class MovingTriangles : public TriangleSet {
   // does an atom collide with this mesh?
   bool collides(int i) const { return atom->mask[i] & groupbits; }
 
-  const ParticleColumns &last_positions;    // of owned atoms, at the start of the step
-  sphcloth::Sweep sweep_of(int atom) const;
+  StepStart &step_start;
+  sphcloth::Sweep sweep_of(int i) const { return step_start.sweep_of(i); }
   sphcloth::ClosestPoints closest_at_start(const Vec3 &p, int t) const
   {
     const auto &[a, b, c] = triangles[t];

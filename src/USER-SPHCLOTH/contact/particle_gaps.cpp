@@ -79,6 +79,7 @@ bool ParticleGaps::put_back(int particle)
     if (gap.triangle < 0) break;
     sweep.end += gap.depth * gap.normal;
     for (int d = 0; d < 3; d++) atom->x[particle][d] = sweep.end[d];
+    mesh.step_start.atoms_moved();
     if (!gap.hit) continue;
     hit = true;
     mesh.counts.stops++;

@@ -194,6 +194,7 @@ void BoundaryMesh::find_closest_points_at(int sheet, std::vector<ClosestPoint> &
   if (seekers.empty()) return;
   find_positions(of_vertex);
   for (Seeker &seeker : seekers) {
+    if (!(atom->mask[seeker.particle] & groupbit)) continue;
     const Vec3 p = of_particle(seeker.particle);
     double nearer = path - seeker.path + (p - seeker.at).norm();    // at most, than then
     if (nearer > margin()) {

@@ -35,13 +35,14 @@ class BoundaryMesh : protected Pointers {
 
   enum class Part { WATERTIGHT, ALL };
 
-  BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_, Part part_ = Part::WATERTIGHT) :
-      Pointers(lmp_), set(set_), part(part_)
+  // groupbit: of the particles that feel it, which may change in every step
+  BoundaryMesh(LAMMPS *lmp_, TriangleSet *set_, int groupbit_, Part part_ = Part::WATERTIGHT) :
+      Pointers(lmp_), set(set_), groupbit(groupbit_), part(part_)
   {
   }
 
   // After each list build: which particles may come near a triangle until the next one.
-  // reach(i): of the kernel of an owned particle, 0 for one that does not feel this wall.
+  // reach(i): of the kernel of an owned particle, 0 for one that never feels this wall.
   void update_candidates(double skin, const std::function<double(int)> &reach);
 
   // where particles stand now, those within reach, added to what is there
@@ -98,6 +99,7 @@ class BoundaryMesh : protected Pointers {
     std::size_t first_border, last_border;
   };
   TriangleSet *set;
+  int groupbit;
   Part part;
   double skin = 0.0;
   std::vector<Candidate> candidates;

@@ -61,6 +61,13 @@ class FluidBoundary {
   // elsewhere.
   virtual void prolong(double times) = 0;
 
+  // For densities that are completed at free surfaces (core/sph/surface.h): can it do the
+  // following?  The gradient of what it adds to a density sum, as it would be without a surface,
+  // is added to that over particles; a particle's turn T pushes it.
+  virtual bool knows_gradients() const { return false; }
+  virtual void complete_gradient(int, double *) {}
+  virtual void push_turn(int, const Eigen::Vector3d &) {}
+
   // all particles have been pushed
   virtual void end() {}
 

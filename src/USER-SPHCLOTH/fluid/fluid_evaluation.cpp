@@ -156,7 +156,7 @@ void FluidEvaluation::find_forces()
     core->impulses(particles(), *impulses);
   else
     core->forces(particles(), hooks ? Target::FLUID : Target::ALL);
-  if (surface.on()) core->turn_forces(particles());
+  if (surface.on()) surface.push(*core, particles(), boundaries);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
   if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
@@ -253,11 +253,10 @@ void FluidEvaluation::select(const Particles &p)
 
 Fluid::Box FluidEvaluation::box() const
 {
-  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo;
+  const double *lo = domain->triclinic ? domain->boxlo_bound : domain->boxlo, *prd = domain->prd;
   const double tilt = std::fabs(domain->xy) + std::fabs(domain->xz) + std::fabs(domain->yz);
-  return {{lo[0], lo[1], lo[2]},
-          {domain->prd[0], domain->prd[1], domain->prd[2]},
-          comm->get_comm_cutoff() + neighbor->skin + tilt};
+  const double reach = comm->get_comm_cutoff() + neighbor->skin;
+  return {{lo[0], lo[1], lo[2]}, {prd[0], prd[1], prd[2]}, reach, tilt};
 }
 
 // From velocities and a usual acoustic step: the step itself is another after a restart than
@@ -345,7 +344,7 @@ void FluidEvaluation::find_densities(const Particles &p)
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
       core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
-    if (surface.on()) surface.complete(*core, p);
+    if (surface.on()) surface.complete(*core, p, boundaries);
     if (!lattices.adapts_density()) return;
     return core->for_active_fluid(
         [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });

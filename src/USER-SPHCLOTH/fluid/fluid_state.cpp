@@ -150,7 +150,7 @@ bool FluidState::evaluated() const
   return is_evaluated && evaluated_order == order_of_atoms(atom);
 }
 
-int FluidState::boundary_type_in(int groupbit) const
+int FluidState::foreign_type_in(int groupbit) const
 {
   int here = 0, anywhere = 0;
   for (int i = 0; i < atom->nlocal; i++)

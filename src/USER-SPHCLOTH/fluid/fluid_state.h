@@ -48,8 +48,8 @@ class FluidState : public SPHMaterials {
   bool has_role(int itype) const;
   // are the owned atoms those of the last evaluation?  All that follows needs it.
   bool evaluated() const;
-  // one that has atoms in the group, on any rank; 0: none; collective
-  int boundary_type_in(int groupbit) const;
+  // one that is no fluid and has atoms in the group, on any rank; 0: none; collective
+  int foreign_type_in(int groupbit) const;
 
   // Of owned atoms, or of all atoms where it says so
 

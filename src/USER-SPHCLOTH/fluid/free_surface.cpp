@@ -23,10 +23,12 @@ void FreeSurface::begin_run()
   stiffenings.clear();
   turn.clear();
   if (!materials.completes_surfaces()) return;
-  if (!find_fluid_boundaries(modify).empty())
-    error->all(FLERR,
-               "pair_style sph/tait: surface is 'yes', but fix wall/sph and meshes with 'wall yes' "
-               "complete sums on their own: use boundary particles instead, or 'surface no'");
+  for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
+    if (!boundary->knows_gradients())
+      error->all(
+          FLERR,
+          "pair_style sph/tait: surface is 'yes', but meshes with 'wall yes' complete sums on "
+          "their own: use boundary particles or fix wall/sph instead, or 'surface no'");
   table.emplace(materials.wall_table());
   bend = with_kernel(materials.options.kernel, [&](auto kernel) {
     return bend_over_slope<decltype(kernel)>(domain->dimension);
@@ -44,11 +46,13 @@ void FreeSurface::begin_lists()
   turn.assign(3 * static_cast<std::size_t>(atom->nmax), 0.0);
 }
 
-void FreeSurface::complete(Fluid &core, const Particles &p)
+void FreeSurface::complete(Fluid &core, const Particles &p,
+                           const std::vector<FluidBoundary *> &boundaries)
 {
   core.sum_gradients(p, turn.data());
   core.for_active_fluid([&](int i, int type) {
     double *of = &turn[3 * i];
+    for (FluidBoundary *boundary : boundaries) boundary->complete_gradient(i, of);
     const double length = std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
     const double support = materials.support(type), x = support * length / p.rho[i];
     const SurfaceTable::Value h = (*table)(x);
@@ -64,6 +68,17 @@ void FreeSurface::complete(Fluid &core, const Particles &p)
 void FreeSurface::set_pressure(int i, double p_over_rho2)
 {
   for (int d = 0; d < 3; d++) turn[3 * i + d] *= p_over_rho2;
+}
+
+void FreeSurface::push(Fluid &core, const Particles &p,
+                       const std::vector<FluidBoundary *> &boundaries)
+{
+  core.turn_forces(p);
+  for (FluidBoundary *boundary : boundaries)
+    core.for_active_fluid([&](int i, int type) {
+      const Eigen::Map<const Eigen::Vector3d> its(&turn[3 * i]);
+      boundary->push_turn(i, its / core.model.pressure_scale[type]);
+    });
 }
 
 double *FreeSurface::pack(int i, double *buf) const

@@ -16,6 +16,7 @@
 
 namespace LAMMPS_NS {
 
+class FluidBoundary;
 class SPHMaterials;
 
 class FreeSurface : protected Pointers {
@@ -29,7 +30,10 @@ class FreeSurface : protected Pointers {
   bool on() const { return table.has_value(); }
   void begin_lists();
   // of the active particles, from sums to densities
-  void complete(sphcloth::Fluid &, const sphcloth::Particles &);
+  void complete(sphcloth::Fluid &, const sphcloth::Particles &,
+                const std::vector<FluidBoundary *> &);
+  // by turns, of particles and boundaries
+  void push(sphcloth::Fluid &, const sphcloth::Particles &, const std::vector<FluidBoundary *> &);
   // Of an owned particle, once its p/rho^2 is known: what acts along the line of two particles;
   // the rest is its turn.
   double along(int i) const { return alongs.empty() ? 1.0 : alongs[i]; }

@@ -44,7 +44,7 @@ void MeshBoundary::add(const ContactMesh *mesh, TriangleSet *set, Mesh kind)
                  "{}: vertex {} is of type {}, a boundary type, and would press twice with 'wall': "
                  "use 'pair_coeff {} {} none', or 'wall no'",
                  label, atom->tag[i], atom->type[i], atom->type[i], atom->type[i]);
-  sheets.emplace_back(lmp, set);
+  sheets.emplace_back(lmp, set, groupbit);
   kinds.push_back(kind);
 }
 
@@ -62,7 +62,7 @@ void MeshBoundary::update_candidates()
 {
   for (BoundaryMesh &sheet : sheets)
     sheet.update_candidates(neighbor->skin, [this](int i) {
-      return atom->mask[i] & groupbit && fluid->is_fluid(atom->type[i]) ? support(i) : 0.0;
+      return fluid->is_fluid(atom->type[i]) ? support(i) : 0.0;
     });
 }
 

@@ -68,6 +68,13 @@ class SPHMaterials : protected Pointers {
   const TypeData &type(int i) const { return types[i]; }
   bool is_fluid(int i) const { return types[i].role == sphcloth::Role::FLUID; }
   bool is_boundary(int i) const { return types[i].role == sphcloth::Role::BOUNDARY; }
+  // in messages
+  const char *kind(int i) const
+  {
+    return is_fluid(i)   ? "a fluid type"
+        : is_boundary(i) ? "a boundary type"
+                         : "a type of the role none";
+  }
   const sphcloth::Tait &equation_of_state(int i) const { return types[i].eos; }
   bool sound_follows() const;    // that of any fluid
   bool switches_viscosity() const    // that of any fluid

@@ -8,6 +8,7 @@
 #include "atom_vec.h"
 #include "domain.h"
 #include "error.h"
+#include "group.h"
 #include "lammps.h"
 #include "update.h"
 
@@ -78,6 +79,20 @@ inline bool share_atoms(const Atom *atom, int groupbit, int other_groupbit, MPI_
     if (atom->mask[i] & groupbit && atom->mask[i] & other_groupbit) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
+}
+
+// of a keyword that reads its group at list builds or where a run begins
+
+inline void refuse_dynamic_group(LAMMPS *lmp, const std::string &label, const std::string &keyword,
+                                 int igroup)
+{
+  const char *name = lmp->group->names[igroup];
+  if (lmp->group->dynamic[igroup])
+    lmp->error->all(FLERR,
+                    "{}: {} group {} is dynamic, and its atoms must stay the same within a run: "
+                    "keep those that are in it now with 'group {} static', and change them "
+                    "between runs",
+                    label, keyword, name, name);
 }
 
 // collective: the first of the IDs of n new atoms, above those that are there or have been

@@ -21,7 +21,6 @@ struct PoreFluid {
   {
     return angle_type >= first_type && angle_type <= last_type;
   }
-  bool passes(int mask, int type) const { return mask & groupbit && state->is_fluid(type); }
   double width(int type) const { return state->support(type); }    // of the layer
   double density(int type) const { return state->equation_of_state(type).rho0; }    // at rest
 };

@@ -16,7 +16,7 @@ using namespace sphcloth;
 void PoreMesh::rebuild()
 {
   mesh.update_candidates(neighbor->skin, [this](int i) {
-    return fluid.passes(atom->mask[i], atom->type[i]) ? fluid.width(atom->type[i]) : 0.0;
+    return fluid.state->is_fluid(atom->type[i]) ? fluid.width(atom->type[i]) : 0.0;
   });
   for (std::vector<Vec3> *each : {&pushed, &start, &velocity, &passing, &filled, &part})
     each->assign(set->halo.n_slots(), Vec3::Zero());

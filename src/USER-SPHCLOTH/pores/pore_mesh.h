@@ -42,7 +42,8 @@ class PoreMesh : protected Pointers {
   using Vec3 = Eigen::Vector3d;
 
   PoreMesh(LAMMPS *lmp_, MovingTriangles *set_, const PoreFluid &fluid_) :
-      Pointers(lmp_), set(set_), fluid(fluid_), mesh(lmp, set, BoundaryMesh::Part::ALL)
+      Pointers(lmp_), set(set_), fluid(fluid_),
+      mesh(lmp, set, fluid.groupbit, BoundaryMesh::Part::ALL)
   {
   }
 

@@ -21,8 +21,7 @@
 
 #include "core/contact/sheet_sides.h"
 #include "core/geometry/buckets.h"
-#include "core/util/bytes.h"
-#include "core/util/simd.h"
+#include "core/neighbor/neighbor_spans.h"
 
 namespace sphcloth {
 
@@ -71,95 +70,6 @@ struct Points {
   Parting *layers = nullptr;    // null: sides are enough
 };
 
-// one group of neighbors; LANES indices past the end are readable and valid
-
-struct NeighborSpan {
-  const int *of = nullptr;
-  int n = 0;
-};
-
-// For each slot and type a segment.  They lie one behind the other in a few long arrays, which stay
-// from one build to the next; one that is replaced by a longer one moves behind the last.
-
-class NeighborSpans {
- public:
-  void start(std::size_t slots, int n_types)
-  {
-    types = n_types;
-    current = used = 0;
-    pieces.clear();
-    pieces.reserve(slots * n_types);
-  }
-  NeighborSpan operator()(int slot, int type) const
-  {
-    const Piece &piece = pieces[number(slot, type)];
-    return {piece.of, piece.n};
-  }
-  int *open(int slot, int type) { return pieces[number(slot, type)].of; }
-  // room for at most n more entries and the slack behind them
-  int *room(int n)
-  {
-    while (current < arrays.size() && left() < n + SLACK) {
-      end_with_slack();
-      current++;
-      used = 0;
-    }
-    if (current == arrays.size()) arrays.emplace_back(std::max(ENTRIES, n + SLACK));
-    return arrays[current].data() + used;
-  }
-  void close(int n)
-  {
-    pieces.push_back({room(0), n, n});
-    used += n;
-  }
-  // all are closed
-  void finish()
-  {
-    room(0);
-    end_with_slack();
-    arrays.resize(current + 1);
-  }
-  // by n in the room that was given last
-  int *replace(int slot, int type, int n)
-  {
-    Piece &piece = pieces[number(slot, type)];
-    piece.n = n;
-    int *const given = room(0);
-    if (n <= piece.room) return std::copy_n(given, n, piece.of) - n;
-    piece.of = given;
-    piece.room = std::min(n + n / 8, left() - SLACK);
-    used += piece.room;
-    end_with_slack();
-    return given;
-  }
-  double bytes() const
-  {
-    double sum = bytes_of(pieces);
-    for (const std::vector<int> &array : arrays) sum += bytes_of(array);
-    return sum;
-  }
-
- private:
-  static constexpr int SLACK = 2 * LANES, ENTRIES = 1 << 17;
-  struct Piece {
-    int *of;
-    int n, room;
-  };
-  int types = 0;
-  std::vector<Piece> pieces;
-  std::vector<std::vector<int>> arrays;
-  std::size_t current = 0;    // the array that is being filled
-  int used = 0;    // of it
-
-  std::size_t number(int slot, int type) const
-  {
-    return static_cast<std::size_t>(slot) * types + type - 1;
-  }
-  int left() const { return static_cast<int>(arrays[current].size()) - used; }
-  // what loops over whole groups read behind the last segment
-  void end_with_slack() { std::fill_n(arrays[current].begin() + used, SLACK, 0); }
-};
-
 class CellLists {
  public:
   // reach: [(n_types+1)^2], distance up to which the second type is listed as a neighbor of the
@@ -182,6 +92,8 @@ class CellLists {
     const int n_types = p.n_types;
     sort_into_cells(p, reach);
     find_slots(p);
+    if (p.layers)
+      for (int slot = 0; slot < slots(); slot++) cell[order[slot]] = slot;
     lists.start(order.size(), n_types);
     n_near.assign(near.distance ? order.size() * n_types : 0, 0);
     int *next = n_near.data();
@@ -189,7 +101,11 @@ class CellLists {
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
           const int pair = t * (n_types + 1) + other;
-          const int n = list(slot, other, reach[pair], t == other);
+          const bool symmetric = reach[pair] == reach[other * (n_types + 1) + t];
+          const int n = list(slot, other, reach[pair], t == other, [&](int j) {
+            if (!symmetric || j >= p.n_owned || cell[j] >= slot) return UNKNOWN;
+            return contains(lists(cell[j], t), order[slot]) ? NEIGHBORS : PARTED;
+          });
           if (near.distance)
             *next++ = near_first(lists.room(0), n, near_in(near, slot, n_types)[pair]);
           lists.close(n);
@@ -207,12 +123,18 @@ class CellLists {
     const int n_types = p.n_types;
     sort_into_cells(p, reach);
     find_sorted_indices(p.n_owned);
+    if (p.layers) listed_by.assign(p.n_all, -1);
     for (int t = 1; t <= n_types; t++)
       for (int slot = begin(t); slot < begin(t + 1); slot++)
         for (int other = 1; other <= n_types; other++) {
           if (!due(slot, t, other)) continue;
           const int pair = t * (n_types + 1) + other;
-          const int n = list(slot, other, reach[pair], t == other);
+          if (p.layers) {
+            const NeighborSpan before = lists(slot, other);
+            for (int k = 0; k < before.n; k++) listed_by[before.of[k]] = slot;
+          }
+          const int n = list(slot, other, reach[pair], t == other,
+                             [&](int j) { return listed_by[j] == slot ? NEIGHBORS : UNKNOWN; });
           n_near[static_cast<std::size_t>(slot) * n_types + other - 1] =
               near_first(lists.replace(slot, other, n), n, near_in(near, slot, n_types)[pair]);
         }
@@ -230,7 +152,7 @@ class CellLists {
   double bytes() const
   {
     return lists.bytes() +
-        bytes_of(px, py, pz, key, id, order, sorted_index, cell_start, cell, candidate);
+        bytes_of(px, py, pz, key, id, order, sorted_index, cell_start, cell, candidate, listed_by);
   }
 
  private:
@@ -270,6 +192,7 @@ class CellLists {
   AlignedVector<float> px, py, pz;
   std::vector<int> candidate;    // of one particle
   std::vector<float> key;
+  std::vector<int> listed_by;    // of each particle, while layers part: a slot that listed it
   NeighborSpans lists;
   Points points;    // during a build
 
@@ -384,18 +307,20 @@ class CellLists {
   void finish()
   {
     for (auto *coordinate : {&px, &py, &pz}) give_back(*coordinate);
-    for (auto *list : {&cell, &cell_start, &sorted_index, &id}) give_back(*list);
+    for (auto *list : {&cell, &cell_start, &sorted_index, &id, &listed_by}) give_back(*list);
   }
 
-  // Behind all lists; returns how many are listed.  Their squared distances are in `key`.
+  // Behind all lists; returns how many are listed.  Their squared distances are in `key`.  Layers
+  // are asked for pairs of which known(neighbor) is UNKNOWN.
 
-  int list(int slot, int other, double reach, bool same_type)
+  enum Known { UNKNOWN, NEIGHBORS, PARTED };
+  template <class Find> int list(int slot, int other, double reach, bool same_type, Find known)
   {
     if (reach == 0.0) return 0;
     const double cutoff = reach + slack;
     const auto cutoff_sq = static_cast<float>(cutoff * cutoff);
     const int n = candidates(slot, other, cutoff, same_type), i = order[slot];
-    if (points.sides && points.sides[i]) leave_out_parted(i, n, cutoff_sq);
+    if (points.sides && points.sides[i]) leave_out_parted(i, n, cutoff_sq, known);
     return compact(key.data(), candidate.data(), n, cutoff_sq, key.data(), lists.room(n));
   }
 
@@ -414,15 +339,27 @@ class CellLists {
     return partition(key.data(), list, n, static_cast<float>(cutoff * cutoff), candidate.data());
   }
 
-  void leave_out_parted(int i, int n, float cutoff_sq)
+  template <class Find> void leave_out_parted(int i, int n, float cutoff_sq, Find known)
   {
     const Sides *of = points.sides;
+    const auto are_parted = [&](int j) {
+      if (!points.layers) return true;
+      const Known by_other = known(j);
+      return by_other == UNKNOWN ? points.layers->part(i, j, of[i], of[j]) : by_other == PARTED;
+    };
     for (int k = 0; k < n; k++) {
       const int j = candidate[k];
       if (key[k] > cutoff_sq || !are_doubtful(of[i], of[j])) continue;
-      if (!points.layers || points.layers->part(i, j, of[i], of[j]))
-        key[k] = std::numeric_limits<float>::max();
+      if (are_parted(j)) key[k] = std::numeric_limits<float>::max();
     }
+  }
+
+  SPHCLOTH_MULTIVERSION static bool contains(const NeighborSpan &list, int wanted)
+  {
+    int found = 0;
+#pragma omp simd reduction(| : found)
+    for (int k = 0; k < list.n; k++) found |= list.of[k] == wanted;
+    return found != 0;
   }
 
   // all particles in the cells that the sphere around a particle touches, with the squared

@@ -207,9 +207,11 @@ class Fluid {
   }
 
   // Records the positions of all particles that are read.  Mixed precision counts from the corner
-  // lo - margin in parts of the box lengths, so that periodic images are exact.
+  // lo - reach - tilt in parts of the box lengths, so that periodic images are exact.
   struct Box {
-    double lo[3], length[3], margin;
+    double lo[3], length[3];
+    double reach;    // neighbors are not farther away
+    double tilt = 0.0;    // how far the edges of a tilted box lean
   };
   virtual void record_positions(const Particles &, const Box &) = 0;
 

@@ -18,19 +18,32 @@ struct DoublePrecision {
   using Real = double;
   using Coordinate = double;
   static constexpr bool COUNTED = false;
+  static Coordinate coordinate(double x) { return x; }
+  static Coordinate sum(Coordinate a, Coordinate b) { return a + b; }
   static Real difference(Coordinate a, Coordinate b, Real) { return a - b; }
 };
 
-// Coordinates are counted in a quantum: their differences are exact however far from the origin.
-// Lengths are in a unit near the support: 1/H^5 is beyond single precision in some units.
+// Coordinates are counted in a quantum, modulo 2^32: differences of neighbors are exact however far
+// they are from the origin, and however long the box is.  Lengths are in a unit near the support:
+// 1/H^5 is beyond single precision in some units.
 
 struct MixedPrecision {
   using Real = float;
   using Coordinate = std::int32_t;
   static constexpr bool COUNTED = true;
+  static Coordinate coordinate(double x)
+  {
+    return static_cast<Coordinate>(static_cast<std::int64_t>(x));
+  }
+  static Coordinate sum(Coordinate a, Coordinate b)
+  {
+    return static_cast<Coordinate>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+  }
   static Real difference(Coordinate a, Coordinate b, Real quantum)
   {
-    return quantum * static_cast<Real>(a - b);
+    const auto apart =
+        static_cast<Coordinate>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+    return quantum * static_cast<Real>(apart);
   }
 };
 
@@ -119,10 +132,15 @@ template <class P> class PairColumns {
     motions.resize(p.n_all + LANES);
     std::array<double, 3> origin{0.0, 0.0, 0.0}, per_quantum{1.0, 1.0, 1.0};
     if (P::COUNTED) {
-      const double longest = *std::max_element(box.length, box.length + 3) + 2.0 * box.margin;
+      // In a long box a quantum is 2^-24 of the reach, which is what single precision resolves, and
+      // neighbors are apart by little more than 2^24: far from 2^31, where their order is lost.
+      constexpr double LONG = 64.0;
+      const double margin = box.reach + box.tilt;
+      double counted = *std::max_element(box.length, box.length + 3) + 2.0 * margin;
+      if (box.reach > 0.0) counted = std::min(counted, LONG * box.reach);
       for (int d = 0; d < 3; d++) {
-        origin[d] = box.lo[d] - box.margin;
-        per_quantum[d] = std::ceil(box.length[d] / longest * 0x1p30) / box.length[d];
+        origin[d] = box.lo[d] - margin;
+        per_quantum[d] = std::ceil(box.length[d] / counted * 0x1p30) / box.length[d];
         quantum[d] = static_cast<Real>(1.0 / per_quantum[d] / unit);
       }
     }
@@ -180,7 +198,7 @@ template <class P> class PairColumns {
   {
     n_evaluated += of.near.n;
     const Site site = sites[of.i];
-    const Coordinate outside = site.x + of.terms.outside;
+    const Coordinate outside = P::sum(site.x, of.terms.outside);
     const Real qx = quantum[0], qy = quantum[1], qz = quantum[2];
     for (int from = 0; from < of.near.n; from += LANES) {
       load(from);
@@ -232,9 +250,9 @@ template <class P> class PairColumns {
     const double ox = origin[0], oy = origin[1], oz = origin[2];
     const double qx = per_quantum[0], qy = per_quantum[1], qz = per_quantum[2];
     const auto record_one = [&](int i) SPHCLOTH_LAMBDA {
-      sites[i].x = static_cast<Coordinate>((p.x[3 * i] - ox) * qx);
-      sites[i].y = static_cast<Coordinate>((p.x[3 * i + 1] - oy) * qy);
-      sites[i].z = static_cast<Coordinate>((p.x[3 * i + 2] - oz) * qz);
+      sites[i].x = P::coordinate((p.x[3 * i] - ox) * qx);
+      sites[i].y = P::coordinate((p.x[3 * i + 1] - oy) * qy);
+      sites[i].z = P::coordinate((p.x[3 * i + 2] - oz) * qz);
     };
     if (some)
       for (const int i : *some) record_one(i);

@@ -124,6 +124,8 @@ class JointWalls {
   // its derivatives with respect to delta of wall k; the second without that of the share
   double slope(std::size_t k) const { return share(k) * walls[k].alone.slope; }
   double curvature(std::size_t k) const { return share(k) * walls[k].alone.curvature; }
+  // the second derivative with respect to delta of walls k and l
+  double curvature(std::size_t k, std::size_t l) const;
 
  private:
   struct Values {    // one of each wall
@@ -139,7 +141,28 @@ class JointWalls {
 
   Values half_spaces() const { return {walls, n, &NearWall::half_space}; }
   Values alone() const { return {walls, n, &NearWall::alone}; }
+  // g(f) and its derivatives
   static double common(double f) { return f / (1.0 + f * f); }
+  static double common_slope(double f)
+  {
+    const double sq = f * f;
+    return (1.0 - sq) / ((1.0 + sq) * (1.0 + sq));
+  }
+  static double common_curvature(double f)
+  {
+    const double sq = f * f;
+    return 2.0 * f * (sq - 3.0) / std::pow(1.0 + sq, 3);
+  }
+  // what the other walls leave open
+  double open_beside(std::size_t k, std::size_t l) const
+  {
+    double open = 1.0;
+    for (std::size_t m = 0; m < n; m++) {
+      const double f = walls[m].alone.lambda;
+      if (m != k && m != l) open *= 1.0 - (overlap ? common(f) : f);
+    }
+    return open;
+  }
 };
 
 inline double JointWalls::lambda() const
@@ -157,11 +180,18 @@ inline double JointWalls::lambda() const
 inline double JointWalls::share(std::size_t k) const
 {
   if (!overlap) return joint_share(alone(), k);
-  double open = 1.0;
-  for (std::size_t l = 0; l < n; l++)
-    if (l != k) open *= 1.0 - common(walls[l].alone.lambda);
-  const double sq = walls[k].alone.lambda * walls[k].alone.lambda;
-  return 1.0 - (1.0 - sq) / ((1.0 + sq) * (1.0 + sq)) * (1.0 - open);
+  return 1.0 - common_slope(walls[k].alone.lambda) * (1.0 - open_beside(k, k));
+}
+
+inline double JointWalls::curvature(std::size_t k, std::size_t l) const
+{
+  const WallTable::Value &a = walls[k].alone, &b = walls[l].alone;
+  if (k == l) {
+    const double of_share = overlap ? -common_curvature(a.lambda) * (1.0 - open_beside(k, k)) : 0.0;
+    return curvature(k) + of_share * a.slope * a.slope;
+  }
+  const double slopes = overlap ? common_slope(a.lambda) * common_slope(b.lambda) : 1.0;
+  return -slopes * open_beside(k, l) * a.slope * b.slope;
 }
 
 }    // namespace sphcloth

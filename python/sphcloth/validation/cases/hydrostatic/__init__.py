@@ -19,6 +19,7 @@ from sphcloth.validation.case import Case, Parameter, Quantity, Value
 from sphcloth.validation.common import (
     GRAVITY,
     REST_DENSITY,
+    SURFACE,
     WALL,
     lattice_density,
     lattice_density_in_space,
@@ -52,6 +53,7 @@ PARAMETERS = (
     WALL,
     Parameter("thick", 0.0, "1", "volume of a vertex over spacing^3, 0 for auto", 0.0, 3.0),
     Parameter("thickness", 0.2, "1", "of contact with a sheet over spacing", 0.01, 1.0),
+    SURFACE,
     *numerics(alpha=0.5, courant=0.5),
 )
 

@@ -284,23 +284,10 @@ def _first_layer(water: NDArray, sheet: NDArray, spacing: float) -> float:
     return float(np.mean([np.min(distance[inner][place == each]) for each in np.unique(place)]))
 
 
-@dataclass(frozen=True)
-class RingMesh(ClothMesh):
-    """A sheet that closes through the periodic boundary along y, with its two nearest images."""
-
-    def corners(self, frame: Frame) -> NDArray[np.float64]:
-        """Return the corners of each triangle and of its images, shape (3 T, 3 corners, 3)."""
-        corners = super().corners(frame)
-        first = corners[:, :1]
-        apart = frame.shortest((corners - first).reshape(-1, 3)).reshape(corners.shape)
-        images = frame.cell[1] * np.array([-1, 0, 1])[:, None, None, None]
-        return (first + apart + images).reshape(-1, 3, 3)
-
-
 def _crossed(run: Run) -> int:
     """Return the number of particles that went through the sheet, from the dump alone."""
     mesh = ClothMesh.read(run.folder / f"{run.name}.data")
-    return crossings(RingMesh(mesh.ids, mesh.triangles), run.trajectory).count
+    return crossings(mesh, run.trajectory).count
 
 
 def _plot(exact: HeavyLintearia, pools: Mapping[str, Pool], run: Run, path: Path) -> None:

@@ -16,7 +16,14 @@ from sphcloth.errors import UserError
 from sphcloth.references.standing_wave import StandingWave
 from sphcloth.validation import compare, schemes
 from sphcloth.validation.case import Case, Parameter, Quantity, Value
-from sphcloth.validation.common import GRAVITY, REST_DENSITY, WALL, lattice_density, numerics
+from sphcloth.validation.common import (
+    GRAVITY,
+    REST_DENSITY,
+    SURFACE,
+    WALL,
+    lattice_density,
+    numerics,
+)
 from sphcloth.validation.refinement import Refinement, order_quantities, three
 from sphcloth.validation.runner import Run, Runner
 
@@ -38,9 +45,7 @@ PARAMETERS = (
     Parameter("settle", 3.0, "sqrt(H/g)", "time of damping before the wave", 1.0, 100.0),
     Parameter("periods", 3.0, "T", "time of the wave", 1.0, 100.0, quick=2.0),
     WALL,
-    Parameter(
-        "surface", "no", "1", "whether a sum is completed at the surface", choices=("no", "yes")
-    ),
+    SURFACE,
     *numerics(alpha=0.1, courant=0.5, density="continuity"),
 )
 

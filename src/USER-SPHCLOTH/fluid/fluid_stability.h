@@ -48,6 +48,8 @@ class FluidStability : protected Pointers {
   // in the evaluations that come next
   void want_now(bool whether) { now = whether; }
   bool wanted() const { return mobility && now; }
+  // of the lattice of a fluid of such particles
+  const sphcloth::LatticeModes &modes(int type, double mass);
   // is any vertex a boundary particle, on any rank?
   bool any_vertices() const { return has_vertices; }
   // Boundary types that have such vertices, [ntypes + 1], once this has been called in an
@@ -109,7 +111,6 @@ class FluidStability : protected Pointers {
   std::vector<Lattice> lattices;
 
   void begin_lists();
-  const sphcloth::LatticeModes &modes(int type, double mass);
 };
 
 }    // namespace LAMMPS_NS

@@ -17,6 +17,7 @@
 namespace LAMMPS_NS {
 
 class FluidBoundary;
+class FluidStability;
 class SPHMaterials;
 
 class FreeSurface : protected Pointers {
@@ -29,9 +30,9 @@ class FreeSurface : protected Pointers {
   void begin_run();
   bool on() const { return table.has_value(); }
   void begin_lists();
-  // of the active particles, from sums to densities
+  // of the active particles, from sums to densities; where stability is to be found
   void complete(sphcloth::Fluid &, const sphcloth::Particles &,
-                const std::vector<FluidBoundary *> &);
+                const std::vector<FluidBoundary *> &, FluidStability &);
   // by turns, of particles and boundaries
   void push(sphcloth::Fluid &, const sphcloth::Particles &, const std::vector<FluidBoundary *> &);
   // Of an owned particle, once its p/rho^2 is known: what acts along the line of two particles;

@@ -10,9 +10,9 @@ using namespace sphcloth;
 
 namespace {
 
-// Of one wave of displacements u = cos(q r) in each direction on a lattice, by displacing particles:
-// the change of the gradient of the sum over that of the sum, times H, each the largest of those of
-// many waves
+// Of waves of displacements u = cos(q r) on a lattice, by displacing particles:
+// the change of the gradient of the sum over that of the sum, times H, each the largest of
+// all waves
 
 template <class K> double bend_of_waves(double support, int dim)
 {

@@ -10,6 +10,7 @@
 #include "core/sph/fluid.h"
 #include "core/sph/lattice_modes.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -50,6 +51,12 @@ class FluidStability : protected Pointers {
   bool wanted() const { return mobility && now; }
   // of the lattice of a fluid of such particles
   const sphcloth::LatticeModes &modes(int type, double mass);
+  // its bend, if wanted
+  std::function<double(int, double)> bend_of_lattice()
+  {
+    if (!wanted()) return {};
+    return [this](int type, double mass) { return modes(type, mass).bend; };
+  }
   // is any vertex a boundary particle, on any rank?
   bool any_vertices() const { return has_vertices; }
   // Boundary types that have such vertices, [ntypes + 1], once this has been called in an

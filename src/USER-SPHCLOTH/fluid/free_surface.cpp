@@ -7,7 +7,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fluid/fluid_boundary.h"
-#include "fluid/fluid_stability.h"
 #include "fluid/sph_materials.h"
 
 #include <algorithm>
@@ -49,7 +48,7 @@ void FreeSurface::begin_lists()
 
 void FreeSurface::complete(Fluid &core, const Particles &p,
                            const std::vector<FluidBoundary *> &boundaries,
-                           FluidStability &stability)
+                           const Bend &bend_of_lattice)
 {
   core.sum_gradients(p, turn.data());
   core.for_active_fluid([&](int i, int type) {
@@ -60,9 +59,9 @@ void FreeSurface::complete(Fluid &core, const Particles &p,
     const SurfaceTable::Value h = (*table)(x);
     factors[i] = h.factor;
     alongs[i] = h.factor - x * h.slope;
-    if (stability.wanted()) {
+    if (bend_of_lattice) {
       // neighbors in disorder, and waves of a lattice, in which the two parts are out of phase
-      const double in_order = stability.modes(type, p.mass_or_volume[i]).bend * h.slope;
+      const double in_order = bend_of_lattice(type, p.mass_or_volume[i]) * h.slope;
       stiffenings[i] =
           std::max(std::fabs(alongs[i]) + bend * h.slope, std::hypot(alongs[i], in_order));
     }

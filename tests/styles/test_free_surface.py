@@ -290,6 +290,31 @@ def test_energy_and_momentum_of_undamped_drops(boundary, walls, scheme):
     np.testing.assert_allclose(momenta.sum(axis=0), 0, atol=1e-11 * np.abs(momenta).sum())
 
 
+@pytest.mark.parametrize("pressure", ["own", "mirror"])
+def test_steps_of_global_let_water_come_to_rest(pressure):
+    """At a support of two spacings, where waves of the lattice are short for the kernel."""
+    lmp = instance()
+    lmp.commands_string(
+        header("p f p", FLUID)
+        + box("0 0.4 -0.2 1 0 0.4")
+        + lattice(DX)
+        + filled("water", f"INF INF 0 {10 * DX} INF INF")
+        + jitter(0.005, 7)
+        + sph_tait(
+            f"1 1 fluid {RHO0} c0 20 spacing {DX} alpha 0.1",
+            support=2 * DX,
+            options="surface yes density calibrated",
+        )
+        + neighbor(0.02)
+        + f"fix floor all wall/sph ylo 0 pressure {pressure}\n"
+        + "fix weight all gravity 9.81 vector 0 -1 0\n"
+        + "fix calm all viscous $(50*mass(all)/count(all))\n"
+        + "timestep 1\nfix step all sph/integrate global\nrun_style sph/adaptive global\n"
+        + "run 1500\nunfix calm\nrun 2500\n"
+    )
+    assert np.abs(by_id(lmp, "v")).max() < 0.005
+
+
 @pytest.mark.parametrize(
     ("coeff", "more"),
     [

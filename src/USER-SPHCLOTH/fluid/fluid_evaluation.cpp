@@ -344,7 +344,7 @@ void FluidEvaluation::find_densities(const Particles &p)
     core->gather(p, true);
     for (FluidBoundary *boundary : boundaries)
       core->for_active_fluid([&](int i, int) { p.rho[i] = boundary->density(i, p.rho[i]); });
-    if (surface.on()) surface.complete(*core, p, boundaries);
+    if (surface.on()) surface.complete(*core, p, boundaries, stability.bend_of_lattice());
     if (!lattices.adapts_density()) return;
     return core->for_active_fluid(
         [&](int i, int t) { p.rho[i] = lattices.density(i, t, p.rho[i]); });

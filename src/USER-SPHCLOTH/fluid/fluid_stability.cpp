@@ -33,7 +33,6 @@ void FluidStability::begin_lists()
   has_vertices = std::any_of(is_vertex.begin(), is_vertex.end(), [](int is) { return is != 0; });
   stiffness.resize(atom->nmax);
   found.resize(atom->nmax);
-  lattices.resize(atom->ntypes + 1);
   if (!has_vertices) return;
   sounds.resize(atom->nmax);
   rows.resize(atom->nmax);
@@ -42,6 +41,7 @@ void FluidStability::begin_lists()
 
 const LatticeModes &FluidStability::modes(int type, double mass)
 {
+  lattices.resize(atom->ntypes + 1);
   Lattice &lattice = lattices[type];
   if (mass != lattice.mass) {
     const int dim = domain->dimension;

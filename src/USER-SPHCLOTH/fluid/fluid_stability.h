@@ -10,6 +10,7 @@
 #include "core/sph/fluid.h"
 #include "core/sph/lattice_modes.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -48,6 +49,14 @@ class FluidStability : protected Pointers {
   // in the evaluations that come next
   void want_now(bool whether) { now = whether; }
   bool wanted() const { return mobility && now; }
+  // of the lattice of a fluid of such particles
+  const sphcloth::LatticeModes &modes(int type, double mass);
+  // its bend, if wanted
+  std::function<double(int, double)> bend_of_lattice()
+  {
+    if (!wanted()) return {};
+    return [this](int type, double mass) { return modes(type, mass).bend; };
+  }
   // is any vertex a boundary particle, on any rank?
   bool any_vertices() const { return has_vertices; }
   // Boundary types that have such vertices, [ntypes + 1], once this has been called in an
@@ -109,7 +118,6 @@ class FluidStability : protected Pointers {
   std::vector<Lattice> lattices;
 
   void begin_lists();
-  const sphcloth::LatticeModes &modes(int type, double mass);
 };
 
 }    // namespace LAMMPS_NS

@@ -47,7 +47,8 @@ void FreeSurface::begin_lists()
 }
 
 void FreeSurface::complete(Fluid &core, const Particles &p,
-                           const std::vector<FluidBoundary *> &boundaries)
+                           const std::vector<FluidBoundary *> &boundaries,
+                           const Bend &bend_of_lattice)
 {
   core.sum_gradients(p, turn.data());
   core.for_active_fluid([&](int i, int type) {
@@ -58,7 +59,12 @@ void FreeSurface::complete(Fluid &core, const Particles &p,
     const SurfaceTable::Value h = (*table)(x);
     factors[i] = h.factor;
     alongs[i] = h.factor - x * h.slope;
-    stiffenings[i] = std::fabs(alongs[i]) + bend * h.slope;
+    if (bend_of_lattice) {
+      // neighbors in disorder, and waves of a lattice, in which the two parts are out of phase
+      const double in_order = bend_of_lattice(type, p.mass_or_volume[i]) * h.slope;
+      stiffenings[i] =
+          std::max(std::fabs(alongs[i]) + bend * h.slope, std::hypot(alongs[i], in_order));
+    }
     const double by = length > 0.0 ? h.slope * support / length : 0.0;
     for (int d = 0; d < 3; d++) of[d] *= by;
     p.rho[i] *= h.factor;

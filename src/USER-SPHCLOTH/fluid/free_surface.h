@@ -11,6 +11,7 @@
 #include "core/sph/surface.h"
 #include "core/util/bytes.h"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,9 +30,11 @@ class FreeSurface : protected Pointers {
   void begin_run();
   bool on() const { return table.has_value(); }
   void begin_lists();
-  // of the active particles, from sums to densities
+  // Of the active particles, from sums to densities.  Where stability is to be found, bend: of the
+  // lattice of a type and a mass, see LatticeModes; else empty.
+  using Bend = std::function<double(int, double)>;
   void complete(sphcloth::Fluid &, const sphcloth::Particles &,
-                const std::vector<FluidBoundary *> &);
+                const std::vector<FluidBoundary *> &, const Bend &bend_of_lattice);
   // by turns, of particles and boundaries
   void push(sphcloth::Fluid &, const sphcloth::Particles &, const std::vector<FluidBoundary *> &);
   // Of an owned particle, once its p/rho^2 is known: what acts along the line of two particles;

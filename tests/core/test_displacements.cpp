@@ -50,8 +50,8 @@ BOOST_AUTO_TEST_CASE(longest_of_all_wherever_it_is)
 
 BOOST_AUTO_TEST_CASE(infinite_with_what_is_no_number)
 {
-  for (double wrong : {std::numeric_limits<double>::quiet_NaN(),
-                       std::numeric_limits<double>::infinity(), 1e200})
+  for (double wrong :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200})
     for (int i : {0, 5, 16}) {
       Points points(17, 3, 0.25);
       points.x[3 * i + 1] = wrong;

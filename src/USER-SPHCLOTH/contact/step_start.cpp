@@ -8,7 +8,6 @@
 #include "domain.h"
 #include "lammps_util/lammps_version.h"
 
-
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 

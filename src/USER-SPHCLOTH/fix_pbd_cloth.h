@@ -26,6 +26,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "fluid/scaled_vertices.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/list_guard.h"
+#include "lammps_util/timed_dumps.h"
 #include "stepping/limited_vertices.h"
 
 #include <string>
@@ -45,6 +46,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
+  void end_of_step() override { renew_computes_for_timed_dumps(lmp); }
   double compute_vector(int) override;
 
   void grow_arrays(int) override;

@@ -14,6 +14,7 @@
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
+#include "lammps_util/timed_dumps.h"
 #include "memory.h"
 #include "modify.h"
 #include "stepping/make_stepper.h"
@@ -214,6 +215,7 @@ void FixSPHIntegrate::finish_step()
   stepper->end_step();
   stepper->choose_step();
   control.times.look_for_end();
+  renew_computes_for_timed_dumps(lmp);
 }
 
 /* ----------------------------------------------------------------------

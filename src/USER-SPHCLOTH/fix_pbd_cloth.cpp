@@ -110,7 +110,8 @@ std::vector<FixPBDCloth *> LAMMPS_NS::cloths_before(LAMMPS *lmp, const Fix *fix,
 
 int FixPBDCloth::setmask()
 {
-  return POST_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | (options.attachbit ? PRE_REVERSE : 0);
+  return POST_INTEGRATE | PRE_EXCHANGE | MIN_PRE_EXCHANGE | POST_NEIGHBOR | MIN_POST_NEIGHBOR |
+      (options.attachbit ? PRE_REVERSE : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -165,6 +166,18 @@ void FixPBDCloth::pre_exchange()
   constraints.check_lengths(vertices);
   mesh.measure();
   ghosts.require_in_run(mesh.widest_element(), mesh.widest_element());
+}
+
+// The solver does not know where vertices are that a minimizer moves.
+
+void FixPBDCloth::min_pre_exchange()
+{
+  for (int s = 0; s < vertices.halo.n_owned(); s++) {
+    const double *x = atom->x[vertices.halo.atom_of(s)];
+    Vertex &p = vertices.p[s];
+    p = {x[0], x[1], x[2], p.w};
+  }
+  pre_exchange();
 }
 
 void FixPBDCloth::post_neighbor()

@@ -41,7 +41,9 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void init() override;
   void setup_post_neighbor() override;
   void pre_exchange() override;
+  void min_pre_exchange() override;
   void post_neighbor() override;
+  void min_post_neighbor() override { post_neighbor(); }
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;

@@ -168,18 +168,6 @@ void FixPBDCloth::pre_exchange()
   ghosts.require_in_run(mesh.widest_element(), mesh.widest_element());
 }
 
-// The solver does not know where vertices are that a minimizer moves.
-
-void FixPBDCloth::min_pre_exchange()
-{
-  for (int s = 0; s < vertices.halo.n_owned(); s++) {
-    const double *x = atom->x[vertices.halo.atom_of(s)];
-    Vertex &p = vertices.p[s];
-    p = {x[0], x[1], x[2], p.w};
-  }
-  pre_exchange();
-}
-
 void FixPBDCloth::post_neighbor()
 {
   if (!measured) measure();    // while the vertices of the last step are there

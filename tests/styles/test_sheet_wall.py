@@ -113,9 +113,12 @@ def test_forces_are_the_gradient_of_the_energy(spacing):
         assert np.abs(f[atom][2]) > 1e-2 * np.abs(f).max()
 
 
-def test_minimize_feels_a_mesh():
+@pytest.mark.parametrize("obstacle", [False, True])
+def test_minimize_feels_a_mesh(obstacle):
     """The energy falls, over several neighbor lists; it and forces end as those of a run."""
-    lmp = mesh(pin="")
+    plate = "fix contact fluid cloth/contact 1e-3 sides no wall yes obstacle cloth"
+    wall = plate if obstacle else MESH.format(pin="")
+    lmp = slab(wall, SHEET.format(spacing=0.1, areal=2.0))
     lmp.commands_string("velocity all set 0 0 0\nthermo_style custom pe\nrun 0")
     x, before = by_id(lmp, "x"), lmp.get_thermo("pe")
     lmp.command("minimize 0 0 20 60")

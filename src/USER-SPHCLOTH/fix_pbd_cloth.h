@@ -12,6 +12,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "fix.h"
 
+#include "atom.h"
 #include "cloth/cloth_constraints.h"
 #include "cloth/cloth_options.h"
 #include "cloth/cloth_topology.h"
@@ -42,7 +43,13 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void init() override;
   void setup_post_neighbor() override;
   void pre_exchange() override;
+  void min_pre_exchange() override
+  {
+    vertices.load_positions(atom->x);
+    pre_exchange();
+  }
   void post_neighbor() override;
+  void min_post_neighbor() override { post_neighbor(); }
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;

@@ -145,10 +145,8 @@ void FixSPHIntegrate::check_group()
 
 void FixSPHIntegrate::take_up_restored_step()
 {
-  if (restored_step > 0.0 && scheme != SteppingScheme::CONSTANT) {
-    update->update_time();
-    update->dt = restored_step;
-  }
+  if (restored_step > 0.0 && scheme != SteppingScheme::CONSTANT)
+    control.resume(restored_step, this);
   restored_step = 0.0;
 }
 

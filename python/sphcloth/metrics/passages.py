@@ -73,15 +73,26 @@ def above_sheet(mesh: ClothMesh, frame: Frame, fluid_type: int = 1) -> NDArray[n
     """Tell which fluid particles have the sheet vertically below them, shape (fluid particles,).
 
     They rest on the sheet or are on their way down to it; the others missed it or ran off.
+
+    The sheet may lie across periodic faces. Where z is periodic it is below those within half the
+    height of the box.
+
+    Raises:
+        UserError: a position that is not finite.
     """
-    positions = frame.select(fluid_type).positions
-    corners = mesh.corners(frame)
-    plan = np.broadcast_to(positions[:, :2], (2, len(positions), 2))
+    water = frame.select(fluid_type)
+    positions, corners = water.positions, mesh.corners(frame)
+    _check_finite(water.ids, positions[None], corners, frame)
+    half_height = frame.cell[2, 2] / 2
+    owner, shifts = _images(np.stack([positions, positions - [0, 0, half_height]]), corners, frame)
+    images = positions[owner] + shifts
+    plan = np.broadcast_to(images[:, :2], (2, len(images), 2))
     footprint = _boxes(corners[:, :, :2].swapaxes(0, 1))
-    particle, triangle = _overlapping_boxes(plan, footprint)
-    height = _height_over(positions[particle], corners[triangle])
+    image, triangle = _overlapping_boxes(plan, footprint)
+    height = _height_over(images[image], corners[triangle])
+    reach = half_height if frame.periodic[2] else np.inf
     above = np.zeros(len(positions), dtype=bool)
-    above[particle[height > 0]] = True
+    above[owner[image[(height > 0) & (height < reach)]]] = True
     return above
 
 
@@ -90,14 +101,10 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     start, end = before.select(fluid_type), after.select(fluid_type)
     ids, first, second = np.intersect1d(start.ids, end.ids, True, return_indices=True)
     paths = np.stack([start.positions[first], end.positions[second]])
-    if not np.isfinite(paths).all():
-        bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
-        raise UserError(f"particle {bad} has a position that is not finite at step {after.step}")
     corners = np.stack([mesh.corners(before), mesh.corners(after)])
-    if not np.isfinite(corners).all():
-        raise UserError(f"a vertex has a position that is not finite at step {after.step}")
-    paths[1] = paths[0] + before.shortest(paths[1] - paths[0])
-    corners = _unwrapped(corners, before)
+    _check_finite(ids, paths, corners, after)
+    for each in (paths, corners):
+        each[1] = each[0] + before.shortest(each[1] - each[0])
     crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
     for block in np.array_split(np.arange(len(ids)), len(ids) // _BLOCK + 1):
         through, where = _net_passes(paths[:, block], corners, before)
@@ -107,22 +114,13 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     return Crossings(found, np.full(len(found), after.step), np.concatenate(points))
 
 
-def _unwrapped(corners: NDArray, frame: Frame) -> NDArray[np.float64]:
-    """Put the corners of each triangle side by side, before, and go on from there, after.
-
-    Each triangle by itself: a sheet that closes through a periodic boundary has no place as a
-    whole.
-
-    Args:
-        corners: triangle corners before and after, shape (2, T, 3 corners, 3).
-        frame: before, with the box.
-    """
-    if not any(frame.periodic):
-        return corners
-    start, end = corners
-    first = start[:, :1]
-    start = first + frame.shortest(start - first)
-    return np.stack([start, start + frame.shortest(end - start)])
+def _check_finite(ids: NDArray, paths: NDArray, corners: NDArray, frame: Frame) -> None:
+    """Raise UserError for positions, shape (K, P, 3), and corners that are not finite."""
+    if not np.isfinite(paths).all():
+        bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
+        raise UserError(f"particle {bad} has a position that is not finite at step {frame.step}")
+    if not np.isfinite(corners).all():
+        raise UserError(f"a vertex has a position that is not finite at step {frame.step}")
 
 
 def _net_passes(paths: NDArray, corners: NDArray, frame: Frame) -> tuple[NDArray, NDArray]:

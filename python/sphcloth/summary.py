@@ -47,10 +47,12 @@ class Summary:
         deviation: largest abs(rho - rho0) / rho0 under pressure.
         compressed: share of the water, of all frames, that is denser than at rest by more than 1 %.
         momentum_defect: largest sum of the internal forces over the total weight.
-        contact_share: part of the wall time that contact with the cloth took.
+        contact_share: part of the wall time that contact with the cloth took, since the last
+            ``run`` command or since the run went on.
         step_set_by: steps by the limit that set them; empty with constant steps.
         particle_updates: number of times a fluid particle was stepped.
-        updates_per_second: the same per second of wall time in the loop.
+        updates_per_second: the same per second of wall time in the loop, of what has both: a run
+            that was stopped has no wall time.
         pictures: all PNG files, the contact sheet and the plot first.
         versions: package -> version.
         unused: what is switched on in the script and was never needed.
@@ -155,8 +157,6 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     scene_roles = SceneRoles.of(some, roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
     poured = _last_count(table, "v_poured")
-    can_count = "v_updates" in table or "v_fluid" in table
-    updates = metrics.particle_updates(table) if can_count else None
     evidence = Evidence.of_log(folder / "log.lammps", table)
     porous = evidence.commands.porous(scene_roles.mesh)
     counted = table if can_balance else None
@@ -183,10 +183,10 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         deviation=_largest(table, "v_deviation"),
         compressed=water.compressed,
         momentum_defect=_largest(table, "v_momentum"),
-        contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
+        contact_share=_contact_share(table.runs[-1]),
         step_set_by=evidence.commands.steps_by_limit,
-        particle_updates=updates,
-        updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
+        particle_updates=_updates(table),
+        updates_per_second=_rate(table.runs),
         pictures=pictures,
         versions=versions(),
         unused=unused(evidence),
@@ -301,6 +301,25 @@ def _intersections(scene_roles: SceneRoles, trajectory: Trajectory) -> int | Non
     if scene_roles.mesh is None or find_spec("ipctk") is None:
         return None
     return most_met(scene_roles.mesh, scene_roles.cloth, trajectory)
+
+
+def _updates(table: ThermoTable) -> float | None:
+    """Return how many times fluid particles were stepped; None if the table does not tell."""
+    can_count = "v_updates" in table or "v_fluid" in table
+    return metrics.particle_updates(table) if can_count else None
+
+
+def _rate(runs: Iterable[ThermoTable]) -> float | None:
+    """Return the particle updates per second of wall time, of the runs that tell both."""
+    both = [(_updates(run), run.loop_seconds) for run in runs]
+    both = [(updates, seconds) for updates, seconds in both if updates and seconds]
+    return sum(each[0] for each in both) / sum(each[1] for each in both) if both else None
+
+
+def _contact_share(run: ThermoTable) -> float | None:
+    """Return the last share; the first row is written before there is a time to be shared."""
+    has_share = "v_contact_share" in run and len(run) > 1
+    return float(run["v_contact_share"][-1]) if has_share else None
 
 
 def _last_count(table: ThermoTable, column: str) -> int | None:

@@ -44,6 +44,19 @@ def test_runs_are_joined_without_the_repeated_row(tmp_path: Path) -> None:
     assert table.loop_seconds == 2.0
 
 
+def test_each_run_has_its_own_rows_and_wall_time(tmp_path: Path) -> None:
+    stopped = SECOND_RUN[: SECOND_RUN.index("...")]
+    for text, seconds in (
+        (FIRST_RUN + SECOND_RUN, [1.5, 0.5]),
+        (FIRST_RUN + stopped, [1.5, 0.0]),
+        (FIRST_RUN.replace("Loop", "# Loop") + SECOND_RUN, [0.0, 0.5]),
+    ):
+        runs = read(tmp_path, text).runs
+        assert [run["Step"].tolist() for run in runs] == [[0, 100], [100, 200]]
+        assert [run.loop_seconds for run in runs] == seconds
+        assert ThermoTable.read(tmp_path / "log.lammps", last_run=True).loop_seconds == seconds[-1]
+
+
 def test_exponents_without_a_point_are_numbers(tmp_path: Path) -> None:
     assert read(tmp_path, FIRST_RUN)["Dt"].tolist() == [1e-5, 2e-5]
 

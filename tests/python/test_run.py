@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import subprocess
 import time
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.run import run_example
 from sphcloth.stress.processes import descendants
+from sphcloth.summary import summarize
 
 SCRIPT = f"""\
 variable        t_end index 0.5
@@ -74,6 +76,26 @@ def test_a_sheet_that_holds_is_success(drop: Path) -> None:
     assert summary["deviation"] is None
     assert summary["compressed"] is None  # the dump has no densities
     assert "n/a" in text
+
+
+def test_what_is_counted_per_second_is_of_the_runs_whose_time_is_known(drop: Path) -> None:
+    """A run that was stopped at step 200 and went on; the first row of a run tells no share."""
+    run(drop)
+    log = drop / "log.lammps"
+    text = re.sub(r"Loop time of \S+ on", "Loop time of 0.5 on", log.read_text())
+    text = re.sub(r"(?m)^(keywords: .*)]$", r"\1'v_contact_share', ]", text)
+    text = re.sub(r"(?m)^(  - \[.*)]$", r"\g<1>0.25, ]", text)
+    start, row = re.search(r"(?s)---\n.*?data:\n", text)[0], re.search(r"  - \[200, .*\n", text)[0]
+    before, behind = text.split(row)
+    again = start + row.replace("0.25", "1e5")
+    log.write_text(before + row + "...\n" + again + behind)
+    found = summarize(drop, "drop", None)
+    assert (found.particle_updates, found.updates_per_second) == (300, 200)
+    assert found.contact_share == 0.25
+    log.write_text(before + row + "...\n" + again)
+    found = summarize(drop, "drop", None)
+    assert (found.particle_updates, found.updates_per_second) == (200, None)
+    assert found.contact_share is None
 
 
 def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -> None:

@@ -37,9 +37,10 @@ class Summary:
         on_sheet: particles with the sheet below them in the last frame.
         spilled: particles poured that are not on the sheet: beside it, below it or drained.
         crossed: particles that went through the sheet where it has no pores, from the dump alone;
-            None of a dump with a single frame.
+            None of a dump with a single frame, or where frames are too far apart to tell.
         through_pores: particles that went through its pores; None without fix cloth/pores.
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
+        unclear_steps: the same of particles that moved too far between two frames to tell.
         layers: whether cloth meets cloth (``cloth yes``).
         intersections: pairs of an edge and a triangle, of cloth and cloth or of cloth and obstacle,
             that meet in the frame with most of them; None without ipctk, or without layers.
@@ -66,6 +67,7 @@ class Summary:
     crossed: int | None
     through_pores: int | None
     crossing_steps: list[int]
+    unclear_steps: list[int]
     layers: bool
     intersections: int | None
     mass_defect: int | None
@@ -104,13 +106,18 @@ class Summary:
             return []
         return [("went through pores", text(self.through_pores))]
 
+    def _crossed(self) -> str:
+        if self.crossed is None and self.unclear_steps:
+            return "[yellow]frames are too far apart to tell[/]"
+        return _must_be_zero(self.crossed)
+
     def _rows(self) -> list[tuple[str, str]]:
         rows = [
             ("time reached", f"{self.time:.4g}"),
             ("particles poured", text(self.poured)),
             ("on the sheet", text(self.on_sheet)),
             ("spilled", text(self.spilled)),
-            ("crossed the sheet", _must_be_zero(self.crossed)),
+            ("crossed the sheet", self._crossed()),
             *self._rows_of_pores(),
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
             ("largest density deviation", text(self.deviation, "{:.2%}")),
@@ -131,8 +138,12 @@ class Summary:
         if self.on_sheet is None:
             # a scene of cloth alone: what is not there says nothing
             rows = [row for row in rows if "n/a" not in row[1]]
-        if self.crossing_steps:
-            rows.append(("crossings seen at steps", ", ".join(map(str, self.crossing_steps[:8]))))
+        for head, steps in (
+            ("crossings seen at steps", self.crossing_steps),
+            ("frames too far apart at steps", self.unclear_steps),
+        ):
+            if steps:
+                rows.append((head, ", ".join(map(str, steps[:8]))))
         if self.unused:
             rows.append(("never needed", "; ".join(each.topic for each in self.unused)))
         rows += [("", picture) for picture in self.pictures[:2]]
@@ -177,6 +188,7 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         crossed=water.crossed,
         through_pores=water.through_pores,
         crossing_steps=water.crossing_steps,
+        unclear_steps=water.unclear_steps,
         layers=layers,
         intersections=_intersections(scene_roles, trajectory) if layers else None,
         mass_defect=metrics.mass_balance(table) if can_balance else None,
@@ -200,9 +212,10 @@ class Water:
     Attributes:
         on_sheet: particles with the sheet below them in the last frame.
         crossed: particles that went through the sheet where it has no pores; None of a dump with a
-            single frame.
+            single frame, or where some seem to and moved too far between two frames to tell.
         through_pores: particles that went through pores; None if there are none.
         crossing_steps: the steps of the frames after that, without repeats.
+        unclear_steps: the same of those that moved too far.
         compressed: share of the water, of all frames, that is denser than at rest by more than
             1 %; None if the dump does not tell.
     """
@@ -211,6 +224,7 @@ class Water:
     crossed: int | None = None
     through_pores: int | None = None
     crossing_steps: list[int] = field(default_factory=list)
+    unclear_steps: list[int] = field(default_factory=list)
     compressed: float | None = None
 
     @classmethod
@@ -246,7 +260,11 @@ class Water:
             frames = _counted(trajectory, table, scene_roles.fluid)
             seen = frames if passes else densities.watch(frames)
             passes.append(metrics.crossings(watertight, seen, kind))
-        steps = np.unique(np.concatenate([one.steps for one in passes]))
+        clear, unclear = (
+            np.concatenate([one.steps[one.is_unclear == far] for one in passes])
+            for far in (False, True)
+        )
+        crossed = sum(len(np.unique(one.ids[~one.is_unclear])) for one in passes)
         through = None
         if porous:
             pores = mesh.of_kinds(porous)
@@ -254,9 +272,10 @@ class Water:
             through = sum(one.count for one in found)
         return cls(
             int(sum(map(np.count_nonzero, above))),
-            sum(one.count for one in passes),
+            crossed if len(clear) or not len(unclear) else None,
             through,
-            steps.tolist(),
+            np.unique(clear).tolist(),
+            np.unique(unclear).tolist(),
             densities.compressed,
         )
 

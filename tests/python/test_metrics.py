@@ -91,6 +91,15 @@ def test_a_particle_that_goes_through_and_back_is_counted_once() -> None:
     assert (found.count, len(found.ids)) == (1, 2)
 
 
+def test_a_path_longer_than_two_edges_makes_a_crossing_unclear() -> None:
+    """The mean edge of the sheet is 0.28 long; the last path wraps around the box."""
+    edge = MESH.edge_lengths(make_frame(0, [], SHEET)).mean()
+    for last, unclear in ((-0.4, False), (-0.5, True), (99.5, True)):
+        found = metrics.crossings(MESH, path([0.3, 0.3, 0.1], [0.3, 0.3, last]))
+        assert found.is_unclear.tolist() == [unclear]
+        assert found.moved.tolist() == pytest.approx([(0.1 - (last - 100 * (last > 1))) / edge])
+
+
 def test_many_particles_agree_with_counting_by_height() -> None:
     before = RNG.random((3000, 3)) * [1.6, 1.6, 1] - [0.3, 0.3, 0.5]
     after = RNG.random((3000, 3)) * [1.6, 1.6, 1] - [0.3, 0.3, 0.5]

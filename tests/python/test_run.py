@@ -126,6 +126,26 @@ def test_a_particle_through_the_sheet_is_failure(drop: Path) -> None:
     assert (summary["crossed"], summary["spilled"], summary["mass_defect"]) == (1, 1, 0)
 
 
+@pytest.mark.parametrize(("every", "crossed"), [(100, None), (50, 1)])
+def test_frames_that_are_too_far_apart_tell_of_no_crossing(
+    drop: Path, every: int, crossed: int | None
+) -> None:
+    """A drop that moves by 0.25 or 0.11 between two frames, through a sheet with edges of 0.1."""
+    script = examples.find_example("drop").script
+    text = SCRIPT.replace("custom 10 ", f"custom {every} ")
+    for old, new in (("0", "0.45"), ("1", "0.55")):
+        text = re.sub(rf"(2 single.*) {old} (.*0.5\n)", rf"\1 {new} \2", text)
+        text = re.sub(rf"(2 single) {old} ", rf"\1 {new} ", text)
+    script.write_text(text)
+    code, shown = run(drop, floor="0.1")
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 1
+    assert summary["crossed"] == crossed
+    assert summary["unclear_steps"] == ([300] if crossed is None else [])
+    assert ("frames are too far apart to tell" in shown) == (crossed is None)
+    assert not summary["passed"]
+
+
 def test_a_particle_unaccounted_for_is_failure(drop: Path) -> None:
     code, _ = run(drop, source="2")
     assert code == 1

@@ -20,6 +20,8 @@ from sphcloth.trajectory import Frame
 _BLOCK = 20_000
 # relative slack of the inside tests: a particle that meets an edge belongs to both triangles
 _EDGE_SLACK = 1e-12
+# edges by which a particle may move between two frames for its straight path to tell what it did
+_FAR = 2.0
 
 
 @dataclass(frozen=True)
@@ -30,11 +32,19 @@ class Crossings:
         ids: atom ids, shape (K,); a particle that crosses in several intervals is listed for each.
         steps: step of the frame after the crossing, shape (K,).
         points: where the particle met the sheet, shape (K, 3).
+        moved: how far the particle went between the frames, over the mean length of an edge,
+            shape (K,).
     """
 
     ids: NDArray[np.int64]
     steps: NDArray[np.int64]
     points: NDArray[np.float64]
+    moved: NDArray[np.float64]
+
+    @property
+    def is_unclear(self) -> NDArray[np.bool_]:
+        """Whether the frames are too far apart to tell, by more than two edges, shape (K,)."""
+        return self.moved > _FAR
 
     @property
     def count(self) -> int:
@@ -48,7 +58,8 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
     Particles and vertices are taken to move along straight lines from frame to frame. In each
     interval a particle's passes in the two directions are weighed against each other, so a line
     that cuts through a fold and comes out again is no crossing. A particle that rounds the border
-    is seen to do so only if the frames are close enough to show it.
+    is seen to do so only if the frames are close enough to show it: see
+    :attr:`Crossings.is_unclear`.
 
     Through periodic faces, edges and paths are taken to be the shortest ones: both must be shorter
     than half the distance of opposite faces of the box.
@@ -66,6 +77,7 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
         np.concatenate([part.ids for part in found]),
         np.concatenate([part.steps for part in found]),
         np.concatenate([part.points for part in found]),
+        np.concatenate([part.moved for part in found]),
     )
 
 
@@ -105,13 +117,17 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     _check_finite(ids, paths, corners, after)
     for each in (paths, corners):
         each[1] = each[0] + before.shortest(each[1] - each[0])
-    crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
+    crossed, points, moved = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))], [np.empty(0)]
+    edge = mesh.edge_lengths(before).mean() if len(mesh.edges) else np.inf
     for block in np.array_split(np.arange(len(ids)), len(ids) // _BLOCK + 1):
         through, where = _net_passes(paths[:, block], corners, before)
         crossed.append(ids[block[through]])
         points.append(where)
+        displacements = np.subtract(*paths[:, block[through]])
+        moved.append(np.linalg.norm(displacements, axis=1) / edge)
     found = np.concatenate(crossed)
-    return Crossings(found, np.full(len(found), after.step), np.concatenate(points))
+    steps = np.full(len(found), after.step)
+    return Crossings(found, steps, np.concatenate(points), np.concatenate(moved))
 
 
 def _check_finite(ids: NDArray, paths: NDArray, corners: NDArray, frame: Frame) -> None:

@@ -6,6 +6,8 @@ LAMMPS runs.
 
 from __future__ import annotations
 
+import fcntl
+import os
 import shutil
 import signal
 import subprocess
@@ -72,18 +74,35 @@ def run_example(
         exact, otherwise 1.
 
     Raises:
-        UserError: an unknown name, size or variable, a missing program, or nothing to go on from.
+        UserError: an unknown name, size or variable, a missing program, nothing to go on from, or
+            another run in the same folder.
     """
     example = find_example(name)
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
     make_folder(out)
     check_no_link(out / "pictures")
-    log, dump = out / LOG, out / f"{name}.lammpstrj"
+    with _alone_in(out):
+        return _run(example, ranks, out, variables, t_end, frames, console, json_file, resume)
+
+
+def _run(
+    example: Example,
+    ranks: int,
+    out: Path,
+    variables: dict[str, str],
+    t_end: float,
+    frames: int | None,
+    console: Console,
+    json_file: Path | None,
+    resume: bool,
+) -> int:
+    """Run an example in a folder that is its own; see :func:`run_example`."""
+    log, dump = out / LOG, out / f"{example.name}.lammpstrj"
     if resume:
         variables |= _go_on(example, out, log, dump)
     else:
-        _remove_old_run(out, name)
+        _remove_old_run(out, example.name)
     _remove_old_results(out)
     copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
@@ -101,12 +120,38 @@ def run_example(
     with console.status("measuring and drawing"):
         from sphcloth.summary import summarize
 
-        summary = summarize(out, name, frames)
+        summary = summarize(out, example.name, frames)
     for file in (out / "summary.json", json_file):
         if file is not None:
             summary.write(file)
     summary.show(console)
     return 0 if summary.passed and not outcome.interrupted else 1
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a folder; UserError where one is there. It leaves no file behind."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        if not _locked(handle):
+            raise UserError(
+                f"--out {folder}: another run is writing there: wait for its end, or choose "
+                "another folder"
+            )
+        yield
+    finally:
+        os.close(handle)
+
+
+def _locked(handle: int) -> bool:
+    """Lock an open folder until it is closed; False where another has locked it."""
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass  # a file system without locks
+    return True
 
 
 @contextmanager

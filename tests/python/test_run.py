@@ -119,6 +119,18 @@ def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -
     assert not (drop.parent / "elsewhere").exists()
 
 
+def test_two_runs_do_not_share_a_folder(drop: Path) -> None:
+    run(drop, "tiny")
+    log = (drop / "log.lammps").read_text()
+    with (
+        sphcloth.run._alone_in(drop),
+        pytest.raises(UserError, match=r"--out .*out: another run is writing there"),
+    ):
+        run(drop, "tiny")
+    assert (drop / "log.lammps").read_text() == log
+    assert run(drop, "tiny")[0] == 0
+
+
 def test_a_particle_through_the_sheet_is_failure(drop: Path) -> None:
     code, _ = run(drop, floor="0.1")
     summary = json.loads((drop / "summary.json").read_text())

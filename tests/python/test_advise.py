@@ -226,9 +226,7 @@ def test_the_mean_step_is_that_of_the_steps_taken(tmp_path: Path) -> None:
     text = WATER.replace("run ", "reset_timestep 7 time 3.0\nrun ")
     found = ask(write(tmp_path, text, COLUMN, scheme="constant", dt="1e-4", steps="13"))
     assert found.run.time == pytest.approx(3 + 13e-4, rel=1e-12)
-    assert {each.topic: each.measured for each in found.facts}["time step"].startswith(
-        "mean 0.0001, constant"
-    )
+    assert found.facts[0].measured == "mean 0.0001, constant"
 
 
 def test_a_constant_step_that_is_short(tmp_path: Path) -> None:
@@ -400,6 +398,8 @@ def test_a_variable_that_no_script_mentions_is_refused(tmp_path: Path) -> None:
     probe = Probe(script, {"spacng": "3"}, 1, 2, 600.0)
     with pytest.raises(UserError, match=r"^in.scene has no variable 'spacng'$"):
         advise(probe, Console(quiet=True))
+    with pytest.raises(UserError, match=r"^in.scene has no variable 'water'$"):  # but a group
+        advise(Probe(script, {"water": "1"}, 1, 2, 600.0), Console(quiet=True))
     scene, more = script.read_text(), tmp_path / "in.more"
     more.write_text("print '${spacng}'\nquit 3\n")
     for include in (f"include {more}\n", f"variable file index {more}\ninclude ${{file}}\n"):
@@ -416,6 +416,15 @@ def test_numbers_are_finite_and_above_zero(tmp_path: Path, option: str, value: s
     done = CliRunner().invoke(app, ["advise", str(write(tmp_path, WATER, COLUMN)), option, value])
     assert isinstance(done.exception, UserError)
     assert str(done.exception) == f"{option} {value}: give a finite number above 0"
+
+
+@pytest.mark.parametrize(
+    "line", ["variable water index 3", "print ${water}", "print $(v_water+1)", "print v_water"]
+)
+def test_a_variable_is_what_the_script_uses_as_one(tmp_path: Path, line: str) -> None:
+    script = write(tmp_path, WATER, COLUMN, steps="2")
+    script.write_text(f"{line}\n{script.read_text()}")
+    assert Probe(script, {"water": "1"}, 1, 2, 600.0).run(tmp_path / "probe").steps == 2
 
 
 def test_a_script_may_hold_any_bytes(tmp_path: Path) -> None:

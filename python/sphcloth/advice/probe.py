@@ -68,7 +68,7 @@ class Probe:
             edits: style of a fix -> what to append to its command.
 
         Raises:
-            UserError: no script, no run command in it, a variable that it does not mention, or
+            UserError: no script, no run command in it, a variable that it does not have, or
                 LAMMPS failed.
         """
         copy = self._copy(folder, before, edits or {})
@@ -105,11 +105,13 @@ class Probe:
         return copy
 
     def _check_variables(self, text: str) -> None:
-        """Raise UserError for a variable that the script and what it includes do not mention."""
+        """Raise UserError for a variable that the script and what it includes do not have."""
         if re.search(r"^\s*include\s+\S*\$", text, re.MULTILINE):
             return  # which file that is, LAMMPS knows
         for name in self.variables:
-            if not re.search(rf"\b{name}\b", text):
+            short = rf"|\${name}" if len(name) == 1 else ""
+            used = rf"\bvariable[\s,]+{name}\b|\$\{{{name}\}}|\bv_{name}\b{short}"
+            if not re.search(used, text):
                 raise UserError(f"{self.script.name} has no variable '{name}'")
 
     def _hook(self, run: str, fixes: Sequence[re.Match], before: Sequence[str]) -> list[str]:

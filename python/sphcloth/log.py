@@ -98,9 +98,11 @@ class ThermoTable:
             raise UserError("the step count of the log goes back (reset_timestep?): no unique time")
         if len(rows) == 1:
             return np.where(steps == rows[0], times[0], np.nan)
-        interval = np.clip(np.searchsorted(rows, steps) - 1, 0, len(rows) - 2)
-        time_per_step = np.diff(times)[interval] / np.diff(rows)[interval]
-        return times[interval] + (steps - rows[interval]) * time_per_step
+        found = np.interp(steps, rows, times)
+        for end, inner, beyond in ((0, 1, steps < rows[0]), (-1, -2, steps > rows[-1])):
+            time_per_step = (times[end] - times[inner]) / (rows[end] - rows[inner])
+            found = np.where(beyond, times[end] + (steps - rows[end]) * time_per_step, found)
+        return found
 
 
 def error_lines(path: Path) -> list[str]:

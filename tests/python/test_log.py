@@ -86,6 +86,16 @@ def test_time_is_exact_at_rows_linear_between_and_goes_on_past_the_end(tmp_path:
     np.testing.assert_allclose(times, [0, 0.0005, 0.001, 0.0025, 0.004, 0.0043], rtol=1e-14)
 
 
+def test_times_of_rows_are_exact_to_the_last_bit() -> None:
+    rows, times = np.array([0.0, 49, 98, 200]), np.array([0.0, 1.0, 1.1, 3.0])
+    table = ThermoTable({"Step": rows, "Time": times}, 0.0)
+    assert 49 * (1 / 49) < 1
+    np.testing.assert_array_equal(table.time_at(rows), times)
+    outside = 2 * rows[[0, -1]] - rows[[1, -2]]
+    expected = 2 * times[[0, -1]] - times[[1, -2]]
+    np.testing.assert_allclose(table.time_at(outside), expected, rtol=1e-12)
+
+
 def test_time_of_one_row_is_known_there_only(tmp_path: Path) -> None:
     table = read(tmp_path, FIRST_RUN.replace("  - [100, 0.001, 2e-05, 20, ]\n", ""))
     np.testing.assert_array_equal(table.time_at([0, 1]), [0, np.nan])

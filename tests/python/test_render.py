@@ -167,6 +167,11 @@ def test_positions_must_be_finite(fluid: list[list[float]]) -> None:
         scene_of(frames()).renderer().geometry_of(make_frame(3, fluid, SHEET))
 
 
+def test_a_coordinate_that_is_too_large_is_named_with_the_limit() -> None:
+    with pytest.raises(UserError, match=r"coordinate of 2e\+12 at step 3: .* below 1e\+12"):
+        scene_of(frames()).renderer().geometry_of(make_frame(3, [[0, -2e12, 0]], SHEET))
+
+
 # the command
 
 
@@ -223,6 +228,16 @@ def test_pictures_of_an_earlier_call_alone_go_and_only_when_there_are_new_ones(
     dump.write_text(whole)
     assert call(monkeypatch, dump, *options, "--frames", "1") == 0
     assert sorted(path.name for path in out.iterdir()) == sorted([*own, "frame_0000.png"])
+
+
+def test_particles_that_coincide_are_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, write_dump: Callable[[str], Path]
+) -> None:
+    rows = [[number, 1, 0.5, 0.5, 0.5] for number in (1, 2)]
+    options = ["--size", "64x48", "--out", tmp_path / "out"]
+    for text in (dump_frame(0, rows), dump_frame(0, rows).replace("-1 4", "0 0")):
+        assert call(monkeypatch, write_dump(text), *options) == 0
+        assert (tmp_path / "out" / "frame_0000.png").is_file()
 
 
 @pytest.mark.parametrize("form", ["gif", "mp4"])

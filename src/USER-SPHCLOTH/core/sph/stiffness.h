@@ -13,10 +13,10 @@
 // bound where it is smaller, found in order, disorder, films and spray (two particles alone have
 // 4 F, with F = G).
 //
-// Fluid in free flight moves and presses on nothing, its rows are 0: what exceeds the diagonal counts
-// as far as neighbors are under pressure.  With their share p, weighted with |g_kj|^2/m_j, the bound
-// is F + G + sqrt(p) (B - F - G), B that of before, found where any third of the particles, two
-// thirds or one half of space are in flight.
+// Fluid in free flight moves and presses on nothing: its rows are 0, and what exceeds the diagonal
+// counts as far as neighbors are under pressure.  With their share p, weighted with |g_kj|^2/m_j,
+// the bound is F + G + sqrt(p) (B - F - G), B that of before, found in order and disorder where one
+// third of the particles, two thirds or one half of space is in flight.
 //
 // The spring of a wall acts on one particle, and everything else moves that one alone with F + G at
 // most: with L the bound of before and S that of the spring, a matrix of the largest eigenvalue L

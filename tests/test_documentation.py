@@ -279,6 +279,19 @@ def test_python_runs(
     exec(block.text, {"__file__": str(tmp_path / "block.py")})
 
 
+def test_the_test_of_the_guide_passes(tmp_path: Path) -> None:
+    (block,) = [each for each in BLOCKS if "(sphcloth_run):" in each.text]
+    (tmp_path / "test_pour.py").write_text(block.text)
+    shutil.copy(ROOT / "examples/pour/in.pour", tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_pour.py"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert "1 passed" in done.stdout, done.stdout
+
+
 def test_the_tutorial_runs_and_finds_what_it_says(tmp_path: Path) -> None:
     """Its code as one program; `make docs` runs it as a notebook."""
     cells = json.loads(TUTORIAL.read_text())["cells"]

@@ -26,10 +26,13 @@ class ThermoTable:
             (rows,), in the units of the script. A column that only some runs print is NaN in
             the rows of the others.
         loop_seconds: wall time of all finished runs, from the ``Loop time`` lines.
+        runs: the rows of each run that printed any, with its own wall time, 0 where it has not
+            finished; empty in a table of one run.
     """
 
     columns: dict[str, NDArray[np.float64]]
     loop_seconds: float
+    runs: tuple[ThermoTable, ...] = ()
 
     @classmethod
     def read(cls, path: str | Path, last_run: bool = False) -> ThermoTable:
@@ -52,7 +55,10 @@ class ThermoTable:
         _check_rows(text, path)
         try:
             runs = [run for run in _parse_runs(text) if run.get("Step")]
-            loops = _loop_seconds(text)
+            tables = [
+                cls(_concatenate([run]), loop)
+                for run, loop in zip(runs, _own_loop_seconds(text), strict=True)
+            ]
         except (yaml.YAMLError, LookupError, TypeError, ValueError) as error:
             raise UserError(f"{path}: its thermo output was damaged ({error})") from error
         if not runs:
@@ -62,8 +68,8 @@ class ThermoTable:
             )
         _check_steps(runs, path)
         if last_run:
-            runs, loops = runs[-1:], loops[-1:]
-        return cls(_concatenate(runs), sum(loops))
+            return tables[-1]
+        return cls(_concatenate(runs), sum(_loop_seconds(text)), tuple(tables))
 
     def __contains__(self, name: str) -> bool:
         return name in self.columns
@@ -92,9 +98,11 @@ class ThermoTable:
             raise UserError("the step count of the log goes back (reset_timestep?): no unique time")
         if len(rows) == 1:
             return np.where(steps == rows[0], times[0], np.nan)
-        interval = np.clip(np.searchsorted(rows, steps) - 1, 0, len(rows) - 2)
-        time_per_step = np.diff(times)[interval] / np.diff(rows)[interval]
-        return times[interval] + (steps - rows[interval]) * time_per_step
+        found = np.interp(steps, rows, times)
+        for end, inner, beyond in ((0, 1, steps < rows[0]), (-1, -2, steps > rows[-1])):
+            time_per_step = (times[end] - times[inner]) / (rows[end] - rows[inner])
+            found = np.where(beyond, times[end] + (steps - rows[end]) * time_per_step, found)
+        return found
 
 
 def error_lines(path: Path) -> list[str]:
@@ -176,6 +184,14 @@ def _concatenate(runs: Runs) -> dict[str, NDArray[np.float64]]:
             # the YAML loader leaves numbers such as 1e-05 as text; NumPy converts both
             parts[name].append(np.array(run.get(name, missing), dtype=np.float64)[first:])
     return {name: np.concatenate(columns) for name, columns in parts.items()}
+
+
+def _own_loop_seconds(text: str) -> list[float]:
+    """Return the wall time of each run that printed rows, 0 for one that has not finished."""
+    pieces = re.split(r"^keywords:", text, flags=re.MULTILINE)[1:]
+    with_rows = (piece for piece in pieces if re.search(r"^  - \[.*\]$", piece, re.M))
+    ends = (re.search(r"^\.\.\.\nLoop time of (\S+) on", piece, re.M) for piece in with_rows)
+    return [float(end[1]) if end else 0.0 for end in ends]
 
 
 def _loop_seconds(text: str) -> list[float]:

@@ -171,9 +171,10 @@ class ClothMesh:
         return connected_components(graph, directed=False)[1]
 
     def positions(self, frame: Frame) -> NDArray[np.float64]:
-        """Return the vertices' positions in a frame, shape (V, 3).
+        """Return the vertices' positions in a frame, shape (V, 3), as the dump has them.
 
-        The sheet must not reach through a periodic boundary: positions are those of the dump.
+        A sheet through a periodic face is in parts there: see
+        :class:`sphcloth.unwrapping.Unwrapper`.
 
         Raises:
             UserError: the frame lacks a vertex.
@@ -189,13 +190,21 @@ class ClothMesh:
         return frame.vectors(*names)[rows_of(self.ids, frame)]
 
     def corners(self, frame: Frame) -> NDArray[np.float64]:
-        """Return the corners of each triangle in a frame, shape (T, 3 corners, 3)."""
-        return self.positions(frame)[self.triangles]
+        """Return the corners of each triangle in a frame, shape (T, 3 corners, 3).
+
+        Through periodic faces they are side by side, each triangle by itself: a sheet that closes
+        through such a face has no place as a whole.
+        """
+        corners = self.positions(frame)[self.triangles]
+        with np.errstate(invalid="ignore"):  # positions that are not finite stay what they are
+            offsets = corners - corners[:, :1]
+            # the difference is 0, to the last bit, where nothing is wrapped
+            return corners + (frame.shortest(offsets) - offsets)
 
     def edge_lengths(self, frame: Frame) -> NDArray[np.float64]:
-        """Return the lengths of the edges in a frame, shape (E,)."""
+        """Return the lengths of the edges in a frame, through periodic faces, too, shape (E,)."""
         start, end = np.moveaxis(self.positions(frame)[self.edges], 1, 0)
-        return np.linalg.norm(end - start, axis=1)
+        return np.linalg.norm(frame.shortest(end - start), axis=1)
 
 
 def rows_of(ids: NDArray[np.int64], frame: Frame) -> NDArray[np.int64]:

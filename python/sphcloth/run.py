@@ -6,6 +6,8 @@ LAMMPS runs.
 
 from __future__ import annotations
 
+import fcntl
+import os
 import shutil
 import signal
 import subprocess
@@ -25,7 +27,7 @@ from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.examples import Example, find_example
 from sphcloth.programs import endings_interrupt, kill, lammps_on
-from sphcloth.results import SUMMARY_PICTURES, make_folder
+from sphcloth.results import SUMMARY_PICTURES, Numbered, make_folder, pictures_in
 from sphcloth.resume import first_step, join, kept, newest_restart, set_aside
 
 LOG, SCREEN = "log.lammps", "screen.txt"
@@ -72,18 +74,35 @@ def run_example(
         exact, otherwise 1.
 
     Raises:
-        UserError: an unknown name, size or variable, a missing program, or nothing to go on from.
+        UserError: an unknown name, size or variable, a missing program, nothing to go on from, or
+            another run in the same folder.
     """
     example = find_example(name)
     variables = example.variables(size, settings)
     t_end = _end_time(example.defaults() | variables)
     make_folder(out)
     check_no_link(out / "pictures")
-    log, dump = out / LOG, out / f"{name}.lammpstrj"
+    with _alone_in(out):
+        return _run(example, ranks, out, variables, t_end, frames, console, json_file, resume)
+
+
+def _run(
+    example: Example,
+    ranks: int,
+    out: Path,
+    variables: dict[str, str],
+    t_end: float,
+    frames: int | None,
+    console: Console,
+    json_file: Path | None,
+    resume: bool,
+) -> int:
+    """Run an example in a folder that is its own; see :func:`run_example`."""
+    log, dump = out / LOG, out / f"{example.name}.lammpstrj"
     if resume:
         variables |= _go_on(example, out, log, dump)
     else:
-        _remove_old_run(out, name)
+        _remove_old_run(out, example.name)
     _remove_old_results(out)
     copy_companions(example.script, out)
     command = lammps_command(example.script.resolve(), ranks, variables)
@@ -101,12 +120,38 @@ def run_example(
     with console.status("measuring and drawing"):
         from sphcloth.summary import summarize
 
-        summary = summarize(out, name, frames)
+        summary = summarize(out, example.name, frames)
     for file in (out / "summary.json", json_file):
         if file is not None:
             summary.write(file)
     summary.show(console)
     return 0 if summary.passed and not outcome.interrupted else 1
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a folder; UserError where one is there. It leaves no file behind."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        if not _locked(handle):
+            raise UserError(
+                f"--out {folder}: another run is writing there: wait for its end, or choose "
+                "another folder"
+            )
+        yield
+    finally:
+        os.close(handle)
+
+
+def _locked(handle: int) -> bool:
+    """Lock an open folder until it is closed; False where another has locked it."""
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass  # a file system without locks
+    return True
 
 
 @contextmanager
@@ -141,13 +186,14 @@ def _end_time(variables: Mapping[str, str]) -> float:
 def _remove_old_run(out: Path, name: str) -> None:
     """Remove the files that LAMMPS wrote in an earlier run."""
     files = [out / file for file in (LOG, SCREEN, f"{name}.lammpstrj", f"{name}.data")]
-    _remove([*files, *map(kept, files), *out.glob(f"{name}.restart.*")])
+    _remove([*files, *map(kept, files)])
+    Numbered(out, f"{name}.restart.", 1, "").remove()
 
 
 def _remove_old_results(out: Path) -> None:
     """Remove what was found in an earlier run, lest one that fails early shows its numbers."""
-    summaries = [out / name for name in ("summary.json", *SUMMARY_PICTURES)]
-    _remove([*summaries, *out.glob("pictures/frame_[0-9]*.png")])
+    _remove(out / name for name in ("summary.json", *SUMMARY_PICTURES))
+    pictures_in(out / "pictures").remove()
 
 
 def _remove(files: Iterable[Path]) -> None:

@@ -37,9 +37,10 @@ class Summary:
         on_sheet: particles with the sheet below them in the last frame.
         spilled: particles poured that are not on the sheet: beside it, below it or drained.
         crossed: particles that went through the sheet where it has no pores, from the dump alone;
-            None of a dump with a single frame.
+            None of a dump with a single frame, or where frames are too far apart to tell.
         through_pores: particles that went through its pores; None without fix cloth/pores.
         crossing_steps: for those, the steps of the frames after the crossing, without repeats.
+        unclear_steps: the same of particles that moved too far between two frames to tell.
         layers: whether cloth meets cloth (``cloth yes``).
         intersections: pairs of an edge and a triangle, of cloth and cloth or of cloth and obstacle,
             that meet in the frame with most of them; None without ipctk, or without layers.
@@ -47,10 +48,12 @@ class Summary:
         deviation: largest abs(rho - rho0) / rho0 under pressure.
         compressed: share of the water, of all frames, that is denser than at rest by more than 1 %.
         momentum_defect: largest sum of the internal forces over the total weight.
-        contact_share: part of the wall time that contact with the cloth took.
+        contact_share: part of the wall time that contact with the cloth took, since the last
+            ``run`` command or since the run went on.
         step_set_by: steps by the limit that set them; empty with constant steps.
         particle_updates: number of times a fluid particle was stepped.
-        updates_per_second: the same per second of wall time in the loop.
+        updates_per_second: the same per second of wall time in the loop, of what has both: a run
+            that was stopped has no wall time.
         pictures: all PNG files, the contact sheet and the plot first.
         versions: package -> version.
         unused: what is switched on in the script and was never needed.
@@ -64,6 +67,7 @@ class Summary:
     crossed: int | None
     through_pores: int | None
     crossing_steps: list[int]
+    unclear_steps: list[int]
     layers: bool
     intersections: int | None
     mass_defect: int | None
@@ -102,13 +106,18 @@ class Summary:
             return []
         return [("went through pores", text(self.through_pores))]
 
+    def _crossed(self) -> str:
+        if self.crossed is None and self.unclear_steps:
+            return "[yellow]frames are too far apart to tell[/]"
+        return _must_be_zero(self.crossed)
+
     def _rows(self) -> list[tuple[str, str]]:
         rows = [
             ("time reached", f"{self.time:.4g}"),
             ("particles poured", text(self.poured)),
             ("on the sheet", text(self.on_sheet)),
             ("spilled", text(self.spilled)),
-            ("crossed the sheet", _must_be_zero(self.crossed)),
+            ("crossed the sheet", self._crossed()),
             *self._rows_of_pores(),
             ("poured - drained - present", _must_be_zero(self.mass_defect)),
             ("largest density deviation", text(self.deviation, "{:.2%}")),
@@ -129,8 +138,12 @@ class Summary:
         if self.on_sheet is None:
             # a scene of cloth alone: what is not there says nothing
             rows = [row for row in rows if "n/a" not in row[1]]
-        if self.crossing_steps:
-            rows.append(("crossings seen at steps", ", ".join(map(str, self.crossing_steps[:8]))))
+        for head, steps in (
+            ("crossings seen at steps", self.crossing_steps),
+            ("frames too far apart at steps", self.unclear_steps),
+        ):
+            if steps:
+                rows.append((head, ", ".join(map(str, steps[:8]))))
         if self.unused:
             rows.append(("never needed", "; ".join(each.topic for each in self.unused)))
         rows += [("", picture) for picture in self.pictures[:2]]
@@ -155,8 +168,6 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     scene_roles = SceneRoles.of(some, roles, Choice())
     can_balance = all(column in table for column in ("v_poured", "v_drained", "v_fluid"))
     poured = _last_count(table, "v_poured")
-    can_count = "v_updates" in table or "v_fluid" in table
-    updates = metrics.particle_updates(table) if can_count else None
     evidence = Evidence.of_log(folder / "log.lammps", table)
     porous = evidence.commands.porous(scene_roles.mesh)
     counted = table if can_balance else None
@@ -177,16 +188,17 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         crossed=water.crossed,
         through_pores=water.through_pores,
         crossing_steps=water.crossing_steps,
+        unclear_steps=water.unclear_steps,
         layers=layers,
         intersections=_intersections(scene_roles, trajectory) if layers else None,
         mass_defect=metrics.mass_balance(table) if can_balance else None,
         deviation=_largest(table, "v_deviation"),
         compressed=water.compressed,
         momentum_defect=_largest(table, "v_momentum"),
-        contact_share=float(table["v_contact_share"][-1]) if "v_contact_share" in table else None,
+        contact_share=_contact_share(table.runs[-1]),
         step_set_by=evidence.commands.steps_by_limit,
-        particle_updates=updates,
-        updates_per_second=updates / table.loop_seconds if updates and table.loop_seconds else None,
+        particle_updates=_updates(table),
+        updates_per_second=_rate(table.runs),
         pictures=pictures,
         versions=versions(),
         unused=unused(evidence),
@@ -200,9 +212,10 @@ class Water:
     Attributes:
         on_sheet: particles with the sheet below them in the last frame.
         crossed: particles that went through the sheet where it has no pores; None of a dump with a
-            single frame.
+            single frame, or where some seem to and moved too far between two frames to tell.
         through_pores: particles that went through pores; None if there are none.
         crossing_steps: the steps of the frames after that, without repeats.
+        unclear_steps: the same of those that moved too far.
         compressed: share of the water, of all frames, that is denser than at rest by more than
             1 %; None if the dump does not tell.
     """
@@ -211,6 +224,7 @@ class Water:
     crossed: int | None = None
     through_pores: int | None = None
     crossing_steps: list[int] = field(default_factory=list)
+    unclear_steps: list[int] = field(default_factory=list)
     compressed: float | None = None
 
     @classmethod
@@ -246,7 +260,11 @@ class Water:
             frames = _counted(trajectory, table, scene_roles.fluid)
             seen = frames if passes else densities.watch(frames)
             passes.append(metrics.crossings(watertight, seen, kind))
-        steps = np.unique(np.concatenate([one.steps for one in passes]))
+        clear, unclear = (
+            np.concatenate([one.steps[one.is_unclear == far] for one in passes])
+            for far in (False, True)
+        )
+        crossed = sum(len(np.unique(one.ids[~one.is_unclear])) for one in passes)
         through = None
         if porous:
             pores = mesh.of_kinds(porous)
@@ -254,9 +272,10 @@ class Water:
             through = sum(one.count for one in found)
         return cls(
             int(sum(map(np.count_nonzero, above))),
-            sum(one.count for one in passes),
+            crossed if len(clear) or not len(unclear) else None,
             through,
-            steps.tolist(),
+            np.unique(clear).tolist(),
+            np.unique(unclear).tolist(),
             densities.compressed,
         )
 
@@ -301,6 +320,25 @@ def _intersections(scene_roles: SceneRoles, trajectory: Trajectory) -> int | Non
     if scene_roles.mesh is None or find_spec("ipctk") is None:
         return None
     return most_met(scene_roles.mesh, scene_roles.cloth, trajectory)
+
+
+def _updates(table: ThermoTable) -> float | None:
+    """Return how many times fluid particles were stepped; None if the table does not tell."""
+    can_count = "v_updates" in table or "v_fluid" in table
+    return metrics.particle_updates(table) if can_count else None
+
+
+def _rate(runs: Iterable[ThermoTable]) -> float | None:
+    """Return the particle updates per second of wall time, of the runs that tell both."""
+    both = [(_updates(run), run.loop_seconds) for run in runs]
+    both = [(updates, seconds) for updates, seconds in both if updates and seconds]
+    return sum(each[0] for each in both) / sum(each[1] for each in both) if both else None
+
+
+def _contact_share(run: ThermoTable) -> float | None:
+    """Return the last share; the first row is written before there is a time to be shared."""
+    has_share = "v_contact_share" in run and len(run) > 1
+    return float(run["v_contact_share"][-1]) if has_share else None
 
 
 def _last_count(table: ThermoTable, column: str) -> int | None:

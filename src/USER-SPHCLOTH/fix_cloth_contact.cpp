@@ -66,8 +66,9 @@ FixClothContact::~FixClothContact()
 
 int FixClothContact::setmask()
 {
-  return PRE_EXCHANGE | POST_NEIGHBOR | POST_INTEGRATE | INITIAL_INTEGRATE | POST_FORCE |
-      (impulses.empty() ? 0 : PRE_REVERSE) | (options.untangle ? PRE_NEIGHBOR : 0);
+  return PRE_EXCHANGE | MIN_PRE_EXCHANGE | POST_NEIGHBOR | MIN_POST_NEIGHBOR | POST_INTEGRATE |
+      INITIAL_INTEGRATE | POST_FORCE | (impulses.empty() ? 0 : PRE_REVERSE) |
+      (options.untangle ? PRE_NEIGHBOR : 0);
 }
 
 void FixClothContact::init()
@@ -267,6 +268,7 @@ void FixClothContact::setup_post_neighbor()
                label, sheets.size(), sphcloth::MAX_SHEETS);
   for (ContactSurface *sheet : sheets) sheet->triangles.check_winding();
   post_neighbor();
+  if (update->whichflag == 2) return;    // minimize knows walls and sides, and no contact
   for (MeshContact *contact : contacts) contact->check_start(options.untangle);
 }
 

@@ -44,12 +44,14 @@ class FixClothContact : public Fix, public SideSource {
   void init() override;
   void initial_integrate(int) override;
   void pre_exchange() override;
+  void min_pre_exchange() override { pre_exchange(); }
   void setup_pre_neighbor() override
   {
     for (MeshContact *contact : contacts) contact->untangle();
   }
   void setup_post_neighbor() override;
   void post_neighbor() override;
+  void min_post_neighbor() override { post_neighbor(); }
   void post_integrate() override;
   void post_force(int) override;
   double compute_vector(int) override;

@@ -129,7 +129,11 @@ void FixClothGas::check(ArgReader &args)
         fmt::format("the valve keeps the pressure at {:g}: leave one of the two out", law.limit));
 }
 
-int FixClothGas::setmask() { return POST_FORCE | MIN_POST_FORCE | POST_NEIGHBOR | PRE_EXCHANGE; }
+int FixClothGas::setmask()
+{
+  return POST_FORCE | MIN_POST_FORCE | POST_NEIGHBOR | MIN_POST_NEIGHBOR | PRE_EXCHANGE |
+      MIN_PRE_EXCHANGE;
+}
 
 void FixClothGas::init()
 {
@@ -194,8 +198,10 @@ void FixClothGas::evaluate(Phase phase)
 void FixClothGas::follow(Chamber &chamber, const GasChambers::Volume &now, Phase phase)
 {
   check_volume(chamber, now.value);
-  if (chamber.started == 0.0)
-    begin(chamber, now);
+  const bool begins = chamber.started == 0.0;
+  if (begins) begin(chamber, now);
+  if (begins || phase == Phase::MINIMIZE)
+    begin_steps(chamber, now);
   else if (phase == Phase::STEP) {
     chamber.earlier = chamber.before;
     chamber.before = chamber.volume;
@@ -220,16 +226,22 @@ void FixClothGas::check_volume(const Chamber &chamber, double volume) const
              label, chamber.first_id, volume, update->ntimestep);
 }
 
-// as if no gas had pushed before
-
 void FixClothGas::begin(Chamber &chamber, const GasChambers::Volume &now) const
 {
   chamber.started = 1.0;
+  chamber.gas = now.value;
+  chamber.excess = has_law ? law.start - law.ambient : constant.value();
+}
+
+// as if no gas had pushed before
+
+void FixClothGas::begin_steps(Chamber &chamber, const GasChambers::Volume &now) const
+{
   chamber.dt = chamber.dt_before = update->dt;
   chamber.before = now.value - chamber.dt * now.rate;
   chamber.earlier = chamber.before - chamber.dt * now.rate;
-  chamber.gas = now.value;
-  chamber.excess = chamber.excess_before = has_law ? law.start - law.ambient : constant.value();
+  chamber.applied_before = 0.0;
+  chamber.excess_before = chamber.excess;
   if (has_law && chamber.before > 0.0)
     chamber.excess_before = law.excess(chamber.gas, chamber.before);
 }

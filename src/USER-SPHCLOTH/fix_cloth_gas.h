@@ -30,7 +30,9 @@ class FixClothGas : public Fix {
   void init() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void pre_exchange() override { chambers.require_ghosts_in_run(); }
+  void min_pre_exchange() override { pre_exchange(); }
   void post_neighbor() override;
+  void min_post_neighbor() override { post_neighbor(); }
   void setup(int) override { evaluate(Phase::AGAIN); }
   void post_force(int) override { evaluate(Phase::STEP); }
   void min_setup(int) override { evaluate(Phase::MINIMIZE); }
@@ -77,6 +79,7 @@ class FixClothGas : public Fix {
   void follow(Chamber &, const GasChambers::Volume &, Phase);
   void check_volume(const Chamber &, double volume) const;
   void begin(Chamber &, const GasChambers::Volume &) const;
+  void begin_steps(Chamber &, const GasChambers::Volume &) const;
   void let_flow(Chamber &, Phase);
   void set_gas(Chamber &, double) const;
   double excess_of_step(const Chamber &, double mobility) const;

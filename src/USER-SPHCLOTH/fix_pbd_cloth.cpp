@@ -110,7 +110,8 @@ std::vector<FixPBDCloth *> LAMMPS_NS::cloths_before(LAMMPS *lmp, const Fix *fix,
 
 int FixPBDCloth::setmask()
 {
-  return POST_INTEGRATE | PRE_EXCHANGE | POST_NEIGHBOR | (options.attachbit ? PRE_REVERSE : 0);
+  return POST_INTEGRATE | PRE_EXCHANGE | MIN_PRE_EXCHANGE | POST_NEIGHBOR | MIN_POST_NEIGHBOR |
+      END_OF_STEP | (options.attachbit ? PRE_REVERSE : 0);
 }
 
 /* ----------------------------------------------------------------------

@@ -12,6 +12,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 
 #include "fix.h"
 
+#include "atom.h"
 #include "cloth/cloth_constraints.h"
 #include "cloth/cloth_options.h"
 #include "cloth/cloth_topology.h"
@@ -26,6 +27,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "fluid/scaled_vertices.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/list_guard.h"
+#include "lammps_util/timed_dumps.h"
 #include "stepping/limited_vertices.h"
 
 #include <string>
@@ -41,10 +43,17 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void init() override;
   void setup_post_neighbor() override;
   void pre_exchange() override;
+  void min_pre_exchange() override
+  {
+    vertices.load_positions(atom->x);
+    pre_exchange();
+  }
   void post_neighbor() override;
+  void min_post_neighbor() override { post_neighbor(); }
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
+  void end_of_step() override { renew_computes_for_timed_dumps(lmp); }
   double compute_vector(int) override;
 
   void grow_arrays(int) override;

@@ -14,6 +14,7 @@
 #include "lammps_util/atom_tools.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
+#include "lammps_util/timed_dumps.h"
 #include "memory.h"
 #include "modify.h"
 #include "stepping/make_stepper.h"
@@ -144,10 +145,8 @@ void FixSPHIntegrate::check_group()
 
 void FixSPHIntegrate::take_up_restored_step()
 {
-  if (restored_step > 0.0 && scheme != SteppingScheme::CONSTANT) {
-    update->update_time();
-    update->dt = restored_step;
-  }
+  if (restored_step > 0.0 && scheme != SteppingScheme::CONSTANT)
+    control.resume(restored_step, this);
   restored_step = 0.0;
 }
 
@@ -214,6 +213,7 @@ void FixSPHIntegrate::finish_step()
   stepper->end_step();
   stepper->choose_step();
   control.times.look_for_end();
+  renew_computes_for_timed_dumps(lmp);
 }
 
 /* ----------------------------------------------------------------------

@@ -28,7 +28,7 @@ class Scaled {
     std::vector<Vector3d> normals(n);
     std::vector<double> strength(n, 0.0);
     std::vector<Stiffness> stiff(n);
-    of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
+    of.fluid->stiffness(of.p, of.fluid->active(), nullptr, stiff.data());
     of.fluid->vertex_gradients(of.p, is_vertex.data(), gradients.data());
     const double factor = lattice_factor(s);
     for (std::size_t i = 0; i < n; i++) {

@@ -32,15 +32,16 @@ MatrixXd scaled_gradients(const Scene &s, const Evaluation &of)
   return b;
 }
 
-Frequency frequency(const Scene &s)
+Frequency frequency(const Scene &s, const Evaluation &of)
 {
-  const Evaluation of(s);
+  std::vector<double> pressed(s.x.size());
+  for (std::size_t i = 0; i < s.x.size(); i++) pressed[i] = of.sound[i] > 0.0;
   const std::size_t n = s.x.size();
   std::vector<Stiffness> stiff(n);
   std::vector<VertexStiffness> vertices(n);
   std::vector<VertexRow> rows(n);
   const std::vector<int> is_vertex{0, 0, 1};
-  of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
+  of.fluid->stiffness(of.p, of.fluid->active(), pressed.data(), stiff.data());
   const double factor = lattice_factor(s);
   of.fluid->vertex_stiffness(of.p, is_vertex.data(), of.sound.data(), vertices.data());
   for (std::size_t i = 0; i < n; i++)
@@ -52,10 +53,13 @@ Frequency frequency(const Scene &s)
   for (std::size_t i = 0; i < n; i++)
     if (s.type[i] == WATER)
       bound_sq = std::max(bound_sq,
-                          of.sound[i] * of.sound[i] * stiff[i].largest(s.mass[i], factor) +
+                          of.sound[i] * of.sound[i] *
+                                  stiff[i].largest(s.mass[i], factor, stiff[i].pressed_share()) +
                               of.sound[i] * rows[i].sum);
   return {exact(scaled_gradients(s, of)), bound_sq};
 }
+
+Frequency frequency(const Scene &s) { return frequency(s, Evaluation(s)); }
 
 // Particles in the face at the lowest x are held by springs along x, which have this share of the
 // largest eigenvalue of the lattice.
@@ -66,7 +70,7 @@ Frequency frequency_at_wall(const Scene &s, double share)
   std::fill(of.sound.begin(), of.sound.end(), SOUND);    // a wall completes the density
   const std::size_t n = s.x.size();
   std::vector<Stiffness> stiff(n);
-  of.fluid->stiffness(of.p, of.fluid->active(), stiff.data());
+  of.fluid->stiffness(of.p, of.fluid->active(), nullptr, stiff.data());
   const double factor = lattice_factor(s);
   double largest = 0.0;
   for (const Stiffness &each : stiff) largest = std::max(largest, each.fluid);
@@ -138,6 +142,32 @@ BOOST_AUTO_TEST_CASE(the_bound_holds_in_films_and_spray)
               std::to_string(disorder) + " " + std::to_string(layers);
           check(frequency(film), 1.75, "film " + what);
           check(frequency(spray), 1.5, "spray " + what);
+        }
+}
+
+// Those in free flight move, and press on none: a third of all, two thirds, or one half of space.
+
+BOOST_AUTO_TEST_CASE(the_bound_holds_where_some_are_in_free_flight)
+{
+  const auto is_in_flight = [](const Scene &s, int i, int which) {
+    if (which == 2) return s.x[i][0] > 0.0;
+    return (i * 2654435761u >> 7) % 3 <= static_cast<unsigned>(which);
+  };
+  for (const KernelName kernel : ALL_KERNELS)
+    for (const int dim : {2, 3})
+      for (const double disorder : {0.0, 0.1, 0.3})
+        for (const int which : {0, 1, 2}) {
+          Scene s = lattice(dim, dim == 2 ? 18 : 8, disorder);
+          s.kernel = kernel;
+          Evaluation of(s);
+          const Frequency all = frequency(s, of);
+          for (int i = 0; i < static_cast<int>(s.x.size()); i++)
+            if (is_in_flight(s, i, which)) of.sound[i] = 0.0;
+          const Frequency pressed = frequency(s, of);
+          const std::string what = "flight " + kernel_word(kernel) + " " + std::to_string(dim) +
+              " disorder " + std::to_string(disorder) + " " + std::to_string(which);
+          check(pressed, 1.5, what);
+          BOOST_CHECK_LT(pressed.bound_sq, all.bound_sq);
         }
 }
 

@@ -209,6 +209,26 @@ def test_keywords_for_a_fix_without_a_scheme_come_with_one(tmp_path: Path, is_qu
     assert limits == "fix step water sph/integrate global velocity 0 force 0 density 0"
 
 
+@pytest.mark.parametrize("steps", [1, 4, 7])
+def test_a_few_steps_are_enough_to_measure(tmp_path: Path, steps: int) -> None:
+    """The last of them counts, too."""
+    found = ask(write(tmp_path, WATER, COLUMN, scheme="global", dt="1e-4"), steps=steps)
+    assert found.run.steps == steps
+    assert found.run.time == pytest.approx(steps * 1e-4, rel=1e-12)
+    facts = {each.topic: each.measured for each in found.facts}
+    assert facts["time step"].startswith("mean 0.0001, ")
+    (step,) = [each for each in found.needs if each.topic == "time step"]
+    assert "with max 0.0002 steps are 2.00 times as long" in step.measured
+
+
+def test_the_mean_step_is_that_of_the_steps_taken(tmp_path: Path) -> None:
+    """Of a script whose time does not begin at 0."""
+    text = WATER.replace("run ", "reset_timestep 7 time 3.0\nrun ")
+    found = ask(write(tmp_path, text, COLUMN, scheme="constant", dt="1e-4", steps="13"))
+    assert found.run.time == pytest.approx(3 + 13e-4, rel=1e-12)
+    assert found.facts[0].measured == "mean 0.0001, constant"
+
+
 def test_a_constant_step_that_is_short(tmp_path: Path) -> None:
     found = topics(water(tmp_path, scheme="constant", dt="1e-4", steps="50"))
     assert float(found["time step"].split()[1]) == pytest.approx(0.5 * 0.075 / 50, rel=0.02)
@@ -378,6 +398,8 @@ def test_a_variable_that_no_script_mentions_is_refused(tmp_path: Path) -> None:
     probe = Probe(script, {"spacng": "3"}, 1, 2, 600.0)
     with pytest.raises(UserError, match=r"^in.scene has no variable 'spacng'$"):
         advise(probe, Console(quiet=True))
+    with pytest.raises(UserError, match=r"^in.scene has no variable 'water'$"):  # but a group
+        advise(Probe(script, {"water": "1"}, 1, 2, 600.0), Console(quiet=True))
     scene, more = script.read_text(), tmp_path / "in.more"
     more.write_text("print '${spacng}'\nquit 3\n")
     for include in (f"include {more}\n", f"variable file index {more}\ninclude ${{file}}\n"):
@@ -394,6 +416,15 @@ def test_numbers_are_finite_and_above_zero(tmp_path: Path, option: str, value: s
     done = CliRunner().invoke(app, ["advise", str(write(tmp_path, WATER, COLUMN)), option, value])
     assert isinstance(done.exception, UserError)
     assert str(done.exception) == f"{option} {value}: give a finite number above 0"
+
+
+@pytest.mark.parametrize(
+    "line", ["variable water index 3", "print ${water}", "print $(v_water+1)", "print v_water"]
+)
+def test_a_variable_is_what_the_script_uses_as_one(tmp_path: Path, line: str) -> None:
+    script = write(tmp_path, WATER, COLUMN, steps="2")
+    script.write_text(f"{line}\n{script.read_text()}")
+    assert Probe(script, {"water": "1"}, 1, 2, 600.0).run(tmp_path / "probe").steps == 2
 
 
 def test_a_script_may_hold_any_bytes(tmp_path: Path) -> None:

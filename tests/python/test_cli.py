@@ -77,6 +77,7 @@ JSON = {
     "tradeoff": ["tradeoff", "dam-break", "--quick"],
     "advise": ["advise", "none.in"],
     "stress": ["stress", "one-link"],
+    "render": ["render", "none.lammpstrj"],
 }
 
 
@@ -93,6 +94,32 @@ def test_a_json_file_that_cannot_be_written_is_found_before_the_run(
         assert call(monkeypatch, *arguments, "--json", where) == 2
         assert capsys.readouterr().err.startswith(f"error: {words}")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize("arguments", JSON.values(), ids=JSON)
+def test_a_json_file_replaces_nothing_but_json(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
+    tmp_path: Path,
+    arguments: list[str],
+) -> None:
+    """It may be what the command reads."""
+    monkeypatch.chdir(tmp_path)
+    Path("in.drop").write_text("\nunits si\n")
+    assert call(monkeypatch, *arguments, "--json", "./in.drop") == 2
+    said = "error: --json in.drop is there and is no JSON: use another name"
+    assert capsys.readouterr().err.startswith(said)
+    assert Path("in.drop").read_text() == "\nunits si\n"
+
+
+@pytest.mark.parametrize("before", ["", "{}", '  [\n"x"]'])
+def test_a_json_file_of_an_earlier_call_is_replaced(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, before: str
+) -> None:
+    monkeypatch.setattr(doctor, "examine", lambda: fake_findings(True))
+    (tmp_path / "doctor.json").write_text(before)
+    assert call(monkeypatch, "doctor", "--json", str(tmp_path / "doctor.json")) == 0
+    assert json.loads((tmp_path / "doctor.json").read_text())["passed"]
 
 
 BELOW = ("file/x.json", "--json file/x.json: folder file cannot be made (File exists)")

@@ -178,6 +178,40 @@ def test_a_ball_encloses_its_volume_wherever_it_is() -> None:
         metrics.enclosed_volume(MESH, make_frame(0, [], SHEET))
 
 
+@pytest.mark.parametrize("shift", [(0, 0, 0), (0.45, 0.3, -0.2), (0.5, 0.5, 0.5)])
+def test_what_is_measured_of_cloth_is_the_same_across_periodic_faces(
+    shift: tuple[float, float, float],
+) -> None:
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.3)
+    mesh = ClothMesh(np.arange(1, len(ball.vertices) + 1), np.asarray(ball.faces))
+
+    def boxed(step: int, vertices: np.ndarray) -> Frame:
+        frame = make_frame(step, [], (vertices + 0.5) % 1, first_fluid_id=10_000)
+        return replace(frame, box=np.array([[0.0] * 3, [1.0] * 3]))
+
+    rest, wide = boxed(0, ball.vertices), boxed(1, 1.1 * ball.vertices + shift)
+    np.testing.assert_allclose(metrics.edge_strain(mesh, wide, rest), 0.1, rtol=1e-12)
+    stored = 0.01 * np.sum(mesh.edge_lengths(rest) ** 2) / 2
+    assert metrics.elastic_energy(mesh, wide, rest, 1.0) == pytest.approx(stored, rel=1e-12)
+    assert metrics.enclosed_volume(mesh, wide) == pytest.approx(1.1**3 * ball.volume, rel=1e-12)
+
+
+def test_a_mesh_that_closes_through_a_periodic_face_encloses_nothing() -> None:
+    """A ring of three by four quadrangles, on a torus of the box along x."""
+    number = np.arange(12).reshape(4, 3)
+    a, b = number, np.roll(number, -1, axis=0)
+    c, d = np.roll(b, -1, axis=1), np.roll(a, -1, axis=1)
+    triangles = np.concatenate([np.stack([a, b, c], -1), np.stack([a, c, d], -1)]).reshape(-1, 3)
+    around = 2 * np.pi * np.arange(3) / 3
+    tube = [[k / 4, 0.5 + 0.1 * np.cos(t), 0.5 + 0.1 * np.sin(t)] for k in range(4) for t in around]
+    frame = make_frame(7, [], np.array(tube))
+    frame = replace(frame, box=np.array([[0.0] * 3, [1.0] * 3]))
+    with pytest.raises(UserError, match="closes through a periodic face at step 7"):
+        metrics.enclosed_volume(ClothMesh(np.arange(1, 13), triangles), frame)
+
+
 def test_held_volume_and_front() -> None:
     drops = [[0.5, 0.5, 0.1], [0.2, 0.4, 0.3], [0.2, 0.4, -0.3], [7.0, 0.5, 0.1]]
     frame = make_frame(0, drops, SHEET)

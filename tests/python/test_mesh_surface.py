@@ -210,3 +210,13 @@ def test_names_of_groups_differ() -> None:
         [Path(name) for name in ("g_3.obj", "g.obj", "b/g.obj", "all.obj", "g.ply")]
     )
     assert names == ["g_3", "g", "g_4", "all_4", "g_5"]
+
+
+def test_masses_that_are_no_numbers_are_refused() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    for areal, size, message in (
+        (1e308, 1e3, "mass that is not finite"),
+        (5e-324, 1e-3, "no mass"),
+    ):
+        with pytest.raises(UserError, match=message):
+            build_cloth(Surface.of(size * ball.vertices, ball.faces), [Material(areal)])

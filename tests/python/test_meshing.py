@@ -444,7 +444,10 @@ def test_a_bad_file_is_one_line_and_exit_code_2(
         (["--areal-mass", "1", "--molecule", "x", "--pin", "z>0"], "--pin-type"),
         (["--areal-mass", "1", "--data", "x", "--rest", "bent"], "use model or flat"),
         (["--areal-mass", "1", "--data", "x", "--atom-style", "full"], "--atom-style 'full'"),
-        (["--areal-mass", "1", "--data", "x", "--margin", "0"], "has no volume"),
+        (
+            ["--areal-mass", "1", "--data", "x", "--margin", "0"],
+            "has no volume: give a --margin above 0",
+        ),
         (["--areal-mass", "1", "--data", "x", "--margin=-1"], "must be 0 or more"),
         (
             ["--areal-mass", "1", "--data", "x", "--box", "0", "1", "-1", "1", "0", "1"],

@@ -42,10 +42,14 @@ def test_a_particle_that_rounds_the_border_is_not_counted() -> None:
 def test_a_position_that_is_not_finite_is_named(bad: float) -> None:
     with pytest.raises(UserError, match=r"particle 1001 has a position .* not finite at step 2"):
         metrics.crossings(MESH, path([0.3, 0.3, 0.2], [0.3, 0.3, 0.1], [0.3, 0.3, bad]))
+    with pytest.raises(UserError, match=r"particle 1001 has a position .* not finite at step 0"):
+        metrics.above_sheet(MESH, path([0.3, 0.3, bad])[0])
     frames = path([0.3, 0.3, 0.2], [0.3, 0.3, 0.1])
     frames[1] = make_frame(1, [[0.3, 0.3, 0.1]], np.full_like(SHEET, bad))
     with pytest.raises(UserError, match=r"a vertex has a position .* not finite at step 1"):
         metrics.crossings(MESH, frames)
+    with pytest.raises(UserError, match=r"a vertex has a position .* not finite at step 1"):
+        metrics.above_sheet(MESH, frames[1])
 
 
 def test_a_moving_sheet_sweeps_over_a_resting_particle() -> None:
@@ -85,6 +89,15 @@ def test_a_line_through_a_fold_and_out_again_is_no_crossing() -> None:
 def test_a_particle_that_goes_through_and_back_is_counted_once() -> None:
     found = metrics.crossings(MESH, path([0.3, 0.3, 0.1], [0.3, 0.3, -0.1], [0.3, 0.3, 0.1]))
     assert (found.count, len(found.ids)) == (1, 2)
+
+
+def test_a_path_longer_than_two_edges_makes_a_crossing_unclear() -> None:
+    """The mean edge of the sheet is 0.28 long; the last path wraps around the box."""
+    edge = MESH.edge_lengths(make_frame(0, [], SHEET)).mean()
+    for last, unclear in ((-0.4, False), (-0.5, True), (99.5, True)):
+        found = metrics.crossings(MESH, path([0.3, 0.3, 0.1], [0.3, 0.3, last]))
+        assert found.is_unclear.tolist() == [unclear]
+        assert found.moved.tolist() == pytest.approx([(0.1 - (last - 100 * (last > 1))) / edge])
 
 
 def test_many_particles_agree_with_counting_by_height() -> None:
@@ -210,6 +223,35 @@ def test_above_the_sheet_is_over_it_and_within_its_footprint() -> None:
     fluid = [[0.5, 0.5, 0.01], [0.5, 0.5, -0.01], [0.97, 0.5, 0.1], [1.2, 0.5, 1], [0.3, 0.3, 5]]
     above = metrics.above_sheet(MESH, make_frame(0, fluid, bowl))
     assert above.tolist() == [True, False, False, False, True]
+
+
+@pytest.mark.parametrize("shift", [(0, 0, 0), (0.45, 0.3, 0), (0.1, 0.7, 0.6), (0.3, 0.3, 0.35)])
+@pytest.mark.parametrize("tilt", [(0.0, 0.0, 0.0), (0.3, -0.2, 0.4)])
+def test_what_is_above_a_sheet_is_so_wherever_the_box_is_cut(
+    shift: tuple[float, float, float], tilt: tuple[float, float, float]
+) -> None:
+    """In a periodic box the sheet is below what is nearer from above than from below."""
+    cell = np.eye(3)
+    cell[[1, 2, 2], [0, 0, 1]] = tilt
+    # straight up at each place, whatever the tilt
+    upright = np.array([*cell[:2], [0, 0, 1]])
+    fluid = np.random.default_rng(3).random((400, 3)) - [0, 0, 0.5]
+    over = np.all((fluid[:, :2] > 0.2) & (fluid[:, :2] < 0.8), axis=1)
+    expected = over & (fluid[:, 2] > 0)
+    sheet = 0.6 * SHEET + [0.2, 0.2, 0]
+    moved = [((each @ upright + shift) @ np.linalg.inv(cell) % 1) @ cell for each in (fluid, sheet)]
+    beyond = np.array([np.ptp([0, *tilt[:2], tilt[0] + tilt[1]]), abs(tilt[2]), 0])
+    frame = in_unit_box([make_frame(0, *moved)], box=np.array([[0] * 3, 1 + beyond]), tilt=tilt)[0]
+    assert 40 < expected.sum() < 100
+    np.testing.assert_array_equal(metrics.above_sheet(MESH, frame), expected)
+    assert metrics.held_volume(MESH, frame, 2.0) == 2 * expected.sum()
+
+
+def test_in_a_closed_box_a_sheet_is_below_all_that_is_over_it() -> None:
+    frames = in_unit_box([make_frame(0, [[0.5, 0.5, 0.95]], 0.6 * SHEET + [0.2, 0.2, 0.05])])
+    closed = [replace(frame, periodic=(True, True, False)) for frame in frames]
+    assert metrics.above_sheet(MESH, closed[0]).tolist() == [True]
+    assert metrics.above_sheet(MESH, frames[0]).tolist() == [False]
 
 
 def test_density_deviation_counts_both_signs() -> None:

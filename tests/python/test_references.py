@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable
+from dataclasses import fields, is_dataclass
 
 import numpy as np
 import pytest
@@ -31,6 +32,9 @@ def test_each_solution_says_what_it_is(name: str) -> None:
         (lambda: references.CouetteStart(1e-3, 0.0, 1e-5), "CouetteStart: nu = 0"),
         (lambda: references.PoiseuilleStart(math.nan, 1e-6, 1.0), "PoiseuilleStart: gap = nan"),
         (lambda: references.StandingWave(-1.0, 2.0, 9.81), "StandingWave: depth = -1"),
+        (lambda: references.TaitColumn(1, 1000, -9.81, 20, 7.0), "gravity = -9.81: it must not be"),
+        (lambda: references.HangingChain(5, 1, 1, -1e-3, 9.81), "compliance = -0.001: it must not"),
+        (lambda: references.LinkedPendulum([1, 0], [1, 1], [0, 0], 9.81), r"lengths = \[1, 0\]"),
         (lambda: references.HeavyElastica(0.0), "HeavyElastica: gamma = 0"),
         (lambda: references.Lintearia(1.0, 0.6, 0.0, 1000, 9.81), "Lintearia: area = 0"),
         (lambda: references.pendulum_period(1.0, 9.81, 3.2), "amplitude = 3.2"),
@@ -39,6 +43,65 @@ def test_each_solution_says_what_it_is(name: str) -> None:
 def test_parameters_without_a_scene_are_refused(make: Callable, message: str) -> None:
     with pytest.raises(UserError, match=message):
         make()
+
+
+# possible parameters of each solution; FilledSheet has arrays
+GOOD = {
+    "BreathingShell": (1.0, 1.0, 10.0, 1.4, 0.1),
+    "Bulge": (1.0, 1.1, 10.0),
+    "Collision": (1.0, 1.0, 1.0, 0.5),
+    "Column": (1.0, 9.81),
+    "CouetteStart": (1e-3, 1e-6, 1e-5),
+    "DrainingColumn": (1.0, 1e3, 1e3, 1e3, 9.81),
+    "EllipticDrop": (1.0, 1.0),
+    "FallingSheet": (1.0, 1.0, 1.0, 9.81),
+    "HangingChain": (5, 1.0, 1.0, 1e-3, 9.81),
+    "HangingPolygon": (5, 1.0, 0.6, 1.0, 9.81),
+    "HeavyElastica": (5.0,),
+    "HeavyLintearia": (references.Lintearia(1.0, 0.6, 0.08, 1e3, 9.81), 0.1),
+    "Jet": (1.0, 1.0, 0.5, 1e3),
+    "LinkedPendulum": ([1.0, 1.0], [1.0, 1.0], [0.1, 0.2], 9.81),
+    "Lintearia": (1.0, 0.6, 0.08, 1e3, 9.81),
+    "Load": (1.0, 1.0, 1.0, 1e3, 9.81),
+    "Oscillator": (1.0, 1.0, 0.01),
+    "Piston": (1.0, 1e3, 1.0, 1e3, 30.0),
+    "PoiseuilleStart": (1e-3, 1e-6, 1.0),
+    "PressurizedMembrane": (1.0, 10.0, 1e4),
+    "PressurizedNet": (1.0, 10.0, 1e4),
+    "StandingWave": (1.0, 2.0, 9.81),
+    "TaitColumn": (1.0, 1e3, 9.81, 31.3, 7.0),
+    "TaylorGreen": (100.0,),
+    "TurnedJet": (1.0, 1.0, 1e3),
+    "WindPendulum": (1.0, 1.0, 1.0, 1.0, 0.1, 9.81),
+}
+
+
+def test_all_solutions_with_parameters_are_here() -> None:
+    named = {name: getattr(references, name) for name in references.__all__}
+    assert {name for name, each in named.items() if is_dataclass(each)} == {*GOOD, "FilledSheet"}
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+@pytest.mark.parametrize("name", GOOD)
+def test_parameters_are_finite(name: str, bad: float) -> None:
+    solution, given = getattr(references, name), list(GOOD[name])
+    solution(*given)
+    for place, (field, value) in enumerate(zip(fields(solution), given, strict=False)):
+        if is_dataclass(value):
+            continue
+        wrong = [bad, *value[1:]] if isinstance(value, list) else bad
+        with pytest.raises(UserError, match=rf"{name}: {field.name} = .*: it must be "):
+            solution(*given[:place], wrong, *given[place + 1 :])
+
+
+def test_limits_of_parameters_have_their_scene() -> None:
+    weightless = references.TaitColumn(2.0, 1e3, 0.0, 31.3, 7.0)
+    assert weightless.settlement == 0
+    np.testing.assert_array_equal(weightless.level([0.0, 0.5, 2.0]), [2.0, 1.5, 0.0])
+    light = references.TaitColumn(2.0, 1e3, 1e-9, 31.3, 7.0)
+    assert light.settlement == pytest.approx(0, abs=1e-10)
+    rigid = references.HangingChain(5, 1.0, 1.0, 0.0, 9.81)
+    assert (rigid.slowest, rigid.stretch) == (math.inf, 0)
 
 
 def test_vortices_decay_and_have_no_divergence() -> None:

@@ -167,6 +167,11 @@ def test_positions_must_be_finite(fluid: list[list[float]]) -> None:
         scene_of(frames()).renderer().geometry_of(make_frame(3, fluid, SHEET))
 
 
+def test_a_coordinate_that_is_too_large_is_named_with_the_limit() -> None:
+    with pytest.raises(UserError, match=r"coordinate of 2e\+12 at step 3: .* below 1e\+12"):
+        scene_of(frames()).renderer().geometry_of(make_frame(3, [[0, -2e12, 0]], SHEET))
+
+
 # the command
 
 
@@ -205,6 +210,34 @@ def test_frames_become_numbered_pictures(
     assert Image.open(out / files[0]).size == (64, 48)
     said = json.loads(report.read_text())
     assert (said["steps"], said["particles"]) == ([0, 10, 20], 3)
+
+
+def test_pictures_of_an_earlier_call_alone_go_and_only_when_there_are_new_ones(
+    dump: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    own = ["frame_0_mine.png", "frame_1.png", "frame_00001.png", "frame_0000.png.bak"]
+    for name in [*own, "frame_0009.png", "frame_10000.png"]:
+        (out / name).write_text("earlier")
+    options = ["--size", "64x48", "--out", out]
+    whole = dump.read_text()
+    dump.write_text(whole.replace("9 2 0 0 0\n", "9 2 0 0 here\n"))
+    assert call(monkeypatch, dump, *options) == 2
+    assert len(list(out.iterdir())) == 6
+    dump.write_text(whole)
+    assert call(monkeypatch, dump, *options, "--frames", "1") == 0
+    assert sorted(path.name for path in out.iterdir()) == sorted([*own, "frame_0000.png"])
+
+
+def test_particles_that_coincide_are_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, write_dump: Callable[[str], Path]
+) -> None:
+    rows = [[number, 1, 0.5, 0.5, 0.5] for number in (1, 2)]
+    options = ["--size", "64x48", "--out", tmp_path / "out"]
+    for text in (dump_frame(0, rows), dump_frame(0, rows).replace("-1 4", "0 0")):
+        assert call(monkeypatch, write_dump(text), *options) == 0
+        assert (tmp_path / "out" / "frame_0000.png").is_file()
 
 
 @pytest.mark.parametrize("form", ["gif", "mp4"])

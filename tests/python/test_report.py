@@ -150,6 +150,17 @@ def test_nothing_to_show_is_an_error(tmp_path: Path) -> None:
     assert not (tmp_path / "x.html").exists()
 
 
+def test_a_page_replaces_nothing_but_a_page(results: Path, tmp_path: Path) -> None:
+    log = write(tmp_path, "log.lammps", "Step\n")
+    done = CliRunner().invoke(app, ["report", str(results), "--out", str(log)])
+    assert isinstance(done.exception, UserError) and "is there and is no HTML" in str(
+        done.exception
+    )
+    assert log.read_text() == "Step\n"
+    first = make(results, tmp_path / "page.html", "--title", "first")
+    assert make(results, tmp_path / "page.html", "--title", "second") != first
+
+
 def test_a_dump_that_cannot_be_read_is_left_out(results: Path, tmp_path: Path) -> None:
     write(results, "bad.lammpstrj", "ITEM: NOTHING\n")
     steps = [dump_frame(n, [[1, 1, math.nan if n == 7 else n, 0, 0]]) for n in range(20)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import subprocess
 import time
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from sphcloth.dump import has_frame
 from sphcloth.errors import UserError
 from sphcloth.run import run_example
 from sphcloth.stress.processes import descendants
+from sphcloth.summary import summarize
 
 SCRIPT = f"""\
 variable        t_end index 0.5
@@ -76,10 +78,37 @@ def test_a_sheet_that_holds_is_success(drop: Path) -> None:
     assert "n/a" in text
 
 
+def test_what_is_counted_per_second_is_of_the_runs_whose_time_is_known(drop: Path) -> None:
+    """A run that was stopped at step 200 and went on; the first row of a run tells no share."""
+    run(drop)
+    log = drop / "log.lammps"
+    text = re.sub(r"Loop time of \S+ on", "Loop time of 0.5 on", log.read_text())
+    text = re.sub(r"(?m)^(keywords: .*)]$", r"\1'v_contact_share', ]", text)
+    text = re.sub(r"(?m)^(  - \[.*)]$", r"\g<1>0.25, ]", text)
+    start, row = re.search(r"(?s)---\n.*?data:\n", text)[0], re.search(r"  - \[200, .*\n", text)[0]
+    before, behind = text.split(row)
+    again = start + row.replace("0.25", "1e5")
+    log.write_text(before + row + "...\n" + again + behind)
+    found = summarize(drop, "drop", None)
+    assert (found.particle_updates, found.updates_per_second) == (300, 200)
+    assert found.contact_share == 0.25
+    log.write_text(before + row + "...\n" + again)
+    found = summarize(drop, "drop", None)
+    assert (found.particle_updates, found.updates_per_second) == (200, None)
+    assert found.contact_share is None
+
+
 def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -> None:
-    drop.mkdir()
-    own = [drop / "log.lammps.before", drop / "drop.restart.1"]
-    others = [drop / "notes.before", drop / "other.restart.1"]
+    (drop / "pictures").mkdir(parents=True)
+    own = ["log.lammps.before", "drop.restart.1", "pictures/frame_0003.png"]
+    others = [
+        "notes.before",
+        "other.restart.1",
+        "drop.restart.good",
+        "pictures/frame_3.png",
+        "pictures/frame_0003_mine.png",
+    ]
+    own, others = ([drop / name for name in names] for names in (own, others))
     for file in [*own, *others]:
         file.touch()
     (drop / "log.lammps").symlink_to(drop.parent / "elsewhere")
@@ -90,11 +119,43 @@ def test_only_files_of_the_run_are_removed_and_no_link_is_followed(drop: Path) -
     assert not (drop.parent / "elsewhere").exists()
 
 
+def test_two_runs_do_not_share_a_folder(drop: Path) -> None:
+    run(drop, "tiny")
+    log = (drop / "log.lammps").read_text()
+    with (
+        sphcloth.run._alone_in(drop),
+        pytest.raises(UserError, match=r"--out .*out: another run is writing there"),
+    ):
+        run(drop, "tiny")
+    assert (drop / "log.lammps").read_text() == log
+    assert run(drop, "tiny")[0] == 0
+
+
 def test_a_particle_through_the_sheet_is_failure(drop: Path) -> None:
     code, _ = run(drop, floor="0.1")
     summary = json.loads((drop / "summary.json").read_text())
     assert code == 1
     assert (summary["crossed"], summary["spilled"], summary["mass_defect"]) == (1, 1, 0)
+
+
+@pytest.mark.parametrize(("every", "crossed"), [(100, None), (50, 1)])
+def test_frames_that_are_too_far_apart_tell_of_no_crossing(
+    drop: Path, every: int, crossed: int | None
+) -> None:
+    """A drop that moves by 0.25 or 0.11 between two frames, through a sheet with edges of 0.1."""
+    script = examples.find_example("drop").script
+    text = SCRIPT.replace("custom 10 ", f"custom {every} ")
+    for old, new in (("0", "0.45"), ("1", "0.55")):
+        text = re.sub(rf"(2 single.*) {old} (.*0.5\n)", rf"\1 {new} \2", text)
+        text = re.sub(rf"(2 single) {old} ", rf"\1 {new} ", text)
+    script.write_text(text)
+    code, shown = run(drop, floor="0.1")
+    summary = json.loads((drop / "summary.json").read_text())
+    assert code == 1
+    assert summary["crossed"] == crossed
+    assert summary["unclear_steps"] == ([300] if crossed is None else [])
+    assert ("frames are too far apart to tell" in shown) == (crossed is None)
+    assert not summary["passed"]
 
 
 def test_a_particle_unaccounted_for_is_failure(drop: Path) -> None:

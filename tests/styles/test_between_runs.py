@@ -168,6 +168,44 @@ def test_a_reset_behind_a_restart_file(here):
             np.testing.assert_allclose(state(lmp), expected, rtol=0, atol=1e-11, err_msg=reset)
 
 
+# Water that falls fast, and two stones that move by fixes before and behind its own.
+STONES = (
+    sph_tait("1 1 fluid 1000 c0 30 alpha 0.1", "2 2 none")
+    + "group water type 1\ngroup first id 1\ngroup last id 2\n"
+    + neighbor(0.03)
+    + "timestep 0.01\n"
+    + gravity()
+    + """fix before first nve
+fix step water sph/integrate global
+fix behind last nve
+{style}
+run 5
+"""
+)
+MAKE_STONES = (
+    header("f f f", FLUID)
+    + box("-1 1 -1 1 -3 1", 2)
+    + "create_atoms 2 single 0.7 0 0.5 units box\ncreate_atoms 2 single -0.7 0 0.5 units box\n"
+    + lattice()
+    + filled("block", "-0.1 0.1 -0.1 0.1 -0.1 0.1")
+    + "mass * 0.125\nvelocity all set 0.1 0 -5 units box\n"
+    + "velocity all ramp vz -1 -5 x -0.1 0.1 units box\n"
+)
+
+
+@pytest.mark.parametrize("style", ["", *(f"run_style sph/adaptive {s}" for s in SCHEMES[1:])])
+def test_other_fixes_go_on_from_a_restart_file_to_the_last_bit(style, tmp_path):
+    """They take the step of the run at once, not that of the script, which is its ceiling."""
+    file, script = tmp_path / "half.restart", STONES.format(style=style)
+    with instance() as whole, instance() as again:
+        whole.commands_string(MAKE_STONES + script)
+        assert whole.get_thermo("dt") < 0.005
+        whole.commands_string(f"write_restart {file}\nrun 5")
+        again.commands_string(f"comm_modify vel yes\nread_restart {file}\n{script}")
+        assert again.get_thermo("time") == whole.get_thermo("time")
+        np.testing.assert_array_equal(state(again), state(whole))
+
+
 def test_a_source_goes_on_behind_a_restart_file_and_a_reset(here):
     source = "fix pour all sph/emit 300 1 0.05 rectangle 0 0 0.9 0.2 0.2 velocity 0 0 -2 start 0\n"
     with falling("global") as lmp:

@@ -98,6 +98,24 @@ def test_the_force_is_the_gradient_of_the_volume(balloon):
     assert np.abs(force.sum(axis=0)).max() < 1e-14 * np.abs(force).sum()
 
 
+@pytest.mark.parametrize("gas", ["pressure 2000", "polytropic 1.4 4e5 1e5"])
+def test_minimize_knows_the_gas(balloon, gas):
+    """Its energy and the forces are those of a run, though neighbor lists have been made anew."""
+    lmp = balloon(gas=gas, dt=1e-9)  # in longer steps the pressure is a mean
+    lmp.commands_string("thermo_style custom pe\nfix_modify gas energy yes\nminimize 0 0 3 20")
+    found, forces, radii = (
+        lmp.get_thermo("pe"),
+        by_id(lmp, "f"),
+        np.linalg.norm(by_id(lmp, "x"), axis=1),
+    )
+    assert found == value(lmp)
+    assert (radii > 1.3 * RADIUS).all()
+    lmp.command("run 0")
+    assert lmp.get_thermo("pe") == pytest.approx(found, rel=1e-12)
+    of_air = AIR * RADIUS**2
+    np.testing.assert_allclose(by_id(lmp, "f"), forces, rtol=0, atol=1e-12 * of_air)
+
+
 def test_triangles_may_be_turned_any_way(balloon):
     rng = np.random.default_rng(2)
     x, faces = icosphere(1, RADIUS)

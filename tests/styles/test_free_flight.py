@@ -1,5 +1,7 @@
 """Free flight: what rounding makes of the density is no pressure, on any number of ranks."""
 
+import re
+
 import numpy as np
 import pytest
 from harness import instance, last_frame, run, write
@@ -85,3 +87,44 @@ def test_sound_limits_the_step_from_a_compression_beyond_rounding(
             + f"run_style sph/adaptive {scheme}\nrun 1 post no"
         )
         assert (dt_and_limit(lmp)[1] == ACOUSTIC) == pressed
+
+
+def resting_block(options, scheme, run):
+    """Its surface is thinner than at rest, its inside denser."""
+    return (
+        block_of_water(shaken=True)
+        + sph_tait(options)
+        + neighbor(0.03)
+        + "timestep 0.02\nfix step all sph/integrate global force 0 density 0\n"
+        + f"run_style sph/adaptive {scheme}\n{run}\n"
+    )
+
+
+@pytest.mark.parametrize(("options", "longer"), [("", True), ("tension yes", False)])
+def test_what_presses_on_nothing_lets_steps_be_longer(options, longer):
+    """Block steps count all neighbors as if they were under pressure."""
+    steps = {}
+    for scheme in ("global", "block"):
+        with instance() as lmp:
+            lmp.commands_string(resting_block(options, scheme, "run 1"))
+            steps[scheme] = dt_and_limit(lmp)[0]
+    ratio = steps["global"] / steps["block"]
+    if longer:
+        assert 1.02 < ratio < 1.5
+    else:
+        assert ratio == pytest.approx(1, rel=1e-12)
+
+
+def test_neighbors_of_other_ranks_are_known_to_be_in_free_flight(tmp_path):
+    with instance() as lmp:
+        lmp.commands_string(
+            block_of_water(shaken=True) + f"write_data {tmp_path}/water.data nocoeff"
+        )
+    whole = resting_block("", "global", "thermo_style custom step time dt\nthermo 1\nrun 30")
+    script = write(
+        tmp_path,
+        header("f f f", FLUID) + "read_data water.data\n" + whole[whole.index("pair_style") :],
+    )
+    rows = [re.findall(r"(?m)^ +\d+ +\S+ +\S+ *$", run(script, ranks=ranks)) for ranks in (1, 2, 4)]
+    assert len(rows[0]) == 31
+    assert rows[0] == rows[1] == rows[2]

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from cloth_scenes import cloth
 from harness import instance, run, write
 from step_scenes import CEILING, DAM, OUTPUT, free_particles, steps_by_limit
 
@@ -34,6 +35,12 @@ dump_modify computed every/time $(3*{every}) time yes format float %.17g
 def times_of_frames(path):
     lines = path.read_text().splitlines()
     return np.array([float(b) for a, b in itertools.pairwise(lines) if a == "ITEM: TIME"])
+
+
+def columns_of_frames(path):
+    """Columns of a dump, from frame to frame."""
+    frames = re.findall(r"ITEM: ATOMS.*\n((?:[^I].*\n)+)", path.read_text())
+    return [np.array([line.split() for line in frame.splitlines()], float).T for frame in frames]
 
 
 def thermo_columns(text):
@@ -174,3 +181,39 @@ def test_the_end_of_a_run_takes_no_row_from_the_log(tmp_path, style, every, unti
     steps = thermo_columns(log)[0].astype(int).tolist()
     assert 0 < steps[-1] < 100
     assert steps == sorted({*range(0, steps[-1], every), steps[-1]})
+
+
+@pytest.mark.parametrize("style", ["", "run_style sph/adaptive global"])
+def test_frames_by_time_hold_the_computes_of_their_own_step(tmp_path, style):
+    """LAMMPS alone repeats those of the last row of the log, here of the first step."""
+    scene = DAM.format(scheme="global", style=style)
+    dump = """compute moving all property/atom vz
+        variable double atom 2*c_moving
+        dump frames all custom 1 frames id vz c_moving v_double
+        dump_modify frames every/time 0.01 first no format float %.17g
+        thermo 1000
+        """
+    run(write(tmp_path, scene.replace("run 100", dump + "run 100")))
+    frames = columns_of_frames(tmp_path / "frames")
+    assert len(frames) > 4
+    assert np.ptp(frames[-1][1]) > 0
+    for _, speed, computed, doubled in frames:
+        np.testing.assert_array_equal(computed, speed)
+        np.testing.assert_array_equal(doubled, 2 * speed)
+
+
+def test_frames_by_time_hold_computes_of_a_sheet_alone(tmp_path):
+    lmp = cloth("velocity all set 0.3 0 0.1\n")
+    path = tmp_path / "frames"
+    lmp.commands_string(
+        f"""compute where all property/atom z
+        dump frames all custom 1 {path} id z c_where
+        dump_modify frames every/time 0.02 first no format float %.17g
+        thermo 1000
+        run 100
+        undump frames"""
+    )
+    frames = columns_of_frames(path)
+    assert len(frames) > 4
+    for _, z, computed in frames:
+        np.testing.assert_array_equal(computed, z)

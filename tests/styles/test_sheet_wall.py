@@ -113,6 +113,24 @@ def test_forces_are_the_gradient_of_the_energy(spacing):
         assert np.abs(f[atom][2]) > 1e-2 * np.abs(f).max()
 
 
+@pytest.mark.parametrize("obstacle", [False, True])
+def test_minimize_feels_a_mesh(obstacle):
+    """The energy falls, over several neighbor lists; it and forces end as those of a run."""
+    plate = "fix contact fluid cloth/contact 1e-3 sides no wall yes obstacle cloth"
+    wall = plate if obstacle else MESH.format(pin="")
+    lmp = slab(wall, SHEET.format(spacing=0.1, areal=2.0))
+    lmp.commands_string("velocity all set 0 0 0\nthermo_style custom pe\nrun 0")
+    x, before = by_id(lmp, "x"), lmp.get_thermo("pe")
+    lmp.command("minimize 0 0 20 60")
+    found, forces = lmp.get_thermo("pe"), by_id(lmp, "f")
+    assert found < 0.1 * before
+    assert np.abs(by_id(lmp, "x") - x).max() > 0.03
+    assert np.abs(forces[by_id(lmp, "type") == 2]).max() > 1e-2 * np.abs(forces).max()
+    lmp.command("run 0")
+    assert lmp.get_thermo("pe") == pytest.approx(found, rel=1e-12)
+    np.testing.assert_allclose(by_id(lmp, "f"), forces, rtol=0, atol=1e-12 * np.abs(forces).max())
+
+
 @pytest.mark.parametrize("moves", ["fluid", "cloth"])
 def test_an_integrated_density_follows_the_way(moves):
     """A particle without pressure and a mesh approach: the density rises by what is covered."""

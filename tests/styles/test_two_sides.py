@@ -71,6 +71,16 @@ def test_the_sides_are_those_of_the_triangles():
     assert (side[kind == 3] == 0).all()
 
 
+def test_minimize_knows_them():
+    """Also as the first command of a script: forces at its end are those of a run."""
+    lmp = pools(("above", "below"), "", "velocity all set 0 0 0\nminimize 0 0 20 60")
+    x, f, kind, side = by_id(lmp, "x"), by_id(lmp, "f"), by_id(lmp, "type"), compute(lmp, "side")
+    near = (np.abs(x[:, :2] - 0.25).max(axis=1) < 0.2) & (np.abs(x[:, 2]) < 0.08)
+    assert (side[(kind == 1) & near] == 1).all() and (side[(kind == 2) & near] == -1).all()
+    lmp.command("run 0")
+    np.testing.assert_allclose(by_id(lmp, "f"), f, rtol=0, atol=1e-12 * np.abs(f).max())
+
+
 def test_it_stays_so_while_the_sheet_moves_on_any_ranks(tmp_path):
     script = POOLS.format(fill="\n".join(FILL.values()), sheet=SHEET)
     script += PARTED.format(sides="")

@@ -54,7 +54,8 @@ class Advice:
 
     def show(self, console: Console) -> None:
         """Print what was found, each with the line to type."""
-        console.print(f"probe of {self.script}: {self.reach}", markup=False, highlight=False)
+        head = f"probe of {self.script}: {self.reach}"
+        console.print(head, markup=False, highlight=False, soft_wrap=True)
         _show("measured", self.facts, console)
         if not self.needs and not self.unused:
             console.print("\nnothing to change", style="green")
@@ -138,6 +139,8 @@ def _proven(proposal: Proposal, probe: Probe, run: Evidence, folder: Path) -> Fi
         again = probe.run(folder, trial.before, trial.edits)
     except UserError as error:
         return Finding(finding.topic, f"{finding.measured}; '{finding.line}' fails: {error}")
+    if not again.steps:
+        return Finding(finding.topic, f"{finding.measured}; with '{finding.line}' it takes no step")
     showed, helps = trial.judge(run, again)
     measured = f"{finding.measured}; {showed}{'' if helps else ': not worth it'}"
     return Finding(finding.topic, measured, finding.line if helps else None)

@@ -26,6 +26,7 @@ class Evidence:
         whole: whether the run went to the end of the script.
         steps: number of time steps.
         time: physical time reached.
+        duration: physical time that the steps took together.
     """
 
     commands: Commands
@@ -33,6 +34,12 @@ class Evidence:
     whole: bool
     steps: int
     time: float
+    duration: float
+
+    @property
+    def mean_step(self) -> float:
+        """Mean time step."""
+        return self.duration / self.steps
 
     @classmethod
     def of_log(cls, log: Path, table: ThermoTable | None = None) -> Evidence:
@@ -52,7 +59,8 @@ class Evidence:
             if meant:
                 columns[meant] = values
         steps = int(table["Step"][-1] - table["Step"][0])
-        return cls(commands, columns, True, steps, float(table["Time"][-1]))
+        first, last = (float(table["Time"][row]) for row in (0, -1))
+        return cls(commands, columns, True, steps, last, last - first)
 
     def largest(self, name: str, until: float = math.inf) -> float | None:
         """Return the largest value of a column up to a time of the probe.

@@ -25,8 +25,8 @@ from sphcloth.trajectory import Frame, Trajectory
 
 TABLE, FIRST, FINAL = "advise.table", "advise.first", "advise.final"
 USED, CUT = "advise.used", "advise.cut"
-# every how many steps a row is written
-EVERY = 5
+# every how many steps a row is written, and of a run of how many steps each one is
+EVERY, SHORT = 5, 100
 # a script that does not look at the clock is killed after this
 TIMEOUT_FACTOR, GRACE_SECONDS = 3.0, 20.0
 
@@ -68,7 +68,7 @@ class Probe:
             edits: style of a fix -> what to append to its command.
 
         Raises:
-            UserError: no script, no run command in it, a variable that it does not mention, or
+            UserError: no script, no run command in it, a variable that it does not have, or
                 LAMMPS failed.
         """
         copy = self._copy(folder, before, edits or {})
@@ -99,16 +99,19 @@ class Probe:
             hook = self._hook(arguments, fixes, before)
             (folder / _hook_name(number)).write_text("\n".join(hook) + "\n", encoding="utf-8")
         copy = folder / self.script.name
-        clock = f"variable advise_used equal 0\ntimer timeout 0:0:{self.seconds:.0f} every 10\n"
+        zero = "".join(f"variable {name} equal 0\n" for name in ("advise_used", "advise_spent"))
+        clock = f"{zero}timer timeout 0:0:{self.seconds:.0f} every 10\n"
         copy.write_text(clock + copy.read_text(encoding="utf-8"), encoding="utf-8")
         return copy
 
     def _check_variables(self, text: str) -> None:
-        """Raise UserError for a variable that the script and what it includes do not mention."""
+        """Raise UserError for a variable that the script and what it includes do not have."""
         if re.search(r"^\s*include\s+\S*\$", text, re.MULTILINE):
             return  # which file that is, LAMMPS knows
         for name in self.variables:
-            if not re.search(rf"\b{name}\b", text):
+            short = rf"|\${name}" if len(name) == 1 else ""
+            used = rf"\bvariable[\s,]+{name}\b|\$\{{{name}\}}|\bv_{name}\b{short}"
+            if not re.search(used, text):
                 raise UserError(f"{self.script.name} has no variable '{name}'")
 
     def _hook(self, run: str, fixes: Sequence[re.Match], before: Sequence[str]) -> list[str]:
@@ -128,21 +131,24 @@ class Probe:
             *_cloth_of(fixes),
             "variable advise_from equal $(step)",
             f'if "$(v_advise_used) == 0" then "write_dump all custom {FIRST} {_DUMP}"',
-            f"fix advise_table all ave/time {EVERY} 1 {EVERY} ${{advise_columns}} append {TABLE} "
-            'format " %.15g"',
             *before,
             f"variable advise_wanted equal {count}",
             f"variable advise_left equal {end}{self.steps}-v_advise_used",
             "variable advise_cut equal $(v_advise_wanted>v_advise_left)",
             "variable advise_count equal ternary(v_advise_wanted<v_advise_left,v_advise_wanted,"
             "v_advise_left)",
+            f"variable advise_every equal ternary(v_advise_count<{SHORT},1,{EVERY})",
+            "fix advise_table all ave/time $(v_advise_every) 1 $(v_advise_every) "
+            f'${{advise_columns}} append {TABLE} format " %.15g"',
+            "variable advise_start equal $(time)",
             f"run $(v_advise_count:%.0f) {rest}",
             "unfix advise_table",
             'if "$(is_defined(compute,advise_fast))" then "uncompute advise_fast"',
             f"write_dump all custom {FINAL} {_DUMP}",
             "variable advise_done equal step-v_advise_from",
             "variable advise_used equal $(v_advise_used+v_advise_done)",
-            f'print "$(v_advise_used)" file {USED} screen no',
+            "variable advise_spent equal $(v_advise_spent+time-v_advise_start)",
+            f'print "$(v_advise_used) $(v_advise_spent) $(time)" file {USED} screen no',
             f'if "$(v_advise_cut*(v_advise_used>={self.steps}))" then "{stop}" "quit 0"',
         ]
 
@@ -150,10 +156,10 @@ class Probe:
         """Return what a run has left in its folder."""
         commands, columns = Commands.read(folder / LOG), _read_table(folder / TABLE)
         used = folder / USED
-        steps = int(float(used.read_text())) if used.is_file() else 0
-        times = columns.get("v_advise_time", np.zeros(1))
+        text = used.read_text() if used.is_file() else "0 0 0"
+        steps, duration, end = map(float, text.split())
         whole = in_time and used.is_file() and not (folder / CUT).is_file()
-        return Evidence(commands, columns, whole, steps, float(times[-1]))
+        return Evidence(commands, columns, whole, int(steps), end, duration)
 
 
 def gather(script: Path) -> dict[Path, str]:

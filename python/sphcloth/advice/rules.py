@@ -62,9 +62,9 @@ def facts(run: Evidence) -> list[Finding]:
 
 
 def _steps(run: Evidence) -> Iterator[Finding]:
-    steps, mean = run.commands.steps_by_limit, run.time / run.steps
+    steps = run.commands.steps_by_limit
     how = f"set by {set_by(steps)}" if steps else "constant"
-    yield Finding("time step", f"mean {mean:.3g}, {how}")
+    yield Finding("time step", f"mean {run.mean_step:.3g}, {how}")
 
 
 def _speeds(run: Evidence) -> Iterator[Finding]:
@@ -148,7 +148,7 @@ def _longer(keywords: str) -> Trial:
     """Return the trial of keywords of fix sph/integrate that are to make steps longer."""
 
     def judge(run: Evidence, again: Evidence) -> tuple[str, bool]:
-        further = again.time / again.steps / (run.time / run.steps)
+        further = again.mean_step / run.mean_step
         name = run.commands.stepper.output("compression")
         # the second probe goes further: only what both have seen is compared
         before, after = (
@@ -164,7 +164,7 @@ def _longer(keywords: str) -> Trial:
 def _saves_updates(run: Evidence, again: Evidence) -> tuple[str, bool]:
     """Compare the particle updates for the same time."""
     name = run.commands.stepper.output("updates")
-    share = again.last(name) / again.time / (run.last(name) / run.time)
+    share = again.last(name) / again.duration / (run.last(name) / run.duration)
     return f"with block steps {share:.0%} of the particle updates", share < WORTH
 
 

@@ -13,7 +13,7 @@ import typer
 
 
 def _prepared(context: typer.Context, path: Path | None) -> Path | None:
-    """Find a file that cannot be written before anything is computed for it."""
+    """Find a file that cannot be written, or must not be, before anything is computed for it."""
     from sphcloth.results import prepare_file
 
     if path is not None and not context.resilient_parsing:

@@ -139,7 +139,7 @@ def build_cloth(
         names: name of each part.
 
     Raises:
-        UserError: a vertex of no mass.
+        UserError: a vertex of no mass, or of one that is no number.
     """
     triangle_values = {
         name: np.array([getattr(material, name) for material in materials])[surface.part]
@@ -155,9 +155,14 @@ def build_cloth(
     if pin_type is not None:
         types = np.where(pinned, pin_type, types)
     seams = np.empty((0, 2), np.int64) if seams is None else seams
-    masses = surface.lumped(surface.areas * triangle_values["areal_mass"])
+    with np.errstate(over="ignore"):  # found below
+        masses = surface.lumped(surface.areas * triangle_values["areal_mass"])
     if not np.all(masses > 0):
         raise UserError("a vertex has no mass: the areas are too small for the number format")
+    if not np.isfinite(masses).all():
+        raise UserError(
+            "a vertex has a mass that is not finite: area or mass per area are too large"
+        )
     return Cloth(
         surface=surface,
         molecules=vertex_part + 1,

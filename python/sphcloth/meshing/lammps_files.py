@@ -104,7 +104,9 @@ def has_masses(cloth: Cloth) -> bool:
 def _check_box(cloth: Cloth, box: NDArray[np.float64]) -> None:
     low, high = box
     if not np.all(low < high):
-        raise UserError(f"the box from {low} to {high} has no volume: give --margin or --box")
+        raise UserError(
+            f"the box from {low} to {high} has no volume: give a --margin above 0, or a --box"
+        )
     outside = np.any((cloth.surface.vertices < low) | (cloth.surface.vertices >= high), axis=1)
     if outside.any():
         raise UserError(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.meshing.surface import Surface, lengths
-from sphcloth.results import make_folder
+from sphcloth.results import Numbered, make_folder
 from sphcloth.trajectory import Frame, Trajectory
 from sphcloth.unwrapping import Unwrapper
 
@@ -43,7 +43,8 @@ def write_sequence(
     Args:
         frames: the dump.
         mesh: the cloth.
-        out: folder, made if need be; an earlier sequence of the same format goes.
+        out: folder, made if need be; an earlier sequence of the same format goes when the first
+            frame has been read.
         form: ``obj``, ``ply`` or ``vtk``.
         first: number of the first frame, from 0.
         last: number of the last frame; None takes the dump's last.
@@ -59,14 +60,18 @@ def write_sequence(
     if form not in FORMATS:
         raise UserError(f"--format {form}: use {', '.join(FORMATS)}")
     chosen = _chosen(len(frames), first, last, every)
-    _remove_old(out, FORMATS[form])
+    make_folder(out)
+    files = Numbered(out, "cloth_", 6, FORMATS[form])
     writer = _writer(form, mesh, frames[0])
     unwrap = Unwrapper(mesh)
     paths, times = [], []
     for index in show(chosen):
         frame = frames[index]
-        path = out / f"cloth_{len(paths):06d}{FORMATS[form]}"
-        writer(frame, unwrap(frame), path)
+        positions = unwrap(frame)
+        if not paths:
+            _remove_old(files)
+        path = files.path(len(paths))
+        writer(frame, positions, path)
         paths.append(path)
         times.append(frame.step if np.isnan(frame.time) else frame.time)
     if form == "vtk":
@@ -83,10 +88,10 @@ def _chosen(total: int, first: int, last: int | None, every: int) -> range:
     return range(first, last + 1, every)
 
 
-def _remove_old(out: Path, suffix: str) -> None:
-    make_folder(out)
-    for path in [*out.glob(f"cloth_[0-9]*{suffix}"), out / SERIES]:
-        path.unlink(missing_ok=True)
+def _remove_old(files: Numbered) -> None:
+    files.remove()
+    if files.suffix == FORMATS["vtk"]:
+        (files.folder / SERIES).unlink(missing_ok=True)
 
 
 def _writer(form: str, mesh: ClothMesh, start: Frame) -> Callable[[Frame, NDArray, Path], None]:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.trajectory import Frame
+from sphcloth.unwrapping import Unwrapper
 
 Array = NDArray[np.float64]
 
@@ -51,17 +52,27 @@ def elastic_energy(mesh: ClothMesh, frame: Frame, rest: Frame, compliance: Array
 def enclosed_volume(mesh: ClothMesh, frame: Frame) -> float:
     """Return the volume inside closed meshes, positive if triangles run counter-clockwise outside.
 
-    The sum of the tetrahedra from the mean of the vertices to the triangles.
+    The sum of the tetrahedra from the mean of the vertices to the triangles, wherever periodic
+    faces cut the mesh.
 
     Raises:
-        UserError: the mesh has a border.
+        UserError: the mesh has a border, or closes through a periodic face.
     """
     if mesh.border_edges:
         raise UserError(
             f"enclosed_volume: the mesh has a border of {mesh.border_edges} edges: it encloses "
             "nothing"
         )
-    corners = mesh.corners(frame) - mesh.positions(frame).mean(axis=0)
+    vertices = Unwrapper(mesh)(frame)
+    start, end = vertices[mesh.edges].swapaxes(0, 1)
+    if not np.allclose(
+        np.linalg.norm(end - start, axis=1), mesh.edge_lengths(frame), equal_nan=True
+    ):
+        raise UserError(
+            f"enclosed_volume: the mesh closes through a periodic face at step {frame.step}: it "
+            "encloses nothing"
+        )
+    corners = (vertices - vertices.mean(axis=0))[mesh.triangles]
     return float(np.sum(np.linalg.det(corners)) / 6)
 
 

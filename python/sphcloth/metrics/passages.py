@@ -20,6 +20,8 @@ from sphcloth.trajectory import Frame
 _BLOCK = 20_000
 # relative slack of the inside tests: a particle that meets an edge belongs to both triangles
 _EDGE_SLACK = 1e-12
+# edges by which a particle may move between two frames for its straight path to tell what it did
+_FAR = 2.0
 
 
 @dataclass(frozen=True)
@@ -30,11 +32,19 @@ class Crossings:
         ids: atom ids, shape (K,); a particle that crosses in several intervals is listed for each.
         steps: step of the frame after the crossing, shape (K,).
         points: where the particle met the sheet, shape (K, 3).
+        moved: how far the particle went between the frames, over the mean length of an edge,
+            shape (K,).
     """
 
     ids: NDArray[np.int64]
     steps: NDArray[np.int64]
     points: NDArray[np.float64]
+    moved: NDArray[np.float64]
+
+    @property
+    def is_unclear(self) -> NDArray[np.bool_]:
+        """Whether the frames are too far apart to tell, by more than two edges, shape (K,)."""
+        return self.moved > _FAR
 
     @property
     def count(self) -> int:
@@ -48,7 +58,8 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
     Particles and vertices are taken to move along straight lines from frame to frame. In each
     interval a particle's passes in the two directions are weighed against each other, so a line
     that cuts through a fold and comes out again is no crossing. A particle that rounds the border
-    is seen to do so only if the frames are close enough to show it.
+    is seen to do so only if the frames are close enough to show it: see
+    :attr:`Crossings.is_unclear`.
 
     Through periodic faces, edges and paths are taken to be the shortest ones: both must be shorter
     than half the distance of opposite faces of the box.
@@ -66,6 +77,7 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
         np.concatenate([part.ids for part in found]),
         np.concatenate([part.steps for part in found]),
         np.concatenate([part.points for part in found]),
+        np.concatenate([part.moved for part in found]),
     )
 
 
@@ -73,15 +85,26 @@ def above_sheet(mesh: ClothMesh, frame: Frame, fluid_type: int = 1) -> NDArray[n
     """Tell which fluid particles have the sheet vertically below them, shape (fluid particles,).
 
     They rest on the sheet or are on their way down to it; the others missed it or ran off.
+
+    The sheet may lie across periodic faces. Where z is periodic it is below those within half the
+    height of the box.
+
+    Raises:
+        UserError: a position that is not finite.
     """
-    positions = frame.select(fluid_type).positions
-    corners = mesh.corners(frame)
-    plan = np.broadcast_to(positions[:, :2], (2, len(positions), 2))
+    water = frame.select(fluid_type)
+    positions, corners = water.positions, mesh.corners(frame)
+    _check_finite(water.ids, positions[None], corners, frame)
+    half_height = frame.cell[2, 2] / 2
+    owner, shifts = _images(np.stack([positions, positions - [0, 0, half_height]]), corners, frame)
+    images = positions[owner] + shifts
+    plan = np.broadcast_to(images[:, :2], (2, len(images), 2))
     footprint = _boxes(corners[:, :, :2].swapaxes(0, 1))
-    particle, triangle = _overlapping_boxes(plan, footprint)
-    height = _height_over(positions[particle], corners[triangle])
+    image, triangle = _overlapping_boxes(plan, footprint)
+    height = _height_over(images[image], corners[triangle])
+    reach = half_height if frame.periodic[2] else np.inf
     above = np.zeros(len(positions), dtype=bool)
-    above[particle[height > 0]] = True
+    above[owner[image[(height > 0) & (height < reach)]]] = True
     return above
 
 
@@ -90,39 +113,30 @@ def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type:
     start, end = before.select(fluid_type), after.select(fluid_type)
     ids, first, second = np.intersect1d(start.ids, end.ids, True, return_indices=True)
     paths = np.stack([start.positions[first], end.positions[second]])
-    if not np.isfinite(paths).all():
-        bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
-        raise UserError(f"particle {bad} has a position that is not finite at step {after.step}")
     corners = np.stack([mesh.corners(before), mesh.corners(after)])
-    if not np.isfinite(corners).all():
-        raise UserError(f"a vertex has a position that is not finite at step {after.step}")
-    paths[1] = paths[0] + before.shortest(paths[1] - paths[0])
-    corners = _unwrapped(corners, before)
-    crossed, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
+    _check_finite(ids, paths, corners, after)
+    for each in (paths, corners):
+        each[1] = each[0] + before.shortest(each[1] - each[0])
+    crossed, points, moved = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))], [np.empty(0)]
+    edge = mesh.edge_lengths(before).mean() if len(mesh.edges) else np.inf
     for block in np.array_split(np.arange(len(ids)), len(ids) // _BLOCK + 1):
         through, where = _net_passes(paths[:, block], corners, before)
         crossed.append(ids[block[through]])
         points.append(where)
+        displacements = np.subtract(*paths[:, block[through]])
+        moved.append(np.linalg.norm(displacements, axis=1) / edge)
     found = np.concatenate(crossed)
-    return Crossings(found, np.full(len(found), after.step), np.concatenate(points))
+    steps = np.full(len(found), after.step)
+    return Crossings(found, steps, np.concatenate(points), np.concatenate(moved))
 
 
-def _unwrapped(corners: NDArray, frame: Frame) -> NDArray[np.float64]:
-    """Put the corners of each triangle side by side, before, and go on from there, after.
-
-    Each triangle by itself: a sheet that closes through a periodic boundary has no place as a
-    whole.
-
-    Args:
-        corners: triangle corners before and after, shape (2, T, 3 corners, 3).
-        frame: before, with the box.
-    """
-    if not any(frame.periodic):
-        return corners
-    start, end = corners
-    first = start[:, :1]
-    start = first + frame.shortest(start - first)
-    return np.stack([start, start + frame.shortest(end - start)])
+def _check_finite(ids: NDArray, paths: NDArray, corners: NDArray, frame: Frame) -> None:
+    """Raise UserError for positions, shape (K, P, 3), and corners that are not finite."""
+    if not np.isfinite(paths).all():
+        bad = ids[~np.isfinite(paths).all(axis=(0, 2))][0]
+        raise UserError(f"particle {bad} has a position that is not finite at step {frame.step}")
+    if not np.isfinite(corners).all():
+        raise UserError(f"a vertex has a position that is not finite at step {frame.step}")
 
 
 def _net_passes(paths: NDArray, corners: NDArray, frame: Frame) -> tuple[NDArray, NDArray]:

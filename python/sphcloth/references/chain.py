@@ -21,6 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import OdeSolution, solve_ivp
 from scipy.linalg import solve_banded
 
+from sphcloth.references.checks import check_positive
+
 Array = NDArray[np.float64]
 
 
@@ -33,12 +35,18 @@ class LinkedPendulum:
         masses: at the outer end of each link, kg, shape (N,).
         angles: of the links from the downward vertical at the start, rad, shape (N,).
         gravity: acceleration, m/s^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     lengths: Sequence[float]
     masses: Sequence[float]
     angles: Sequence[float]
     gravity: float
+
+    def __post_init__(self) -> None:
+        check_positive(self, "lengths", "masses")
 
     @classmethod
     def uniform(cls, links: int, length: float, angle: float, gravity: float) -> LinkedPendulum:

@@ -6,12 +6,13 @@ compliance alpha is longer than at rest by alpha T_i; the whole chain by alpha m
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check, check_positive
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class HangingChain:
         links: number N of links, each with a mass at its lower end.
         mass: m of each, kg.
         length: of a link at rest, m.
-        compliance: alpha of a link, m/N.
+        compliance: alpha of a link, m/N; 0 if it is rigid.
         gravity: acceleration g, m/s^2.
 
     Raises:
@@ -37,6 +38,7 @@ class HangingChain:
 
     def __post_init__(self) -> None:
         check_positive(self, "links", "mass", "length", "gravity")
+        check(self, "compliance", self.compliance >= 0, "it must not be negative")
 
     @property
     def tensions(self) -> NDArray[np.float64]:
@@ -60,10 +62,12 @@ class HangingChain:
 
     @property
     def slowest(self) -> float:
-        """Lowest angular frequency of motion along the chain, rad/s.
+        """Lowest angular frequency of motion along the chain, rad/s; infinity if links are rigid.
 
         A row of N masses and springs, fixed at one end:
         omega = 2 sqrt(1 / alpha m) sin(pi / (4 N + 2)).
         """
+        if not self.compliance:
+            return math.inf
         stiffness = 1 / (self.compliance * self.mass)
         return 2 * float(np.sqrt(stiffness) * np.sin(np.pi / (4 * self.links + 2)))

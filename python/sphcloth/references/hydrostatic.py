@@ -22,7 +22,7 @@ class TaitColumn:
     Attributes:
         height: undisturbed height, m.
         rho0: rest density, kg/m^3.
-        gravity: acceleration, m/s^2.
+        gravity: acceleration, m/s^2; 0 for a column without weight.
         sound: speed of sound at rest, m/s.
         gamma: exponent of the equation of state, > 1.
 
@@ -38,6 +38,7 @@ class TaitColumn:
 
     def __post_init__(self) -> None:
         check_positive(self, "height", "rho0", "sound")
+        check(self, "gravity", self.gravity >= 0, "it must not be negative")
         check(self, "gamma", self.gamma > 1, "it must be above 1")
 
     def pressure(self, depth: ArrayLike) -> NDArray[np.float64]:
@@ -56,5 +57,7 @@ class TaitColumn:
     def _thickness(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Return the thickness at rest of what lay above a depth: the integral of rho0 / rho."""
         rate = self.gamma * self.gravity / self.sound**2
+        if not rate:
+            return np.asarray(depth, dtype=np.float64)
         power = 1 - 1 / self.gamma
         return np.expm1(power * np.log1p(rate * np.asarray(depth))) / (rate * power)

@@ -25,7 +25,7 @@ from scipy.optimize import brentq, root
 from scipy.special import ellipe, ellipeinc, ellipj, ellipk
 
 from sphcloth.errors import UserError
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check, check_finite, check_positive
 
 # angles at the water line among which the root is looked for
 _ANGLES = np.linspace(1e-4, math.pi - 1e-4, 2000)
@@ -138,10 +138,17 @@ class HeavyLintearia:
     Attributes:
         light: length, pins and water.
         areal: mass of the sheet per area, kg/m^2.
+
+    Raises:
+        UserError: a value for which there is no such scene.
     """
 
     light: Lintearia
     areal: float
+
+    def __post_init__(self) -> None:
+        check_finite(self)
+        check(self, "areal", self.areal >= 0, "it must not be negative")
 
     @property
     def tension(self) -> float:

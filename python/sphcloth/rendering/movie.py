@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from sphcloth.errors import UserError
-from sphcloth.results import make_folder
+from sphcloth.results import make_folder, pictures_in
 
 FORMATS = ("png", "gif", "mp4")
 FRAMES_PER_SECOND = 20
@@ -38,29 +39,28 @@ def write_pictures(pictures: Pictures, form: str, out: Path, name: str) -> Itera
     Args:
         pictures: each of shape (height, width, 3).
         form: ``png``, ``gif`` or ``mp4``.
-        out: folder, made if need be; what an earlier call left there goes.
+        out: folder, made if need be; those of an earlier call go when the first is drawn.
         name: of the GIF or MP4; PNGs are ``frame_0000.png``, ...
 
     Raises:
         UserError: a folder that cannot be made, or no encoder.
     """
-    _clear(out)
+    make_folder(out)
+    pictures = iter(pictures)
+    first = next(pictures)
+    files = pictures_in(out)
+    files.remove()
+    pictures = itertools.chain([first], pictures)
     match form:
         case "png":
             for number, picture in enumerate(pictures):
-                path = out / f"frame_{number:04d}.png"
+                path = files.path(number)
                 Image.fromarray(picture).save(path, compress_level=COMPRESSION)
                 yield path
         case "gif":
             yield _write_gif(pictures, out / f"{name}.gif")
         case _:
             yield _write_mp4(pictures, out / f"{name}.mp4")
-
-
-def _clear(out: Path) -> None:
-    make_folder(out)
-    for path in out.glob("frame_[0-9]*.png"):
-        path.unlink()
 
 
 def _write_gif(pictures: Pictures, path: Path) -> Path:

@@ -146,8 +146,13 @@ class SceneRoles:
 
 def check_positions(positions: NDArray, frame: Frame) -> None:
     """Raise UserError for a position, shape (N, 3), that is no number, or too large for one."""
-    if not np.all(np.abs(positions) < LARGEST):
+    if not np.isfinite(positions).all():
         raise UserError(f"the dump has positions that are not finite at step {frame.step}")
+    if not np.all(np.abs(positions) < LARGEST):
+        raise UserError(
+            f"the dump has a coordinate of {np.abs(positions).max():g} at step {frame.step}: "
+            f"what is drawn must be below {LARGEST:g}"
+        )
 
 
 def _corner_types(frame: Frame, mesh: ClothMesh | None) -> NDArray[np.int64]:
@@ -204,10 +209,13 @@ def _spacing(
         return roles.volume[kind] ** (1 / 2 if is_flat else 1 / 3)
     positions = max((frame.select(kind).positions for frame in frames), key=len)
     positions = positions[np.isfinite(positions).all(axis=1)]
+    of_box = 0.01 * float(np.ptp(frames[0].box, axis=0).max()) or 1.0
     if len(positions) < 2:
-        return 0.01 * float(np.ptp(frames[0].box, axis=0).max())
+        return of_box
     distance, _ = cKDTree(positions).query(positions, k=2)
-    return float(np.median(distance[:, 1])) or 0.01 * float(np.ptp(positions, axis=0).max())
+    # 0 where particles coincide
+    between = float(np.median(distance[:, 1]))
+    return between or 0.01 * float(np.ptp(positions, axis=0).max()) or of_box
 
 
 def _with_images(particles: Particles, frame: Frame, axes: int) -> Particles:

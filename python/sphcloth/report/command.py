@@ -11,6 +11,7 @@ from sphcloth.errors import UserError
 from sphcloth.report.collect import Findings, collect
 from sphcloth.report.page import page
 from sphcloth.report.viewer import Packed, pack
+from sphcloth.results import prepare_file
 
 
 def report(
@@ -20,7 +21,7 @@ def report(
 
     Args:
         folders: to look through, with the folders in them.
-        out: the page.
+        out: the page; an earlier one goes.
         title: its title.
         viewers: how many trajectories it shows at most; each is up to a few megabytes.
         console: where the progress appears.
@@ -31,6 +32,7 @@ def report(
     Raises:
         UserError: a folder that is none, nothing to show, or a file that cannot be written.
     """
+    prepare_file(out, "--out", "HTML")
     with console.status("collecting"):
         found = collect(folders)
         shown = _packed(found, viewers)
@@ -39,7 +41,6 @@ def report(
             raise UserError(f"nothing to show: {reasons}")
         text = page(found, shown, title)
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(text, encoding="utf-8")
     except OSError as error:
         raise UserError(f"--out {out}: {error.strerror}") from None

@@ -38,6 +38,15 @@ struct ClothVertices {
     change.assign(jacobi ? n : 0, {});
   }
 
+  // of owned vertices, which something other than the solver has moved
+  void load_positions(const double *const *x)
+  {
+    for (int s = 0; s < halo.n_owned(); s++) {
+      const double *at = x[halo.atom_of(s)];
+      p[s] = {at[0], at[1], at[2], p[s].w};
+    }
+  }
+
   void update_positions()
   {
     for (int s = 0; s < halo.n_slots(); s++) {

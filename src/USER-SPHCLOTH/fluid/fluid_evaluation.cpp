@@ -151,7 +151,9 @@ void FluidEvaluation::find_densities_and_pressures()
 void FluidEvaluation::find_forces()
 {
   if (scaled.wanted()) scaled.find(*core, particles(), stability, boundaries);
-  if (stability.wanted()) find_frequencies();
+  // when free flight ends is told by rates of the density
+  const bool by_rates = stability.knows_flight();
+  if (stability.wanted() && !by_rates) find_frequencies();
   if (const Impulses *impulses = hooks ? hooks->begin_impulses() : nullptr)
     core->impulses(particles(), *impulses);
   else
@@ -159,10 +161,11 @@ void FluidEvaluation::find_forces()
   if (surface.on()) surface.push(*core, particles(), boundaries);
   if (hooks) hooks->note_pair_forces();
   for (FluidBoundary *boundary : boundaries) push(*boundary);
-  if (!lattices.adapts_density() && !surface.on()) return;    // else, so far, rates of the sums
-  core->for_active_fluid([this](int i, int t) {
-    atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.factor(i);
-  });
+  if (lattices.adapts_density() || surface.on())    // so far, rates of the sums
+    core->for_active_fluid([this](int i, int t) {
+      atom->drho[i] *= lattices.slope(i, t, atom->rho[i]) * surface.factor(i);
+    });
+  if (stability.wanted() && by_rates) find_frequencies();
 }
 
 // Where the pressures of inactive particles follow, these act on a boundary in every step.
@@ -375,6 +378,7 @@ void FluidEvaluation::find_frequencies()
 {
   const Particles p = particles();
   const double *waits = hooks ? hooks->frequency_waits() : nullptr;
+  if (stability.find_shares(*core)) ghosts.send_to_ghosts(GhostData::SHARE);
   stability.find_fluid(*core, p, boundaries, waits);
   if (stability.need_vertices(*core, p, boundaries, waits)) {
     stability.find_vertices(*core, p, boundaries);
@@ -409,86 +413,6 @@ void FluidEvaluation::find_pressures(const Particles &p)
   if (!active || !(pressures_follow || new_lists)) return core->for_active_fluid(find);
   for (int i = 0; i < p.n_owned; i++)
     if (is_fluid(p.type[i])) find(i, p.type[i]);
-}
-
-/* ----------------------------------------------------------------------
-   what ghosts get
-------------------------------------------------------------------------- */
-
-int FluidEvaluation::ghost_size(GhostData what)
-{
-  switch (what) {
-    case GhostData::MASS_OR_VOLUME:
-    case GhostData::VISCOSITY:
-    case GhostData::SINCE:
-    case GhostData::CHANGE: return 1;
-    case GhostData::DENSITY: return 2;
-    case GhostData::GRADIENT: return 3;
-    case GhostData::TURN: return 4;
-    case GhostData::STIFFNESS: return FluidStability::GHOST_SIZE;
-    default: return ScaledMass::ghost_size(what);
-  }
-}
-
-double *FluidEvaluation::pack(GhostData what, int i, double *buf) const
-{
-  switch (what) {
-    case GhostData::MASS_OR_VOLUME: *buf = mass_or_volume[i]; return buf + 1;
-    case GhostData::VISCOSITY: *buf = viscosity_shares[i]; return buf + 1;
-    case GhostData::DENSITY:
-      buf[0] = atom->rho[i];
-      buf[1] = p_over_rho2[i];
-      return buf + 2;
-    case GhostData::SINCE:
-    case GhostData::CHANGE:
-    case GhostData::GRADIENT: return integrated.pack(what, i, buf);
-    case GhostData::TURN: return surface.pack(i, buf);
-    case GhostData::STIFFNESS: return stability.pack(i, buf);
-    default: return buf + scaled.pack(what, i, buf);
-  }
-}
-
-int FluidEvaluation::pack(GhostData what, int n, const int *list, double *buf) const
-{
-  double *end = buf;
-  for (int k = 0; k < n; k++) end = pack(what, list[k], end);
-  return static_cast<int>(end - buf);
-}
-
-void FluidEvaluation::unpack(GhostData what, int n, int first, const double *buf)
-{
-  for (int i = first; i < first + n; i++) {
-    switch (what) {
-      case GhostData::MASS_OR_VOLUME: mass_or_volume[i] = *buf++; break;
-      case GhostData::VISCOSITY: viscosity_shares[i] = *buf++; break;
-      case GhostData::DENSITY:
-        atom->rho[i] = *buf++;
-        p_over_rho2[i] = *buf++;
-        break;
-      case GhostData::SINCE:
-      case GhostData::GRADIENT: buf = integrated.unpack(what, i, buf); break;
-      case GhostData::TURN: buf = surface.unpack(i, buf); break;
-      case GhostData::STIFFNESS: buf = stability.unpack(i, buf); break;
-      default: buf += scaled.unpack(what, i, buf);
-    }
-  }
-}
-
-int FluidEvaluation::pack_reverse(GhostData what, int n, int first, double *buf) const
-{
-  double *end = buf;
-  for (int i = first; i < first + n; i++) end = pack(what, i, end);
-  return static_cast<int>(end - buf);
-}
-
-void FluidEvaluation::add(GhostData what, int n, const int *list, const double *buf)
-{
-  for (int k = 0; k < n; k++) {
-    if (what == GhostData::CHANGE)
-      integrated.add(list[k], buf[k]);
-    else
-      scaled.add(list[k], buf + 3 * k);
-  }
 }
 
 double FluidEvaluation::bytes() const

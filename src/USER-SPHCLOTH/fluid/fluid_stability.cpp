@@ -4,6 +4,7 @@
 #include "fluid/fluid_stability.h"
 
 #include "atom.h"
+#include "core/timestep/step_limits.h"
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "fluid/fluid_boundary.h"
@@ -12,12 +13,19 @@
 #include "fluid/sph_materials.h"
 #include "fluid/vertex_mobility.h"
 #include "lammps_util/atom_tools.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
+
+void FluidStability::want(const VertexMobility *of_vertices)
+{
+  mobility = of_vertices;
+  lattices.resize(atom->ntypes + 1);
+}
 
 // Vertices are known by their type, also those of other ranks.
 
@@ -33,6 +41,7 @@ void FluidStability::begin_lists()
   has_vertices = std::any_of(is_vertex.begin(), is_vertex.end(), [](int is) { return is != 0; });
   stiffness.resize(atom->nmax);
   found.resize(atom->nmax);
+  if (with_shares) shares.resize(atom->nmax);
   if (!has_vertices) return;
   sounds.resize(atom->nmax);
   rows.resize(atom->nmax);
@@ -41,7 +50,6 @@ void FluidStability::begin_lists()
 
 const LatticeModes &FluidStability::modes(int type, double mass)
 {
-  lattices.resize(atom->ntypes + 1);
   Lattice &lattice = lattices[type];
   if (mass != lattice.mass) {
     const int dim = domain->dimension;
@@ -76,18 +84,36 @@ double FluidStability::find_sound(int i, double rho) const
   return materials.calibrates() ? sound * of_fluids.slope_of(type, rho) : sound;
 }
 
+double FluidStability::find_share(int i) const
+{
+  const int type = atom->type[i];
+  const double gap = materials.equation_of_state(type).rho0 - atom->rho[i];
+  if (materials.options.tension || gap <= materials.density_rounding(type)) return 1.0;
+  const double ahead = STEPS_AHEAD * update->dt / time_to_cross(gap, atom->drho[i], 0.0);
+  return std::min(1.0, ahead * ahead);
+}
+
+bool FluidStability::find_shares(const Fluid &core)
+{
+  if (!with_shares) return false;
+  if (new_lists) begin_lists();
+  core.for_active_fluid([this](int i, int) { shares[i] = find_share(i); });
+  return true;
+}
+
 void FluidStability::find_fluid(Fluid &core, const Particles &p,
                                 const std::vector<FluidBoundary *> &boundaries, const double *waits)
 {
   if (new_lists) begin_lists();
   core.select_fluid([waits](int i) { return !waits || !(waits[i] > 0.0); }, due);
-  core.stiffness(p, due, stiffness.data());
+  core.stiffness(p, due, with_shares ? shares.data() : nullptr, stiffness.data());
   core.for_fluid(due, [&](int i, int t) {
     Stiffness &s = stiffness[i];
     for (FluidBoundary *boundary : boundaries) boundary->add_stiffness(i, s);
     const double mass = atom_mass(atom, i), sound = find_sound_under_pressure(i);
     const LatticeModes &of_lattice = modes(t, mass);
-    found[i].fluid_sq = sound * sound * s.largest(mass, of_lattice.sound);
+    const double share = with_shares ? s.pressed_share() : 1.0;
+    found[i].fluid_sq = sound * sound * s.largest(mass, of_lattice.sound, share);
     found[i].friction = of_lattice.friction * s.friction;
   });
 }
@@ -164,5 +190,5 @@ const double *FluidStability::unpack(int i, const double *from)
 
 double FluidStability::bytes() const
 {
-  return bytes_of(sounds, stiffness, vertices, rows, found, due.slots);
+  return bytes_of(sounds, shares, stiffness, vertices, rows, found, due.slots);
 }

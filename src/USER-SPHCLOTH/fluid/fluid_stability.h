@@ -32,6 +32,8 @@ struct Frequencies {
 class FluidStability : protected Pointers {
  public:
   static constexpr int GHOST_SIZE = 7;    // numbers of a vertex
+  // Fluid in free flight that will be under pressure after as many steps counts as if it were.
+  static constexpr double STEPS_AHEAD = 8.0;
 
   FluidStability(class LAMMPS *lmp_, const SPHMaterials &materials_,
                  const FluidLattices &of_fluids_, const FreeSurface &surface_) :
@@ -44,8 +46,12 @@ class FluidStability : protected Pointers {
   {
     mobility = nullptr;
     now = true;
+    with_shares = false;
   }
-  void want(const VertexMobility *of_vertices) { mobility = of_vertices; }
+  void want(const VertexMobility *of_vertices);
+  // that free flight of neighbors counts; where all particles are active
+  void want_shares() { with_shares = true; }
+  bool knows_flight() const { return with_shares; }
   // in the evaluations that come next
   void want_now(bool whether) { now = whether; }
   bool wanted() const { return mobility && now; }
@@ -68,6 +74,9 @@ class FluidStability : protected Pointers {
   }
 
   void lists_have_changed() { new_lists = true; }
+  // Whether fluid is under pressure, or how far it soon is, if that counts: then ghosts have to get
+  // it.
+  bool find_shares(const sphcloth::Fluid &);
   // Of the active fluid but for those that wait, by atom a number above 0; null: none does.  Then,
   // collective: is a vertex near one of them, on any rank?  If so, of vertices.
   void find_fluid(sphcloth::Fluid &, const sphcloth::Particles &,
@@ -93,8 +102,10 @@ class FluidStability : protected Pointers {
   double find_sound(int i) const;
   double find_sound(int i, double rho) const;
   double find_sound_under_pressure(int i) const;    // s_k of fluid
-  double *pack(int i, double *end) const;
+  double *pack(int i, double *end) const;    // of a vertex
   const double *unpack(int i, const double *from);
+  double share(int i) const { return shares[i]; }
+  void set_share(int i, double of_ghost) { shares[i] = of_ghost; }
 
   double bytes() const;
 
@@ -103,10 +114,12 @@ class FluidStability : protected Pointers {
   const FluidLattices &of_fluids;
   const FreeSurface &surface;
   const VertexMobility *mobility = nullptr;
-  bool now = true, new_lists = true, has_vertices = false, with_vertices = false;
+  bool now = true, with_shares = false;
+  bool new_lists = true, has_vertices = false, with_vertices = false;
   sphcloth::Selection due;    // those that do not wait
   std::vector<int> is_vertex;    // [ntypes + 1]
   std::vector<double> sounds;    // s_k, of all atoms, where vertices are particles
+  std::vector<double> shares;    // of all atoms, of fluid
   std::vector<sphcloth::Stiffness> stiffness;
   std::vector<sphcloth::VertexStiffness> vertices;    // of all atoms
   std::vector<sphcloth::VertexRow> rows;
@@ -118,6 +131,7 @@ class FluidStability : protected Pointers {
   std::vector<Lattice> lattices;
 
   void begin_lists();
+  double find_share(int i) const;
 };
 
 }    // namespace LAMMPS_NS

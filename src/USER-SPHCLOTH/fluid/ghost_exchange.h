@@ -7,8 +7,8 @@
 namespace LAMMPS_NS {
 
 // One number, density and pressure; for a density that is integrated three, one and one; what a
-// vertex has; a share of viscosity; four of a density that is completed at free surfaces; for mass
-// scaling one, four and three
+// vertex has; a share for the limit of stability; a share of viscosity; four of a density that
+// is completed at free surfaces; for mass scaling one, four and three
 
 enum class GhostData {
   MASS_OR_VOLUME,
@@ -17,6 +17,7 @@ enum class GhostData {
   SINCE,
   CHANGE,
   STIFFNESS,
+  SHARE,
   VISCOSITY,
   TURN,
   STRENGTH,

@@ -39,9 +39,10 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   }
   fluid->want_density_rate();
   if (lambda.relative > 0.0) fluid->want_approach();
-  if (options.lambda.stability > 0.0)
+  if (options.lambda.stability > 0.0) {
     fluid->want_frequencies(this);
-  else if (!cloths.empty())
+    if (scheme == SteppingScheme::GLOBAL) fluid->want_shares_under_pressure();
+  } else if (!cloths.empty())
     fluid->want_wetting();
 }
 

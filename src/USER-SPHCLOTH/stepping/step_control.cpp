@@ -174,18 +174,27 @@ Compression StepControl::compression_of_ranks() const
    LAMMPS's time step
 ------------------------------------------------------------------------- */
 
-// The time reached so far is booked first; every style that keeps a copy of dt is told.
-
 void StepControl::set_timestep(double dt)
+{
+  tell_timestep(dt, nullptr);
+  output->reset_dt();
+  if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
+}
+
+// The time reached so far is booked first; every style that keeps a copy of dt is told, of fixes
+// those before `end`.
+
+void StepControl::tell_timestep(double dt, const Fix *end)
 {
   update->update_time();
   update->dt = dt;
   update->dt_default = 0;
   update->integrate->reset_dt();
   if (force->pair) force->pair->reset_dt();
-  for (Fix *other : modify->get_fix_list()) other->reset_dt();
-  output->reset_dt();
-  if (output->any_time_dumps && update->setupflag == 0) reschedule_dumps();
+  for (Fix *other : modify->get_fix_list()) {
+    if (other == end) break;
+    other->reset_dt();
+  }
 }
 
 // LAMMPS has found anew at which step each dump by time is due, but if that is earlier now, dumps

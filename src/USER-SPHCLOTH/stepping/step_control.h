@@ -16,6 +16,7 @@
 
 namespace LAMMPS_NS {
 
+class Fix;
 class FluidState;
 
 class StepControl : protected Pointers {
@@ -36,6 +37,9 @@ class StepControl : protected Pointers {
   // collective: the next step from the tightest limit of this rank, and the ID of the particle or
   // vertex that has it
   void choose(const sphcloth::StepLimit &mine, tagint particle);
+  // From init() of this fix, the step that comes next in a run that goes on: what is initialized
+  // already is told, what follows will read it.
+  void resume(double dt, const Fix *initialized_now) { tell_timestep(dt, initialized_now); }
   // the next step, as a scheme has chosen it
   void take(double dt, sphcloth::Limit by, bool ends_at_output_time);
   // is the step controlled by compression?  Then, collective: the step that the controller allows
@@ -103,6 +107,7 @@ class StepControl : protected Pointers {
 
   sphcloth::Compression compression_of_ranks() const;
   void set_timestep(double dt);
+  void tell_timestep(double dt, const Fix *end);
   void reschedule_dumps();
 };
 

@@ -265,11 +265,13 @@ class Fluid {
   // are most particles, which are then read in the order in which they lie
   const std::vector<int> *touched() const { return few_touched ? &touched_particles : nullptr; }
 
-  // For the limit of stability, of active fluid particles, also without pressure.  Vertices
+  // For the limit of stability, of active fluid particles, also without pressure.  Of all, or
+  // null: 1 if it is under pressure, 0 in free flight, or a share.  Vertices
   // are all boundary particles of some types, is_vertex [n_types + 1]: sums over fluid with these
   // weights, of all; then the rows, of vertices whose stiffness is complete, ghosts too; of
   // scaled ones friction alone
-  virtual void stiffness(const Particles &, const Selection &of, Stiffness *) = 0;
+  virtual void stiffness(const Particles &, const Selection &of, const double *share,
+                         Stiffness *) = 0;
   virtual void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                                 VertexStiffness *) = 0;
   virtual void vertex_rows(const Particles &, const int *is_vertex, const VertexStiffness *,

@@ -81,9 +81,10 @@ template <class K, class P> class FluidLoops : public Fluid {
   void forces(const Particles &, Target) override;
   void impulses(const Particles &, const Impulses &) override;
   void virials(const Particles &, Receiver, void *context) override;
-  void stiffness(const Particles &p, const Selection &of, Stiffness *found) override
+  void stiffness(const Particles &p, const Selection &of, const double *share,
+                 Stiffness *found) override
   {
-    all_stiffness(p, of, found);
+    share ? all_stiffness<true>(p, of, share, found) : all_stiffness<false>(p, of, share, found);
   }
   void vertex_stiffness(const Particles &, const int *is_vertex, const double *weight,
                         VertexStiffness *) override;
@@ -187,9 +188,11 @@ template <class K, class P> class FluidLoops : public Fluid {
   void all_viscosity_shares(const Particles &, double *share);
 
   // stiffness_loops.h
-  void all_stiffness(const Particles &, const Selection &, Stiffness *);
-  template <bool BOUNDARY>
-  void add_stiffness(const Neighborhood &, const PairTerms &, Columns &, Stiffness &) const;
+  template <bool SHARES>
+  void all_stiffness(const Particles &, const Selection &, const double *share, Stiffness *);
+  template <bool BOUNDARY, bool SHARES>
+  void add_stiffness(const Neighborhood &, const PairTerms &, const double *share, Columns &,
+                     Stiffness &) const;
 
   // rate_loops.h
   void all_density_gradients(const Particles &, double *gradient);

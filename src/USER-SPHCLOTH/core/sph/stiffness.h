@@ -13,6 +13,11 @@
 // bound where it is smaller, found in order, disorder, films and spray (two particles alone have
 // 4 F, with F = G).
 //
+// Fluid in free flight moves and presses on nothing: its rows are 0, and what exceeds the diagonal
+// counts as far as neighbors are under pressure.  With their share p, weighted with |g_kj|^2/m_j,
+// the bound is F + G + sqrt(p) (B - F - G), B that of before, found in order and disorder where one
+// third of the particles, two thirds or one half of space is in flight.
+//
 // The spring of a wall acts on one particle, and everything else moves that one alone with F + G at
 // most: with L the bound of before and S that of the spring, a matrix of the largest eigenvalue L
 // and a diagonal entry d, to which S is added, has none above
@@ -36,13 +41,16 @@ namespace sphcloth {
 
 struct Stiffness {
   double fluid = 0.0;    // sum over fluid neighbors of |d rho/d x_j|^2/m_j
+  double pressed = 0.0;    // the same, times the shares of these neighbors
   double gradient[3] = {};    // d rho/d x of itself
   // the same of walls' springs alone, along each axis, of which the largest counts
   double spring[3] = {};
   double friction = 0.0;    // rate at which its neighbors would stop it (1/time)
 
+  // mean share of the neighbors that is under pressure
+  double pressed_share() const { return fluid > 0.0 ? pressed / fluid : 1.0; }
   // square of the largest frequency over s_k^2, with the factor of the lattice
-  double largest(double mass, double factor) const
+  double largest(double mass, double factor, double share = 1.0) const
   {
     double squares = 0.0;
     for (const double g : gradient) squares += g * g;
@@ -52,7 +60,7 @@ struct Stiffness {
         ? factor * single
         : others + alone + 2.0 * std::sqrt(others * alone);
     const double of_waves = factor * fluid + alone + 1.5 * std::sqrt(fluid * alone);
-    const double together = std::min(of_roots, of_waves);
+    const double together = single + std::sqrt(share) * (std::min(of_roots, of_waves) - single);
     const double springs = std::max({spring[0], spring[1], spring[2]});
     const double half = 0.5 * (together - springs);
     return 0.5 * (together + springs) +

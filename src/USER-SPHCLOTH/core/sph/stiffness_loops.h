@@ -12,17 +12,22 @@ namespace sphcloth {
 // The neighbors of one type
 
 template <class K, class P>
-template <bool BOUNDARY>
+template <bool BOUNDARY, bool SHARES>
 SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, const PairTerms &whole,
-                                                     Columns &c, Stiffness &s) const
+                                                     const double *share, Columns &c,
+                                                     Stiffness &s) const
 {
   const Terms &t = of.terms;
   const double *mass = nullptr;
-  LaneSum<LANES> x, y, z, squares, weights;
+  alignas(64) double shares[LANES];
+  LaneSum<LANES> x, y, z, squares, pressed, weights;
   records.for_neighbors(
       of, c,
       [&](int from) SPHCLOTH_LAMBDA {
-        records.load_positions(c, of.near.of + from);
+        const int *near = of.near.of + from;
+        records.load_positions(c, near);
+        if (SHARES)
+          for (int m = 0; m < LANES; m++) shares[m] = share[near[m]];
         mass = of.masses.group(from);
       },
       [&](int k, Separation r) SPHCLOTH_LAMBDA {
@@ -33,7 +38,9 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, con
         x.of[k] += each * r.x;
         y.of[k] += each * r.y;
         z.of[k] += each * r.z;
-        if (!BOUNDARY) squares.of[k] += each * (slope * r_sq);
+        const double square = each * (slope * r_sq);
+        if (!BOUNDARY) squares.of[k] += square;
+        if (SHARES) pressed.of[k] += square * shares[k];
         weights.of[k] -= each;
       });
   const double response = BOUNDARY ? whole.response : 1.0;
@@ -41,12 +48,14 @@ SPHCLOTH_INLINE void FluidLoops<K, P>::add_stiffness(const Neighborhood &of, con
   s.gradient[1] += response * f_unit * y.total();
   s.gradient[2] += response * f_unit * z.total();
   s.fluid += f_unit * f_unit * squares.total();
+  s.pressed += f_unit * f_unit * pressed.total();
   s.friction += whole.friction_rate() * f_unit / records.unit * weights.total();
 }
 
 template <class K, class P>
+template <bool SHARES>
 SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, const Selection &of,
-                                                           Stiffness *found)
+                                                           const double *share, Stiffness *found)
 {
   Columns c;
   for (int t = 1; t <= model.n_types; t++) {
@@ -60,9 +69,9 @@ SPHCLOTH_MULTIVERSION void FluidLoops<K, P>::all_stiffness(const Particles &p, c
         const PairTerms &whole = model.pair(t, other);
         const Neighborhood of_type{i, near, pair(t, other), masses(p, near, other)};
         if (is_fluid(other))
-          add_stiffness<false>(of_type, whole, c, s);
+          add_stiffness<false, SHARES>(of_type, whole, share, c, s);
         else
-          add_stiffness<true>(of_type, whole, c, s);
+          add_stiffness<true, false>(of_type, whole, share, c, s);
       }
       s.friction /= p.rho[i];
       found[i] = s;

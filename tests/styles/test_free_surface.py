@@ -277,7 +277,7 @@ def test_energy_and_momentum_of_undamped_drops(boundary, walls, scheme):
         )
         + neighbor(0.03)
         + f"timestep {0.05 * 0.06 / C0 if scheme == 'constant' else 1}\n"
-        + f"fix step all sph/integrate global accuracy 3e-4\nrun_style sph/adaptive {scheme}\n"
+        + f"fix step all sph/integrate global accuracy 2.5e-4\nrun_style sph/adaptive {scheme}\n"
         + walls
         + "thermo_style custom step etotal ke\nthermo_modify norm no\nrun 0\n"
     )

@@ -13,6 +13,9 @@
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
+// what will be under pressure before the limit is found again counts
+static_assert(FluidStability::STEPS_AHEAD >= StabilityWatch::LONGEST_WAIT);
+
 void UniformSteps::init(FluidState *style, Change change)
 {
   Stepper::init(style, change);

@@ -4,7 +4,7 @@
 #include "fluid/fluid_stability.h"
 
 #include "atom.h"
-#include "core/timestep/step_limits.h"
+#include "core/timestep/free_flight.h"
 #include "core/util/bytes.h"
 #include "domain.h"
 #include "fluid/fluid_boundary.h"
@@ -84,12 +84,14 @@ double FluidStability::find_sound(int i, double rho) const
   return materials.calibrates() ? sound * of_fluids.slope_of(type, rho) : sound;
 }
 
+// Within rounding of rest density fluid counts as under pressure.
+
 double FluidStability::find_share(int i) const
 {
   const int type = atom->type[i];
-  const double gap = materials.equation_of_state(type).rho0 - atom->rho[i];
-  if (materials.options.tension || gap <= materials.density_rounding(type)) return 1.0;
-  const double ahead = STEPS_AHEAD * update->dt / time_to_cross(gap, atom->drho[i], 0.0);
+  const double gap = materials.gap_to_pressure(type, atom->rho[i]);
+  if (gap <= materials.density_rounding(type)) return 1.0;
+  const double ahead = STEPS_AHEAD * update->dt / time_to_cross(gap, atom->drho[i]);
   return std::min(1.0, ahead * ahead);
 }
 

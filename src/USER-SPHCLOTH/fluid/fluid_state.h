@@ -63,14 +63,8 @@ class FluidState : public SPHMaterials {
   double pressure_of(int i) const;
   // pressure over density squared, of all atoms
   const double *p_over_rho2_of_all() const { return p_over_rho2.data(); }
-  // Is an owned fluid particle without pressure, but for what rounding makes, which must not decide
-  // which step it takes?
-  bool is_in_flight(int i) const
-  {
-    const int type = atom->type[i];
-    const double rest = equation_of_state(type).rho0 + density_rounding(type);
-    return !options.tension && atom->rho[i] <= rest;
-  }
+  // is an owned fluid particle without pressure?
+  bool is_in_flight(int i) const { return gap_to_pressure(atom->type[i], atom->rho[i]) > 0.0; }
   // its maximum among the neighbors inside the support, at least 0
   double p_over_rho2_beside(int i);
 

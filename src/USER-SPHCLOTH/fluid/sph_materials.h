@@ -11,6 +11,7 @@
 #include "core/sph/plane_wall.h"
 #include "core/sph/sound_target.h"
 #include "core/sph/wall_impact.h"
+#include "core/timestep/free_flight.h"
 
 #include <algorithm>
 #include <string>
@@ -115,6 +116,13 @@ class SPHMaterials : protected Pointers {
   double density_rounding(int i) const
   {
     return (options.precision == sphcloth::Precision::DOUBLE ? 1e-9 : 1e-6) * types[i].eos.rho0;
+  }
+  // Of a fluid of this density, 0 where it is under pressure or may be under tension: how much
+  // denser it becomes in free flight before it is.
+  double gap_to_pressure(int i, double rho) const
+  {
+    return options.tension ? 0.0
+                           : sphcloth::gap_to_pressure(rho, types[i].eos.rho0, density_rounding(i));
   }
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
   void set_stiffness(int i, double k, double unchanged_for)

@@ -4,6 +4,7 @@
 #include "stepping/particle_limits.h"
 
 #include "core/sph/mass_scaling.h"
+#include "core/timestep/motion_states.h"
 #include "domain.h"
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_state.h"
@@ -28,6 +29,8 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   asks_neighbors = scheme != SteppingScheme::GLOBAL;
   interpolates_density = scheme == SteppingScheme::INDIVIDUAL;
   types.assign(atom->ntypes + 1, FluidType());
+  for (auto *of_types : {&motion.support, &motion.rest, &motion.rounding})
+    of_types->assign(atom->ntypes + 1, 0.0);
   take_materials();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))
@@ -48,14 +51,20 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
 
 void ParticleLimits::take_materials()
 {
+  const double never = -std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++) {
     FluidType &its = types[t];
-    its.support = fluid->support(t);
+    motion.support[t] = its.support = fluid->support(t);
+    motion.rest[t] = never;
+    motion.rounding[t] = 0.0;
     if (!fluid->is_fluid(t)) continue;
     its.eos = fluid->equation_of_state(t);
     its.sound = its.eos.sound_speed();
     its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
     its.viscosity = fluid->viscosity(t);
+    if (fluid->options.tension) continue;
+    motion.rest[t] = its.eos.rho0;
+    motion.rounding[t] = fluid->density_rounding(t);
   }
 }
 
@@ -145,78 +154,57 @@ double ParticleLimits::acceleration(int i, double by_force) const
 void ParticleLimits::find(const int *particles, int n, const Rates &rates, StepLimits &limits) const
 {
   StepStates states;
-  if (lambda.motion_alone()) {
-    for (int k = 0; k < n; k++) {
-      StepState s = motion_state(particles[k], rates);
-      ease_density(particles[k], s);
-      states.set_motion(k, s);
-    }
-    return motion_limits(lambda, states, n, limits);
-  }
-  for (int k = 0; k < n; k++) states.set(k, particle_state(particles[k], rates));
+  find_motions(particles, n, rates, states);
+  if (lambda.motion_alone()) return motion_limits(lambda, states, n, limits);
+  for (int k = 0; k < n; k++) add_pressure(particles[k], k, rates, states);
   particle_limits(lambda, states, n, limits);
 }
 
-// what particles and vertices have in common; returns the mass
+// of velocities, forces and rates of the density
 
-inline double ParticleLimits::set_motion(int i, const double *f, StepState &s) const
+void ParticleLimits::find_motions(const int *particles, int n, const Rates &rates,
+                                  StepStates &states) const
 {
-  const double mass = atom_mass(atom, i);
-  const double *v = atom->v[i];
-  const double to_accel = force->ftm2v / mass;
-  s.support = types[atom->type[i]].support;
-  s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  s.accel_sq = to_accel * to_accel * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
-  return mass;
+  const double *drho = rates.density ? rates.density : atom->drho;
+  const bool of_types = !atom->rmass;
+  motion_states({atom->type, atom->v[0], atom->f[0], atom->rho, drho,
+                 of_types ? atom->mass : atom->rmass, of_types, motion.support.data(),
+                 motion.rest.data(), motion.rounding.data(), force->ftm2v, lambda.density,
+                 !interpolates_density},
+                particles, n, states);
+  if (rates.accel_sq)
+    for (int k = 0; k < n; k++) states.accel_sq[k] = rates.accel_sq[particles[k]];
+  else if (rates.external)
+    for (int k = 0; k < n; k++) {
+      const int i = particles[k];
+      double f[3];
+      for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + rates.external[d][i];
+      states.accel_sq[k] = acceleration_sq(i, f);
+    }
 }
 
-// The rate at which a density that changes without effect over `free` first, has the limit of one
-// that changes by `tolerated` beyond.
-
-static double beyond_rest(double rate, double free, double tolerated)
+double ParticleLimits::acceleration_sq(int i, const double *f) const
 {
-  return rate > 0.0 ? rate * tolerated / (tolerated + free) : 0.0;
+  const double to_accel = force->ftm2v / atom_mass(atom, i);
+  return to_accel * to_accel * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
 }
 
-inline StepState ParticleLimits::motion_state(int i, const Rates &rates) const
+inline void ParticleLimits::add_pressure(int i, int k, const Rates &rates, StepStates &states) const
 {
   StepState s{};
-  double f[3];
-  std::copy_n(atom->f[i], 3, f);
-  if (rates.external)
-    for (int d = 0; d < 3; d++) f[d] += rates.external[d][i];
-  set_motion(i, f, s);
-  if (rates.accel_sq) s.accel_sq = rates.accel_sq[i];
-  s.drho = rates.density ? rates.density[i] : atom->drho[i];
-  s.rho = atom->rho[i];
-  return s;
-}
-
-// what is thinner than at rest may change until it is pressed, but individual steps interpolate
-
-inline void ParticleLimits::ease_density(int i, StepState &s) const
-{
-  if (!interpolates_density && fluid->is_in_flight(i))
-    s.drho = beyond_rest(s.drho, types[atom->type[i]].eos.rho0 - s.rho, lambda.density * s.rho);
-}
-
-inline StepState ParticleLimits::particle_state(int i, const Rates &rates) const
-{
-  StepState s = motion_state(i, rates);
   const FluidType &type = types[atom->type[i]];
   double by_sound = 0.0;    // the step under pressure
   if (lambda.stability > 0.0)
     by_sound = set_frequencies(i, s);
   else if (lambda.acoustic > 0.0 || lambda.viscous > 0.0) {
     s.nu = type.viscosity;
-    s.sound = type.at_boundary * type.sound * type.eos.stiffening(s.rho);
-    by_sound = lambda.acoustic * 0.5 * s.support / s.sound;
+    s.sound = type.at_boundary * type.sound * type.eos.stiffening(atom->rho[i]);
+    by_sound = lambda.acoustic * 0.5 * type.support / s.sound;
   }
   if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
   if (by_sound > 0.0 && s.of_vertices_sq == 0.0 && fluid->is_in_flight(i))
-    s.until_pressed = until_pressed(i, s.drho, by_sound);
-  ease_density(i, s);
-  return s;
+    s.until_pressed = until_pressed(i, rates.density ? rates.density[i] : atom->drho[i], by_sound);
+  states.set_pressure(k, s);
 }
 
 // returns the step that is stable under pressure
@@ -250,12 +238,10 @@ StepLimit ParticleLimits::stable_limit(int i) const
 
 double ParticleLimits::until_pressed(int i, double density_rate, double by_sound) const
 {
-  const FluidType &type = types[atom->type[i]];
-  const double rounding = fluid->density_rounding(atom->type[i]);
-  const double gap = std::max(type.eos.rho0 - atom->rho[i], rounding);
-  const double alone = time_to_cross(gap, density_rate, 0.0);
+  const double gap = fluid->gap_to_pressure(atom->type[i], atom->rho[i]);
+  const double alone = time_to_cross(gap, density_rate);
   if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
-  const double ratio = atom->rho[i] / (0.5 * type.support);
+  const double ratio = atom->rho[i] / (0.5 * types[atom->type[i]].support);
   return time_to_cross(gap, density_rate, fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 
@@ -295,7 +281,11 @@ double ParticleLimits::scaled_acceleration(int i, double unscaled) const
 StepState ParticleLimits::vertex_state(int i) const
 {
   StepState s{};
-  const double mass = set_motion(i, atom->f[i], s);
+  const double mass = atom_mass(atom, i);
+  const double *v = atom->v[i];
+  s.support = types[atom->type[i]].support;
+  s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  s.accel_sq = acceleration_sq(i, atom->f[i]);
   if (options.lambda.stability > 0.0) {
     if (fluid->scaled_mass().on() && lambda.force > 0.0)
       s.accel_sq = std::pow(scaled_acceleration(i, std::sqrt(s.accel_sq)), 2);

@@ -103,6 +103,9 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   const StepOptions &options;
   FluidState *fluid;
   std::vector<FluidType> types;
+  struct {
+    std::vector<double> support, rest, rounding;    // of MotionColumns
+  } motion;
   std::vector<Cloth> cloths;
   bool asks_neighbors = true;
   bool interpolates_density = false;
@@ -111,10 +114,9 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   std::uint64_t fixes_that_hold() const;
   void find(const int *particles, int n, const Rates &, sphcloth::StepLimits &) const;
   sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
-  double set_motion(int i, const double *force, sphcloth::StepState &) const;
-  sphcloth::StepState motion_state(int i, const Rates &) const;
-  void ease_density(int i, sphcloth::StepState &) const;
-  sphcloth::StepState particle_state(int i, const Rates &) const;
+  void find_motions(const int *particles, int n, const Rates &, sphcloth::StepStates &) const;
+  void add_pressure(int i, int k, const Rates &, sphcloth::StepStates &) const;
+  double acceleration_sq(int i, const double *force) const;
   sphcloth::StepState vertex_state(int i) const;
   double scaled_acceleration(int i, double unscaled) const;
   double set_frequencies(int i, sphcloth::StepState &) const;

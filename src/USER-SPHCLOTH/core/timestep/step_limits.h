@@ -76,6 +76,7 @@ inline const char *limit_name(Limit limit)
 struct StepCoefficients {
   double stability = 0.95;    // of the longest stable step, in the place of the next two
   double velocity = 0.15;    // lambda_v of (10)
+  double flight = 3.0;    // how many times as far in free flight
   double force = 0.2;    // lambda_f of (11)
   double acoustic = 0.0;    // of h_s/c; on a lattice stable up to 1.6
   double viscous = 0.0;    // of h_s^2/nu; stable up to 0.3 in 3-D
@@ -156,8 +157,12 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
   const auto with = [](double coefficient, double dt) { return coefficient > 0.0 ? dt : NEVER; };
   const double smoothing = 0.5 * s.support;
   StepLimit limit;
-  limit.tighten(with(lambda.velocity, ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq))),
-                Limit::VELOCITY);
+  // what is in free flight goes farther, but no more than half of the way to where it is pressed
+  const double by_velocity = ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq));
+  limit.tighten(
+      with(lambda.velocity,
+           std::max(by_velocity, std::min(lambda.flight * by_velocity, 0.5 * s.until_pressed))),
+      Limit::VELOCITY);
   limit.tighten(
       with(lambda.force, lambda.force * std::sqrt(ratio(s.support, std::sqrt(s.accel_sq)))),
       Limit::FORCE);
@@ -195,17 +200,9 @@ struct StepStates {
       drho[MAX], approach[MAX], until_pressed[MAX], of_fluid_sq[MAX],
       of_vertices_sq[MAX], friction[MAX];
 
-  SPHCLOTH_INLINE void set_motion(int k, const StepState &s)
+  // what is of pressure
+  SPHCLOTH_INLINE void set_pressure(int k, const StepState &s)
   {
-    support[k] = s.support;
-    speed_sq[k] = s.speed_sq;
-    accel_sq[k] = s.accel_sq;
-    rho[k] = s.rho;
-    drho[k] = s.drho;
-  }
-  SPHCLOTH_INLINE void set(int k, const StepState &s)
-  {
-    set_motion(k, s);
     sound[k] = s.sound;
     nu[k] = s.nu;
     approach[k] = s.approach;
@@ -216,7 +213,8 @@ struct StepStates {
   }
   SPHCLOTH_INLINE StepState motion(int k) const
   {
-    return {support[k], speed_sq[k], accel_sq[k], 0.0, 0.0, rho[k], drho[k]};
+    return {support[k], speed_sq[k], accel_sq[k], 0.0,     0.0,
+            rho[k],     drho[k],     0.0,         until_pressed[k]};
   }
   SPHCLOTH_INLINE StepState operator[](int k) const
   {
@@ -316,16 +314,6 @@ inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, 
     wanted.by = Limit::FLOOR;
   }
   return wanted;
-}
-
-// The time in which something that changes at a rate, and that rate by `growth`, crosses a gap:
-// gap = rate t + growth t^2/2.
-
-inline double time_to_cross(double gap, double rate, double growth)
-{
-  const double ahead = std::max(0.0, gap), root = std::sqrt(rate * rate + 2.0 * growth * ahead);
-  if (rate > 0.0) return 2.0 * ahead / (rate + root);
-  return growth > 0.0 ? (root - rate) / growth : std::numeric_limits<double>::infinity();
 }
 
 /* ----------------------------------------------------------------------

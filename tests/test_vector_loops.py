@@ -37,6 +37,7 @@ UNITS = {
     "core/neighbor/dual_lists.h": (KERNEL,),
     "core/neighbor/cell_lists.h": (SOURCE / "core/sph/fluid.cpp",),
     "contact/known_region.cpp": (SOURCE / "contact/known_region.cpp",),
+    "core/timestep/motion_states.h": (CORE_TESTS / "test_motion_states.cpp",),
     "core/timestep/step_limits.h": (CORE_TESTS / "test_step_limits.cpp",),
     "core/geometry/disc_grid.h": (
         CORE_TESTS / "test_disc_grid.cpp",

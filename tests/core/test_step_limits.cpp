@@ -5,6 +5,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -57,19 +58,23 @@ BOOST_AUTO_TEST_CASE(each_formula_on_its_own)
   BOOST_CHECK(particle_limit(relative, s).by == Limit::RELATIVE);
 }
 
-BOOST_AUTO_TEST_CASE(time_to_cross_a_gap)
+BOOST_AUTO_TEST_CASE(free_flight_goes_farther_until_half_of_the_way_to_pressure)
 {
-  BOOST_CHECK_SMALL(time_to_cross(2.0, 4.0, 0.0) - 0.5, 1e-16);
-  BOOST_CHECK(std::isinf(time_to_cross(2.0, 0.0, 0.0)));
-  BOOST_CHECK(std::isinf(time_to_cross(2.0, -4.0, 0.0)));
-  BOOST_CHECK_SMALL(time_to_cross(8.0, 0.0, 4.0) - 2.0, 1e-16);
-  for (const double rate : {3.0, -3.0}) {
-    const double t = time_to_cross(2.0, rate, 5.0);
-    BOOST_CHECK_SMALL(rate * t + 2.5 * t * t - 2.0, 1e-14);
-  }
-  BOOST_CHECK(time_to_cross(-1.0, 3.0, 5.0) == 0.0);
-  BOOST_CHECK_SMALL(time_to_cross(1e-300, 1e-3, 1e-300) - 1e-297, 1e-305);
-  BOOST_CHECK_SMALL(time_to_cross(0.0, -3.0, 6.0) - 1.0, 1e-16);    // away, and back again
+  const StepCoefficients lambda;
+  StepState s{0.1, 4.0, 0.0, 0.0, 0.0, 1000.0, 0.0};
+  const double near = 0.15 * 0.1 / 2.0;
+  const auto limit_until = [&](double t) {
+    s.until_pressed = t;
+    const StepLimit limit = particle_limit(lambda, s);
+    BOOST_CHECK(limit.by == Limit::VELOCITY);
+    BOOST_CHECK(particle_limit<true>(lambda, s).dt == limit.dt);
+    return limit.dt;
+  };
+  BOOST_TEST(limit_until(0.0) == near, boost::test_tools::tolerance(1e-15));
+  BOOST_TEST(limit_until(1.9 * near) == near, boost::test_tools::tolerance(1e-15));
+  BOOST_TEST(limit_until(4.0 * near) == 2.0 * near, boost::test_tools::tolerance(1e-15));
+  const double never = std::numeric_limits<double>::infinity();
+  BOOST_TEST(limit_until(never) == 3.0 * near, boost::test_tools::tolerance(1e-15));
 }
 
 BOOST_AUTO_TEST_CASE(stability_of_frequencies_and_friction)
@@ -225,7 +230,12 @@ BOOST_AUTO_TEST_CASE(limits_of_many_particles_at_once_are_those_of_each)
     s.of_fluid_sq = 1e4 * (k % 4);
     s.of_vertices_sq = 1e4 * (k % 6);
     s.friction = 50.0 * (k % 9);
-    states.set(k, s);
+    states.support[k] = s.support;
+    states.speed_sq[k] = s.speed_sq;
+    states.accel_sq[k] = s.accel_sq;
+    states.rho[k] = s.rho;
+    states.drho[k] = s.drho;
+    states.set_pressure(k, s);
   }
   std::set<Limit> by;
   for (const StepCoefficients &of : {lambda, stable, off, motion}) {

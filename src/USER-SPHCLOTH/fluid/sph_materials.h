@@ -121,8 +121,9 @@ class SPHMaterials : protected Pointers {
   // denser it becomes in free flight before it is.
   double gap_to_pressure(int i, double rho) const
   {
-    return options.tension ? 0.0
-                           : sphcloth::gap_to_pressure(rho, types[i].eos.rho0, density_rounding(i));
+    const double rest = types[i].eos.rho0, rounding = density_rounding(i);
+    const bool free = !options.tension && sphcloth::flies(rho, rest, rounding);
+    return free ? sphcloth::gap_to_pressure(rho, rest, rounding) : 0.0;
   }
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }
   void set_stiffness(int i, double k, double unchanged_for)

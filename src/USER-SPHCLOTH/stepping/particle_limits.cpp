@@ -167,11 +167,11 @@ void ParticleLimits::find_motions(const int *particles, int n, const Rates &rate
 {
   const double *drho = rates.density ? rates.density : atom->drho;
   const bool of_types = !atom->rmass;
-  motion_states({atom->type, atom->v[0], atom->f[0], atom->rho, drho,
-                 of_types ? atom->mass : atom->rmass, of_types, motion.support.data(),
-                 motion.rest.data(), motion.rounding.data(), force->ftm2v, lambda.density,
-                 !interpolates_density},
-                particles, n, states);
+  find_motion_states({atom->type, atom->v[0], atom->f[0], atom->rho, drho,
+                      of_types ? atom->mass : atom->rmass, of_types, motion.support.data(),
+                      motion.rest.data(), motion.rounding.data(), force->ftm2v, lambda.density,
+                      !interpolates_density},
+                     particles, n, states);
   if (rates.accel_sq)
     for (int k = 0; k < n; k++) states.accel_sq[k] = rates.accel_sq[particles[k]];
   else if (rates.external)

@@ -21,6 +21,7 @@ static void choose_stability(ArgReader &args, std::optional<double> stability,
                              std::optional<double> velocity, std::optional<double> force,
                              StepCoefficients &lambda)
 {
+  if (velocity) lambda.flight = 1.0;    // (10) as it is
   lambda.velocity = velocity.value_or(lambda.velocity);
   lambda.force = force.value_or(lambda.force);
   if (!acoustic && !viscous && !lambda.wetted) {

@@ -12,12 +12,18 @@
 
 namespace sphcloth {
 
-// How much denser fluid in free flight becomes before it is under pressure, at least what rounding
-// makes, which must not decide which step it takes; 0: it is under pressure.
+// Is there no pressure, but for what rounding makes, which must not decide which step is taken?
+
+SPHCLOTH_INLINE bool flies(double rho, double rest, double rounding)
+{
+  return rho <= rest + rounding;
+}
+
+// then how much denser fluid becomes before there is
 
 SPHCLOTH_INLINE double gap_to_pressure(double rho, double rest, double rounding)
 {
-  return rho <= rest + rounding ? std::max(rest - rho, rounding) : 0.0;
+  return std::max(rest - rho, rounding);
 }
 
 // The time in which something that changes at a rate, and that rate by `growth`, crosses a gap:

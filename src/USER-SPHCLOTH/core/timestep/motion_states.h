@@ -8,6 +8,8 @@
 #include "core/timestep/free_flight.h"
 #include "core/timestep/step_limits.h"
 
+#include <cstddef>
+
 namespace sphcloth {
 
 struct MotionColumns {
@@ -23,23 +25,34 @@ struct MotionColumns {
   bool eases;    // is what free flight changes without effect left out of the rate?
 };
 
-SPHCLOTH_MULTIVERSION inline void motion_states(const MotionColumns &of, const int *particles,
-                                                int n, StepStates &states)
+SPHCLOTH_MULTIVERSION inline void
+find_motion_states(const MotionColumns &columns, const int *particles, int n, StepStates &states)
 {
+  const MotionColumns of = columns;    // known not to change
+  const bool eases = of.eases;
+  const auto norm_sq = [](const double *of_all, int i) {
+    const double *its = of_all + 3 * static_cast<std::size_t>(i);
+    return its[0] * its[0] + its[1] * its[1] + its[2] * its[2];
+  };
+  for (int k = 0; k < n; k++) {
+    const int i = particles[k];
+    const double per_mass = of.to_accel / of.mass[of.mass_of_types ? of.type[i] : i];
+    states.speed_sq[k] = norm_sq(of.v, i);
+    states.accel_sq[k] = per_mass * per_mass * norm_sq(of.f, i);
+  }
 #pragma omp simd
   for (int k = 0; k < n; k++) {
     const int i = particles[k], t = of.type[i];
-    const double *v = of.v + 3 * static_cast<std::size_t>(i);
-    const double *f = of.f + 3 * static_cast<std::size_t>(i);
-    const double per_mass = of.to_accel / of.mass[of.mass_of_types ? t : i];
     const double rho = of.rho[i], rate = of.drho[i];
-    const double gap = gap_to_pressure(rho, of.rest[t], of.rounding[t]);
+    const double rest = of.rest[t], rounding = of.rounding[t];
+    const bool free = flies(rho, rest, rounding);
+    const double gap = gap_to_pressure(rho, rest, rounding);
     states.support[k] = of.support[t];
-    states.speed_sq[k] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    states.accel_sq[k] = per_mass * per_mass * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     states.rho[k] = rho;
-    states.drho[k] = of.eases && gap > 0.0 ? rate_beyond(gap, rate, of.tolerated * rho) : rate;
-    states.until_pressed[k] = gap > 0.0 ? time_to_cross(gap, rate) : 0.0;
+    const double beyond = rate_beyond(gap, rate, of.tolerated * rho);
+    const double until = time_to_cross(gap, rate);
+    states.drho[k] = free && eases ? beyond : rate;
+    states.until_pressed[k] = free ? until : 0.0;
   }
 }
 

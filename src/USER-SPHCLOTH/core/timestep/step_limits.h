@@ -213,8 +213,7 @@ struct StepStates {
   }
   SPHCLOTH_INLINE StepState motion(int k) const
   {
-    return {support[k], speed_sq[k], accel_sq[k], 0.0,     0.0,
-            rho[k],     drho[k],     0.0,         until_pressed[k]};
+    return {support[k], speed_sq[k], accel_sq[k], 0.0, 0.0, rho[k], drho[k], 0.0, until_pressed[k]};
   }
   SPHCLOTH_INLINE StepState operator[](int k) const
   {

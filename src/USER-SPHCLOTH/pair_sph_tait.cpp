@@ -11,6 +11,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "lammps_util/default_skin.h"
 #include "lammps_util/lammps_version.h"
 #include "memory.h"
 #include "modify.h"
@@ -102,9 +103,30 @@ void PairSPHTait::init_style()
                "velocities: use 'density summation' or 'density calibrated'",
                STYLE);
   if (fluid.options.precision == sphcloth::Precision::MIXED) check_range();
+  choose_skin();
   fluid.lattices.set_masses();    // 'mass' may have come since
   comm_forward = FluidEvaluation::LARGEST_GHOST_SIZE;
   fluid.begin_run();
+}
+
+// The defaults of LAMMPS are for molecules: 1 mm in SI units, whatever the support.  Beside another
+// pair style its lists may need what they have.
+
+void PairSPHTait::choose_skin() const
+{
+  constexpr double OF_SUPPORT = 0.5;
+  const double usual = default_skin(update->unit_style);
+  if (neighbor->skin != usual) return;
+  double support = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++) support = std::max(support, fluid.support(t));
+  const double skin = OF_SUPPORT * support;
+  if (skin == usual || (skin < usual && force->pair != this)) return;
+  neighbor->skin = skin;
+  if (comm->me == 0)
+    utils::logmesg(lmp,
+                   "{}: neighbor skin {:g}, half of the support, in the place of {:g}, the default "
+                   "of units {}: give it by 'neighbor' if another one is faster\n",
+                   STYLE, skin, usual, update->unit_style);
 }
 
 // Only lengths are in a unit of their own.

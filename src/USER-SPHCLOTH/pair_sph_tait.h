@@ -48,6 +48,7 @@ class PairSPHTait : public Pair, public GhostExchange {
 
   void allocate();
   void check_range();    // of single precision
+  void choose_skin() const;
   bool excluded(int, int) const;
   void tally_virial();
   void tally_energy();

@@ -100,27 +100,29 @@ def resting_block(options, scheme, run):
     )
 
 
+@pytest.mark.parametrize("scheme", ["global", "block"])
 @pytest.mark.parametrize(("options", "longer"), [("", True), ("tension yes", False)])
-def test_what_presses_on_nothing_lets_steps_be_longer(options, longer):
-    """Block steps count all neighbors as if they were under pressure."""
+def test_what_presses_on_nothing_lets_equal_steps_be_longer(options, longer, scheme):
+    """Individual steps count all neighbors as if they were under pressure."""
     steps = {}
-    for scheme in ("global", "block"):
+    for each in (scheme, "individual"):
         with instance() as lmp:
-            lmp.commands_string(resting_block(options, scheme, "run 1"))
-            steps[scheme] = dt_and_limit(lmp)[0]
-    ratio = steps["global"] / steps["block"]
+            lmp.commands_string(resting_block(options, each, "run 1"))
+            steps[each] = dt_and_limit(lmp)[0]
+    ratio = steps[scheme] / steps["individual"]
     if longer:
         assert 1.02 < ratio < 1.5
     else:
         assert ratio == pytest.approx(1, rel=1e-12)
 
 
-def test_neighbors_of_other_ranks_are_known_to_be_in_free_flight(tmp_path):
+@pytest.mark.parametrize("scheme", ["global", "block"])
+def test_neighbors_of_other_ranks_are_known_to_be_in_free_flight(scheme, tmp_path):
     with instance() as lmp:
         lmp.commands_string(
             block_of_water(shaken=True) + f"write_data {tmp_path}/water.data nocoeff"
         )
-    whole = resting_block("", "global", "thermo_style custom step time dt\nthermo 1\nrun 30")
+    whole = resting_block("", scheme, "thermo_style custom step time dt\nthermo 1\nrun 30")
     script = write(
         tmp_path,
         header("f f f", FLUID) + "read_data water.data\n" + whole[whole.index("pair_style") :],

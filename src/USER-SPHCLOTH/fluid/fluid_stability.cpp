@@ -41,7 +41,6 @@ void FluidStability::begin_lists()
   has_vertices = std::any_of(is_vertex.begin(), is_vertex.end(), [](int is) { return is != 0; });
   stiffness.resize(atom->nmax);
   found.resize(atom->nmax);
-  if (with_shares) shares.resize(atom->nmax);
   if (!has_vertices) return;
   sounds.resize(atom->nmax);
   rows.resize(atom->nmax);
@@ -99,6 +98,7 @@ bool FluidStability::find_shares(const Fluid &core)
 {
   if (!with_shares) return false;
   if (new_lists) begin_lists();
+  shares.resize(atom->nmax);
   core.for_active_fluid([this](int i, int) { shares[i] = find_share(i); });
   return true;
 }

@@ -49,8 +49,9 @@ class FluidStability : protected Pointers {
     with_shares = false;
   }
   void want(const VertexMobility *of_vertices);
-  // that free flight of neighbors counts; where all particles are active
-  void want_shares() { with_shares = true; }
+  // whether free flight of neighbors counts, in the evaluations that come next; where all particles
+  // are active
+  void want_shares(bool whether) { with_shares = whether; }
   bool knows_flight() const { return with_shares; }
   // in the evaluations that come next
   void want_now(bool whether) { now = whether; }

@@ -85,7 +85,7 @@ class FluidState : public SPHMaterials {
   // the fastest motions that fluid, and vertices of this mobility, can make; and that less moves
   // together where neighbors are in free flight
   void want_frequencies(const VertexMobility *vertices) { stability.want(vertices); }
-  void want_shares_under_pressure() { stability.want_shares(); }
+  void want_shares_under_pressure(bool whether) { stability.want_shares(whether); }
   void want_frequencies_now(bool whether) { stability.want_now(whether); }
   const Frequencies &frequencies(int i) const { return stability[i]; }
   void set_frequencies(int i, const Frequencies &before) { stability.set(i, before); }

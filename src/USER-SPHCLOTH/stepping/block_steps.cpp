@@ -37,6 +37,7 @@ void BlockSteps::init(FluidState *style, Change change)
   bins.init(style);
   sleeping.begin_run();
   fluid->set_step_hooks(this);
+  count_flight();
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();
   if (parts.control.watch.begin_run(settings, change != Change::NOTHING) && before != 0)
@@ -80,6 +81,14 @@ void BlockSteps::move()
   sleeping.wake_disturbed();
   advance_clock();
   select_active();
+  count_flight();
+}
+
+// Neighbors in free flight allow longer steps where all particles are asked how long it lasts.
+
+void BlockSteps::count_flight()
+{
+  fluid->want_shares_under_pressure(state.clock.uniform && !state.clock.some_sleep);
 }
 
 void BlockSteps::advance_clock()
@@ -135,7 +144,9 @@ void BlockSteps::choose_bins()
 {
   if (!state.clock.chosen) {
     if (sleeping.enabled()) sleeping.find_resting();
+    const bool was_uniform = state.clock.uniform;
     bins.choose();
+    if (was_uniform && !state.clock.uniform) frequencies.forget();
     if (sleeping.enabled()) sleeping.fall_asleep();
     state.clock.chosen = true;
   }

@@ -88,6 +88,7 @@ class BlockSteps : public Stepper, public StepHooks {
   void advance_clock();
   void choose_bins();
   void select_active();
+  void count_flight();
 };
 
 }    // namespace LAMMPS_NS

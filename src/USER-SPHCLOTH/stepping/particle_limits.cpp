@@ -44,7 +44,7 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   if (lambda.relative > 0.0) fluid->want_approach();
   if (options.lambda.stability > 0.0) {
     fluid->want_frequencies(this);
-    if (scheme == SteppingScheme::GLOBAL) fluid->want_shares_under_pressure();
+    if (scheme == SteppingScheme::GLOBAL) fluid->want_shares_under_pressure(true);
   } else if (!cloths.empty())
     fluid->want_wetting();
 }

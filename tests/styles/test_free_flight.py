@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from harness import instance, last_frame, run, write
+from harness import by_id, instance, last_frame, run, write
 from scenes import FLUID, box, filled, final_dump, gravity, header, jitter, lattice, neighbor
 from scenes import sph_tait as usual_sph_tait
 from step_scenes import dt_and_limit
@@ -130,3 +130,31 @@ def test_neighbors_of_other_ranks_are_known_to_be_in_free_flight(scheme, tmp_pat
     rows = [re.findall(r"(?m)^ +\d+ +\S+ +\S+ *$", run(script, ranks=ranks)) for ranks in (1, 2, 4)]
     assert len(rows[0]) == 31
     assert rows[0] == rows[1] == rows[2]
+
+
+def test_equal_and_unequal_steps_in_turn_go_on_to_the_last_bit(tmp_path, monkeypatch):
+    """Where steps become unequal neighbors in free flight begin to count as under pressure."""
+    monkeypatch.chdir(tmp_path)
+    styles = (
+        sph_tait("")
+        + neighbor(0.03)
+        + FALLING.replace("velocity all set 0.3 0.1 -1 units box\n", "")
+        + "fix step all sph/integrate global gain 1.2\nrun_style sph/adaptive block\n"
+    )
+    kept, active = [], []
+    with instance() as whole:
+        whole.commands_string(block_of_water(shaken=True) + styles)
+        for k in range(40):
+            whole.command("run 4 post no")
+            kept.append(np.hstack([by_id(whole, "x"), by_id(whole, "v")]))
+            active.append(whole.extract_fix("step", 0, 1, 1))
+            whole.command(f"write_restart {k}.restart")
+    turns = [k for k in range(37) if (active[k] < 1.0) != (active[k + 1] < 1.0)]
+    assert len(turns) >= 4
+    for k in turns[:6]:
+        with instance() as again:
+            again.commands_string(f"comm_modify vel yes\nread_restart {k}.restart\n{styles}")
+            for ahead in (1, 2):
+                again.command("run 4 post no")
+                state = np.hstack([by_id(again, "x"), by_id(again, "v")])
+                np.testing.assert_array_equal(state, kept[k + ahead], err_msg=f"{k}, {ahead}")

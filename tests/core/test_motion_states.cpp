@@ -37,26 +37,30 @@ BOOST_AUTO_TEST_CASE(states_of_many_particles_are_those_of_each)
   const std::vector<double> rounding = {0.0, ROUNDING, 0.0};
   const int n = static_cast<int>(particles.size());
   int flying = 0;
+  const double *const columns[3] = {v.data(), v.data() + N, v.data() + 2 * N};    // any numbers
   for (const bool of_types : {false, true})
     for (const bool eases : {false, true}) {
+      const double *const *external = eases ? columns : nullptr;
       StepStates states;
       states.rho[n] = -1.0;
       const double *m = of_types ? mass.data() : rmass.data();
-      find_motion_states({type.data(), v.data(), f.data(), rho.data(), drho.data(), m, of_types,
-                          support.data(), rest.data(), rounding.data(), FTM2V, TOLERATED, eases},
+      find_motion_states({type.data(), v.data(), f.data(), rho.data(), drho.data(), external, m,
+                          of_types, support.data(), rest.data(), rounding.data(), FTM2V, TOLERATED,
+                          eases},
                          particles.data(), n, states);
       for (int k = 0; k < n; k++) {
         const int i = particles[k], t = type[i];
-        const auto sq = [i](const std::vector<double> &of) {
-          return of[3 * i] * of[3 * i] + of[3 * i + 1] * of[3 * i + 1] +
-              of[3 * i + 2] * of[3 * i + 2];
-        };
+        const double speed_sq =
+            v[3 * i] * v[3 * i] + v[3 * i + 1] * v[3 * i + 1] + v[3 * i + 2] * v[3 * i + 2];
         const auto is = [](double a, double b) {
           BOOST_TEST(a == b, boost::test_tools::tolerance(1e-14));
         };
         is(states.support[k], support[t]);
-        is(states.speed_sq[k], sq(v));
-        is(states.accel_sq[k], sq(f) * std::pow(FTM2V / (of_types ? mass[t] : rmass[i]), 2));
+        is(states.speed_sq[k], speed_sq);
+        double force_sq = 0.0;
+        for (int d = 0; d < 3; d++)
+          force_sq += std::pow(f[3 * i + d] + (external ? columns[d][i] : 0.0), 2);
+        is(states.accel_sq[k], force_sq * std::pow(FTM2V / (of_types ? mass[t] : rmass[i]), 2));
         is(states.rho[k], rho[i]);
         const bool flies = t == 1 && rho[i] <= REST;
         const double rate = drho[i], gap = REST - rho[i];

@@ -231,7 +231,9 @@ BinChoice::Sums BinChoice::sum_everywhere(double shortest)
   const double of_vertices = UPDATES_PER_VERTEX * find_vertices().n;
   double mine[3] = {of_vertices, of_vertices + static_cast<double>(active.size()),
                     static_cast<double>(state.n_at_rest)};
-  for (const int i : active) mine[0] += shortest / wanted[i];
+  sum_of_rates = 0.0;
+  for (const int i : active) sum_of_rates += 1.0 / wanted[i];
+  mine[0] += shortest * sum_of_rates;
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
   return {all[0], all[1], all[2]};
@@ -349,25 +351,37 @@ int BinChoice::vertex_bin(int i) const
 
 void BinChoice::begin_steps()
 {
+  if (state.clock.uniform) return begin_equal_steps();
   const double now = physical_time(update);
   BlockColumns &columns = state.columns;
   const double *p_over_rho2 = fluid->p_over_rho2_of_all(), *its_bin = columns[Columns::BIN];
-  const double half_of_all = 0.5 * state.clock.smallest_ticks();
-  double *last = columns[Columns::P_OVER_RHO2], *reach = columns[Columns::REACH];
-  double *event = columns[Columns::EVENT];
+  double *last = columns[Columns::P_OVER_RHO2];
   for (const int i : fluid->active_particles()) {
-    if (!state.clock.uniform) {
-      state.begin_own_step(i);
-      last[i] = p_over_rho2[i];
-    } else if (reach[i] != half_of_all || event[i] != Columns::NONE) {
-      reach[i] = half_of_all;
-      event[i] = Columns::NONE;
-    }
+    state.begin_own_step(i);
+    last[i] = p_over_rho2[i];
     const double step = state.clock.line.step(static_cast<int>(its_bin[i]));
     parts.rows[i][UpdateRows::OWN_STEP] = step;
     parts.rows[i][UpdateRows::LAST_UPDATE] = now;
     parts.report.ideal_updates += step / wanted[i];
   }
+}
+
+// The steps that they want have been summed with those of all ranks.
+
+void BinChoice::begin_equal_steps()
+{
+  const double now = physical_time(update), step = state.clock.smallest_step();
+  const double half_of_all = 0.5 * state.clock.smallest_ticks();
+  double *reach = state.columns[Columns::REACH], *event = state.columns[Columns::EVENT];
+  for (const int i : fluid->active_particles()) {
+    if (reach[i] != half_of_all || event[i] != Columns::NONE) {
+      reach[i] = half_of_all;
+      event[i] = Columns::NONE;
+    }
+    parts.rows[i][UpdateRows::OWN_STEP] = step;
+    parts.rows[i][UpdateRows::LAST_UPDATE] = now;
+  }
+  parts.report.ideal_updates += step * sum_of_rates;
 }
 
 double BinChoice::bytes() const { return bytes_of(wanted, in_flight); }

@@ -52,6 +52,7 @@ class BinChoice : protected Pointers {
   int finest_vertex;    // time bin of the shortest step of a vertex
   Vertices vertices;
   std::vector<double> wanted;    // step, by owned atom
+  double sum_of_rates = 0.0;    // of the active particles, where the base step has begun
   std::vector<int> in_flight;
 
   int find_max_difference(int type, int neighbor_type) const;
@@ -67,6 +68,7 @@ class BinChoice : protected Pointers {
   void control_step();
   double longest_wanted() const;
   Sums sum_everywhere(double shortest);
+  void begin_equal_steps();
   void find_bins();
   void limit_differences();
   int vertex_bin(int i) const;

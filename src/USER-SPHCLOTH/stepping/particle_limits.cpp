@@ -167,20 +167,14 @@ void ParticleLimits::find_motions(const int *particles, int n, const Rates &rate
 {
   const double *drho = rates.density ? rates.density : atom->drho;
   const bool of_types = !atom->rmass;
-  find_motion_states({atom->type, atom->v[0], atom->f[0], atom->rho, drho,
+  const double *const *external = rates.accel_sq ? nullptr : rates.external;
+  find_motion_states({atom->type, atom->v[0], atom->f[0], atom->rho, drho, external,
                       of_types ? atom->mass : atom->rmass, of_types, motion.support.data(),
                       motion.rest.data(), motion.rounding.data(), force->ftm2v, lambda.density,
                       !interpolates_density},
                      particles, n, states);
   if (rates.accel_sq)
     for (int k = 0; k < n; k++) states.accel_sq[k] = rates.accel_sq[particles[k]];
-  else if (rates.external)
-    for (int k = 0; k < n; k++) {
-      const int i = particles[k];
-      double f[3];
-      for (int d = 0; d < 3; d++) f[d] = atom->f[i][d] + rates.external[d][i];
-      states.accel_sq[k] = acceleration_sq(i, f);
-    }
 }
 
 double ParticleLimits::acceleration_sq(int i, const double *f) const
@@ -192,30 +186,26 @@ double ParticleLimits::acceleration_sq(int i, const double *f) const
 inline void ParticleLimits::add_pressure(int i, int k, const Rates &rates, StepStates &states) const
 {
   StepState s{};
-  const FluidType &type = types[atom->type[i]];
-  double by_sound = 0.0;    // the step under pressure
   if (lambda.stability > 0.0)
-    by_sound = set_frequencies(i, s);
+    set_frequencies(i, s);
   else if (lambda.acoustic > 0.0 || lambda.viscous > 0.0) {
+    const FluidType &type = types[atom->type[i]];
     s.nu = type.viscosity;
     s.sound = type.at_boundary * type.sound * type.eos.stiffening(atom->rho[i]);
-    by_sound = lambda.acoustic * 0.5 * type.support / s.sound;
   }
   if (lambda.relative > 0.0) s.approach = fluid->approach_speed(i);
-  if (by_sound > 0.0 && s.of_vertices_sq == 0.0 && fluid->is_in_flight(i))
-    s.until_pressed = until_pressed(i, rates.density ? rates.density[i] : atom->drho[i], by_sound);
+  const bool flies = states.until_pressed[k] > 0.0;
+  if (flies && s.of_vertices_sq == 0.0 && (lambda.stability > 0.0 || lambda.acoustic > 0.0))
+    s.until_pressed = until_pressed(i, rates.density ? rates.density[i] : atom->drho[i], s);
   states.set_pressure(k, s);
 }
 
-// returns the step that is stable under pressure
-
-inline double ParticleLimits::set_frequencies(int i, StepState &s) const
+inline void ParticleLimits::set_frequencies(int i, StepState &s) const
 {
   const Frequencies &its = fluid->frequencies(i);
   s.of_fluid_sq = its.fluid_sq;
   s.of_vertices_sq = its.vertices_sq;
   s.friction = its.friction;
-  return options.lambda.stability * stable_step(its.fluid_sq + its.vertices_sq, its.friction);
 }
 
 // Free flight must not end before the limit is found again.
@@ -226,9 +216,9 @@ StepLimit ParticleLimits::stable_limit(int i) const
   alone.velocity = alone.force = alone.density = 0.0;
   alone.stability = options.lambda.stability;
   StepState s{};
-  const double by_sound = set_frequencies(i, s);
+  set_frequencies(i, s);
   if (fluid->is_in_flight(i) && s.of_vertices_sq == 0.0)
-    s.until_pressed = until_pressed(i, atom->drho[i], by_sound) / StabilityWatch::LONGEST_WAIT;
+    s.until_pressed = until_pressed(i, atom->drho[i], s) / StabilityWatch::LONGEST_WAIT;
   return particle_limit(alone, s);
 }
 
@@ -236,12 +226,17 @@ StepLimit ParticleLimits::stable_limit(int i) const
 // density grows ever faster, by p/h_s^2.  Neighbors are not asked either where the particle's own
 // sound, or the ceiling, allows less.
 
-double ParticleLimits::until_pressed(int i, double density_rate, double by_sound) const
+double ParticleLimits::until_pressed(int i, double density_rate, const StepState &s) const
 {
   const double gap = fluid->gap_to_pressure(atom->type[i], atom->rho[i]);
   const double alone = time_to_cross(gap, density_rate);
-  if (!asks_neighbors || 0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
-  const double ratio = atom->rho[i] / (0.5 * types[atom->type[i]].support);
+  if (!asks_neighbors) return alone;
+  const double smoothing = 0.5 * types[atom->type[i]].support;
+  const double by_sound = lambda.stability > 0.0
+      ? lambda.stability * stable_step(s.of_fluid_sq + s.of_vertices_sq, s.friction)
+      : lambda.acoustic * smoothing / s.sound;
+  if (0.5 * alone <= by_sound || options.ceiling <= by_sound) return alone;
+  const double ratio = atom->rho[i] / smoothing;
   return time_to_cross(gap, density_rate, fluid->p_over_rho2_beside(i) * ratio * ratio);
 }
 

@@ -119,8 +119,8 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   double acceleration_sq(int i, const double *force) const;
   sphcloth::StepState vertex_state(int i) const;
   double scaled_acceleration(int i, double unscaled) const;
-  double set_frequencies(int i, sphcloth::StepState &) const;
-  double until_pressed(int i, double density_rate, double by_sound) const;
+  void set_frequencies(int i, sphcloth::StepState &) const;
+  double until_pressed(int i, double density_rate, const sphcloth::StepState &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -16,6 +16,7 @@ struct MotionColumns {
   // of particles; v and f [n, 3]
   const int *type;
   const double *v, *f, *rho, *drho;
+  const double *const *external;    // three columns of forces beside f; null: none
   const double *mass;
   bool mass_of_types;    // mass by type, not by particle
   // by type; a rest density of minus infinity: never in free flight
@@ -30,15 +31,17 @@ find_motion_states(const MotionColumns &columns, const int *particles, int n, St
 {
   const MotionColumns of = columns;    // known not to change
   const bool eases = of.eases;
-  const auto norm_sq = [](const double *of_all, int i) {
-    const double *its = of_all + 3 * static_cast<std::size_t>(i);
-    return its[0] * its[0] + its[1] * its[1] + its[2] * its[2];
-  };
+  const double *const *external = of.external;
   for (int k = 0; k < n; k++) {
     const int i = particles[k];
     const double per_mass = of.to_accel / of.mass[of.mass_of_types ? of.type[i] : i];
-    states.speed_sq[k] = norm_sq(of.v, i);
-    states.accel_sq[k] = per_mass * per_mass * norm_sq(of.f, i);
+    const double *v = of.v + 3 * static_cast<std::size_t>(i);
+    const double *f = of.f + 3 * static_cast<std::size_t>(i);
+    double a[3] = {f[0], f[1], f[2]};
+    if (external)
+      for (int d = 0; d < 3; d++) a[d] += external[d][i];
+    states.speed_sq[k] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    states.accel_sq[k] = per_mass * per_mass * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   }
 #pragma omp simd
   for (int k = 0; k < n; k++) {

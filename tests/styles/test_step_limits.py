@@ -141,6 +141,19 @@ def test_a_step_below_a_millionth_of_the_largest_ends_the_run(scheme):
 
 
 @pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+def test_output_times_may_be_closer_than_the_floor(scheme):
+    """Behind a step that was cut, growth leads to the floor at once."""
+    with instance() as lmp:
+        lmp.commands_string(
+            f"{DROP}fix step all sph/integrate global output 4e-10\n"
+            f"run_style sph/adaptive {scheme}\nrun 5"
+        )
+        times = lmp.get_thermo("time") / 4e-10
+    assert times >= 5 - 1e-6
+    assert times == pytest.approx(round(times), rel=1e-9)
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
 def test_a_vertex_below_the_floor_is_named(scheme):
     with instance() as lmp:
         lmp.commands_string(

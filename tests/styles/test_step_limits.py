@@ -5,6 +5,7 @@ import pytest
 from harness import by_id, instance
 from scenes import (
     FLUID,
+    SMALL_SHEET,
     box,
     cloth_box,
     cloth_styles,
@@ -151,6 +152,29 @@ def test_output_times_may_be_closer_than_the_floor(scheme):
         times = lmp.get_thermo("time") / 4e-10
     assert times >= 5 - 1e-6
     assert times == pytest.approx(round(times), rel=1e-9)
+
+
+@pytest.mark.parametrize("step", [0, -1])
+@pytest.mark.parametrize(
+    ("script", "message"),
+    [
+        (
+            "timestep {}\nfix step water sph/integrate global",
+            "fix step sph/integrate: max is the time step, {}: it must be above 0: give 'timestep",
+        ),
+        (
+            "fix step water sph/integrate constant\ntimestep {}\nrun 1",
+            "fix step sph/integrate: the time step is {}: it must be above 0: give 'timestep DT'",
+        ),
+        (
+            "fix sheet cloth pbd/cloth\ntimestep {}\nrun 1",
+            "fix sheet pbd/cloth: the time step is {}: it must be above 0: give 'timestep DT'",
+        ),
+    ],
+)
+def test_a_time_step_is_above_0(step, script, message):
+    with instance() as lmp, pytest.raises(Exception, match=message.format(step)):
+        lmp.commands_string(SMALL_SHEET + script.format(step))
 
 
 @pytest.mark.parametrize("scheme", ["global", "individual", "block"])

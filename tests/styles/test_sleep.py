@@ -257,8 +257,8 @@ RESTLESS = (
     + "".join(f"create_atoms {kind} single {x} {y} {z} units box\n" for kind, x, y, z in SITES)
     + "set group all sph/rho 1000\ngroup drop type 2\n"
     + sph_tait(
-        "1 1 fluid 1000 c0 15 alpha 0.2 spacing 0.1 support 0.2",
-        "2 2 fluid 1000 c0 15 alpha 0.2 spacing 0.05",
+        "1 1 fluid 1000 c0 15 {viscosity} spacing 0.1 support 0.2",
+        "2 2 fluid 1000 c0 15 {viscosity} spacing 0.05",
         support=0.2,
         options="density calibrated",
     )
@@ -272,8 +272,8 @@ UNEQUAL = "gain 1"
 BEFORE, TOGETHER = 60, 80
 
 
-def restless(steps, skin=0.08):
-    return RESTLESS.format(steps=steps, skin=skin)
+def restless(steps, skin=0.08, viscosity="alpha 0.2"):
+    return RESTLESS.format(steps=steps, skin=skin, viscosity=viscosity)
 
 
 @pytest.mark.parametrize("steps", [UNEQUAL, EQUAL, f"{UNEQUAL} output 0.05"])
@@ -309,13 +309,14 @@ def test_a_restart_file_while_water_wakes_and_falls_asleep(tmp_path, monkeypatch
     np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("viscosity", ["alpha 0.2", "alpha 0.2 switch 0.3"])
 @pytest.mark.parametrize("steps", [UNEQUAL, EQUAL])
-def test_what_sleeps_depends_neither_on_ranks_nor_on_lists(tmp_path, steps):
+def test_what_sleeps_depends_neither_on_ranks_nor_on_lists(tmp_path, steps, viscosity):
     ends = []
     for ranks, skin in ((1, 0.08), (1, 0.05), (2, 0.08), (4, 0.08)):
         name = f"{ranks}-{skin}"
-        text = restless(steps, skin) + f"run {BEFORE + TOGETHER}\n" + DUMPED.format(name=name)
-        run(write(tmp_path, text + "\nrun 0\n"), ranks)
+        text = restless(steps, skin, viscosity) + f"run {BEFORE + TOGETHER}\n"
+        run(write(tmp_path, text + DUMPED.format(name=name) + "\nrun 0\n"), ranks)
         ends.append(last_frame(tmp_path / name))
     for other in ends[1:]:
         np.testing.assert_allclose(other, ends[0], rtol=0, atol=1e-8)

@@ -218,6 +218,9 @@ void FixPBDCloth::post_integrate()
 void FixPBDCloth::begin_step(int substeps)
 {
   lists_of_atoms.check(label);
+  if (!(update->dt > 0.0))
+    error->all(FLERR, "{}: the time step is {}: it must be above 0: give 'timestep DT'", label,
+               update->dt);
   held.move_pins(vertices.halo);
   substepping.begin_step(update->dt, substeps, present, holders);
   if (scaled.on()) scaled.scale_forces(update->dt, substepping.part_with_forces());

@@ -60,6 +60,9 @@ FixSPHIntegrate::FixSPHIntegrate(LAMMPS *lmp_, int narg, char **arg) :
       : SteppingScheme::GLOBAL;
   options.ceiling = update->dt;
   options.read(args, control.times);
+  if (!(options.ceiling > 0.0))
+    error->all(FLERR, "{}: max is the time step, {}: it must be above 0: give 'timestep DT' before",
+               label, options.ceiling);
   if (options.min > options.ceiling)
     error->all(FLERR, "{}: min {} is above max {}: lower min or raise max (default: the timestep)",
                label, options.min, options.ceiling);
@@ -94,6 +97,9 @@ void FixSPHIntegrate::init()
   run_style_drives = run_style != nullptr;
   const SteppingScheme wanted = run_style ? run_style->stepping_scheme() : options.scheme;
   options.check(wanted, control.times, *fluid, label, error);
+  if (update->whichflag == 1 && wanted == SteppingScheme::CONSTANT && !(update->dt > 0.0))
+    error->all(FLERR, "{}: the time step is {}: it must be above 0: give 'timestep DT'", label,
+               update->dt);
   check_styles_beside(lmp, label, wanted, *fluid);
   use_scheme(wanted, BlockClock());
   take_up_restored_step();

@@ -92,7 +92,9 @@ void PairSPHTait::init_style()
                "{}: neigh_modify exclude group or molecule would hide neighbors from the sums: "
                "exclude types, or remove it; boundary particles leave each other out by their role",
                STYLE);
-  if (fluid.sound_follows() && modify->get_fix_by_style("^sph/integrate$").empty())
+  // write_data and others initialize as well, and may come before the fix
+  const bool begins_run = update->whichflag != 0;
+  if (begins_run && fluid.sound_follows() && modify->get_fix_by_style("^sph/integrate$").empty())
     error->all(FLERR,
                "{}: c0 follows the flow where fix sph/integrate takes the steps: add it, or give a "
                "constant 'c0 C'",

@@ -197,6 +197,10 @@ BOOST_AUTO_TEST_CASE(step_between_ceiling_growth_and_floor)
   BOOST_CHECK(bounded_step(small, 0.002, 2.0, 1e-5, 0.01).dt == 1e-5);
   BOOST_CHECK(bounded_step(small, 0.002, 2.0, 1e-5, 0.01).by == Limit::FLOOR);
   BOOST_CHECK(bounded_step(small, 0.002, 2.0, 0.0, 0.01).dt == 1e-6);
+  // behind a step that an output time has cut
+  BOOST_CHECK(bounded_step(none, 1e-6, 2.0, 1e-5, 0.01).dt == 1e-5);
+  BOOST_CHECK(bounded_step(none, 1e-6, 2.0, 1e-5, 0.01).by == Limit::GROWTH);
+  BOOST_CHECK(bounded_step(small, 1e-6, 2.0, 1e-5, 0.01).by == Limit::FLOOR);
 }
 
 BOOST_AUTO_TEST_CASE(whole_steps_of_equation_15_are_rounded_down_at_least_one)

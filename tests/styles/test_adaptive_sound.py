@@ -286,6 +286,17 @@ def test_what_it_does_not_go_with(commands, message):
         lmp.commands_string(commands)
 
 
+def test_commands_before_the_fix_initialize(tmp_path):
+    """Only a run or minimize needs to know how the steps are taken."""
+    with instance() as lmp:
+        lmp.commands_string(
+            periodic_water(DX, f"{RHO0} spacing {DX} {FOLLOW}")
+            + f"set group all sph/rho {RHO0}\nwrite_data {tmp_path}/early.data\n"
+            + "timestep 2e-3\nfix step all sph/integrate global\nrun 1"
+        )
+    assert (tmp_path / "early.data").exists()
+
+
 def test_a_boundary_cannot_have_a_stiffness_beside_it():
     lmp = instance()
     with pytest.raises(Exception, match=r"stiffness of pair 1 3 .*c0 follows the flow: leave it"):

@@ -239,6 +239,46 @@ def test_the_watertight_part_holds_what_the_porous_part_lets_through(tmp_path):
     assert abs(len(all_of_it.ids) - (up + down)) <= 0.05 * (up + down)
 
 
+def over_a_ridge(porous_on_both_sides):
+    """Velocities of particles over a ridge along y, and of one beside it over the left slope."""
+    along = [
+        (x, round(-0.31 + 0.11 * k, 2)) for k, x in enumerate([-0.01, 0, 0.01, 0.02, -0.02, 0])
+    ]
+    particles = [(*at, 0.05) for at in along] + [(-0.25, 0.05, -0.06)]
+    script = (
+        header("f f f")
+        + cloth_box("-1 1 -1 1 -1 1", 2).replace("angle/types 1", "angle/types 2")
+        + "".join(f"create_atoms 1 single {x} {y} {z} units box\n" for x, y, z in particles)
+        + sheet(2, 1.0, "0.8 0.8", 0.1, "center 0 0 0 group mesh")
+        + "variable slope atom -0.5*abs(x)\nset group mesh z v_slope\n"
+        + f"mass 1 {MASS}\nset group all sph/rho {RHO}\ngroup water type 1\n"
+        + "velocity water set 0 0 -1 units box\n"
+        + sph_tait(f"1 1 fluid {RHO} c0 30", "2 2 none")
+        + stiffness()
+        + "region right block -0.001 INF INF INF INF INF units box\ngroup right region right\n"
+        + "group right intersect right mesh\n"
+        + ("" if porous_on_both_sides else "set group right angle 2\n")
+        + no_other_bonds()
+        + neighbor(0.03)
+        + "timestep 5e-4\nfix step water sph/integrate constant\n"
+        + "fix contact water cloth/contact 0.005 obstacle mesh\n"
+        + "fix pores water cloth/pores 1 darcy 500\nrun 4\n"
+    )
+    with instance() as lmp:
+        lmp.commands_string(script)
+        v = by_id(lmp, "v")[: len(particles)]
+    return v[:-1], v[-1]
+
+
+def test_beside_the_border_between_porous_and_watertight_triangles_is_no_drag():
+    """Rounding would tell which of the two triangles at the edge is the nearest."""
+    over, beside = over_a_ridge(porous_on_both_sides=False)
+    assert beside[2] > -0.99
+    np.testing.assert_array_equal(over, np.broadcast_to([0, 0, -1], over.shape))
+    over, _ = over_a_ridge(porous_on_both_sides=True)
+    assert (over[:, 2] > -0.99).all()
+
+
 def test_what_is_not_in_the_group_does_not_pass():
     """Every second particle: the others stay on the sheet."""
     script = gauze().replace(

@@ -8,6 +8,7 @@ from scenes import (
     FLUID,
     box,
     filled,
+    gravity,
     header,
     lattice,
     neighbor,
@@ -235,3 +236,87 @@ def test_equal_steps_beside_sleeping_water_go_on_from_a_restart_file(while_some_
     go_on = f"read_restart half.rst\nneighbor 0.03 bin\n{settings}\nrun {SLEEPY + STEPS} upto\n"
     run(write(folder, go_on + DUMPED.format(name="half.dump") + "\nrun 0\n", "in.b"))
     np.testing.assert_allclose(last_frame(folder / "half.dump"), one, rtol=0, atol=1e-9)
+
+
+# A pool and a drop of half the spacing, one by one: IDs are the same on any number of ranks.
+SITES = [
+    (kind, *(round(low + spacing * k, 3) for low, k in zip(corner, cell, strict=True)))
+    for kind, spacing, corner, cells in (
+        (1, 0.1, (-0.45, -0.45, -0.35), (10, 10, 3)),
+        (2, 0.05, (0.0, -0.05, 0.25), (5, 5, 5)),
+    )
+    for cell in np.ndindex(cells)
+    if kind == 1 or np.linalg.norm(np.array(cell) - 2) < 2.5
+]
+
+# A drop of half the spacing falls into a pool, and speeds that count as rest are high: in most
+# steps some particles fall asleep and others are woken.
+RESTLESS = (
+    header("p p f", FLUID)
+    + box("-0.5 0.5 -0.5 0.5 -0.5 0.9", 2)
+    + "".join(f"create_atoms {kind} single {x} {y} {z} units box\n" for kind, x, y, z in SITES)
+    + "set group all sph/rho 1000\ngroup drop type 2\n"
+    + sph_tait(
+        "1 1 fluid 1000 c0 15 {viscosity} spacing 0.1 support 0.2",
+        "2 2 fluid 1000 c0 15 {viscosity} spacing 0.05",
+        support=0.2,
+        options="density calibrated",
+    )
+    + neighbor("{skin}")
+    + "velocity drop set 0.1 0 -1 units box\ntimestep 0.01\n"
+    + gravity()
+    + "fix floor all wall/sph zlo -0.45\nfix step all sph/integrate global sleep 0.6 {steps}\n"
+    + "run_style sph/adaptive block\nthermo 1000\n"
+)
+UNEQUAL = "gain 1"
+BEFORE, TOGETHER = 60, 80
+
+
+def restless(steps, skin=0.08, viscosity="alpha 0.2"):
+    return RESTLESS.format(steps=steps, skin=skin, viscosity=viscosity)
+
+
+@pytest.mark.parametrize("steps", [UNEQUAL, EQUAL, f"{UNEQUAL} output 0.05"])
+def test_runs_that_end_while_water_wakes_and_falls_asleep_are_one_run(steps):
+    """Setup of a run repeats the last evaluation of the run before, which changed what sleeps."""
+    ends, asleep = [], []
+    for run_by_run in (False, True):
+        with instance() as lmp:
+            lmp.commands_string(restless(steps) + f"run {BEFORE}")
+            for _ in range(TOGETHER if run_by_run else 1):
+                lmp.command("run 1" if run_by_run else f"run {TOGETHER}")
+                asleep.append(sleepers(lmp))
+            ends.append(by_id(lmp, "v"))
+    assert asleep[-1] == asleep[0]
+    changes = np.diff(asleep[1:])
+    assert (changes > 0).any() and (changes < 0).any()
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("until", [72, 73, 76, 101])
+def test_a_restart_file_while_water_wakes_and_falls_asleep(tmp_path, monkeypatch, until):
+    monkeypatch.chdir(tmp_path)
+    text = restless(UNEQUAL)
+    settings = text[text.index("neighbor 0.08") :].replace("velocity drop", "#")
+    ends = []
+    with instance() as lmp:
+        lmp.commands_string(f"{text}run {until}\nwrite_restart some.rst\n")
+    for begin in (text, f"read_restart some.rst\n{settings}"):
+        with instance() as lmp:
+            lmp.commands_string(f"{begin}run {until + 3} upto")
+            assert sleepers(lmp) > 0
+            ends.append(by_id(lmp, "v"))
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("viscosity", ["alpha 0.2", "alpha 0.2 switch 0.3"])
+@pytest.mark.parametrize("steps", [UNEQUAL, EQUAL])
+def test_what_sleeps_depends_neither_on_ranks_nor_on_lists(tmp_path, steps, viscosity):
+    ends = []
+    for ranks, skin in ((1, 0.08), (1, 0.05), (2, 0.08), (4, 0.08)):
+        name = f"{ranks}-{skin}"
+        text = restless(steps, skin, viscosity) + f"run {BEFORE + TOGETHER}\n"
+        run(write(tmp_path, text + DUMPED.format(name=name) + "\nrun 0\n"), ranks)
+        ends.append(last_frame(tmp_path / name))
+    for other in ends[1:]:
+        np.testing.assert_allclose(other, ends[0], rtol=0, atol=1e-8)

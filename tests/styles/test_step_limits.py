@@ -5,6 +5,7 @@ import pytest
 from harness import by_id, instance
 from scenes import (
     FLUID,
+    SMALL_SHEET,
     box,
     cloth_box,
     cloth_styles,
@@ -138,6 +139,42 @@ def test_a_step_below_a_millionth_of_the_largest_ends_the_run(scheme):
     assert "lower min, or use 'below clamp'" in message
     assert error_of_speed(1.4e7, "velocity 0.15", scheme) == pytest.approx(0.15 * 0.1 / 1.4e7)
     assert error_of_speed(1.6e7, "min 1e-12", scheme) == pytest.approx(0.45 * 0.1 / 1.6e7)
+
+
+@pytest.mark.parametrize("scheme", ["global", "individual", "block"])
+def test_output_times_may_be_closer_than_the_floor(scheme):
+    """Behind a step that was cut, growth leads to the floor at once."""
+    with instance() as lmp:
+        lmp.commands_string(
+            f"{DROP}fix step all sph/integrate global output 4e-10\n"
+            f"run_style sph/adaptive {scheme}\nrun 5"
+        )
+        times = lmp.get_thermo("time") / 4e-10
+    assert times >= 5 - 1e-6
+    assert times == pytest.approx(round(times), rel=1e-9)
+
+
+@pytest.mark.parametrize("step", [0, -1])
+@pytest.mark.parametrize(
+    ("script", "message"),
+    [
+        (
+            "timestep {}\nfix step water sph/integrate global",
+            "fix step sph/integrate: max is the time step, {}: it must be above 0: give 'timestep",
+        ),
+        (
+            "fix step water sph/integrate constant\ntimestep {}\nrun 1",
+            "fix step sph/integrate: the time step is {}: it must be above 0: give 'timestep DT'",
+        ),
+        (
+            "fix sheet cloth pbd/cloth\ntimestep {}\nrun 1",
+            "fix sheet pbd/cloth: the time step is {}: it must be above 0: give 'timestep DT'",
+        ),
+    ],
+)
+def test_a_time_step_is_above_0(step, script, message):
+    with instance() as lmp, pytest.raises(Exception, match=message.format(step)):
+        lmp.commands_string(SMALL_SHEET + script.format(step))
 
 
 @pytest.mark.parametrize("scheme", ["global", "individual", "block"])

@@ -4,6 +4,7 @@
 #include "contact/triangle_set.h"
 
 #include "atom.h"
+#include "contact/triangle_ends.h"
 #include "error.h"
 #include "lammps_util/rank_error.h"
 
@@ -104,45 +105,11 @@ void TriangleSet::check_reach(double max_distance)
 
 void TriangleSet::find_border()
 {
-  const auto &elements = mesh->topology().triangles.vertices;
-  struct At {
-    int all = 0, watertight = 0;    // triangles at an edge
-  };
-  std::map<std::array<int, 2>, At> at;
-  const auto edge = [](const std::array<int, 3> &t, int opposite) -> std::array<int, 2> {
-    const int a = t[(opposite + 1) % 3], b = t[(opposite + 2) % 3];
-    return {std::min(a, b), std::max(a, b)};
-  };
   const auto is_watertight = [this](std::size_t m) { return passing.empty() || passing[m] == 0; };
-  for (std::size_t m = 0; m < elements.size(); m++)
-    for (int q = 0; q < 3; q++) {
-      At &here = at[edge(elements[m], q)];
-      here.all++;
-      if (is_watertight(m)) here.watertight++;
-    }
-  at_border.resize(elements.size());
-  at_end.resize(elements.size());
-  for (std::size_t m = 0; m < elements.size(); m++)
-    for (int q = 0; q < 3; q++) {
-      const At &here = at[edge(elements[m], q)];
-      at_border[m][q] = is_watertight(m) && here.watertight == 1;
-      at_end[m][q] = here.all == 1;
-    }
-  vertex_at_end.assign(mesh->topology().n_vertices(), false);
-  for (std::size_t m = 0; m < elements.size(); m++)
-    for (int q = 0; q < 3; q++)
-      if (at_end[m][q])
-        vertex_at_end[elements[m][(q + 1) % 3]] = vertex_at_end[elements[m][(q + 2) % 3]] = true;
-}
-
-bool TriangleSet::is_on_end(int t, const Vec3 &weight) const
-{
-  const int m = element[t];
-  for (int q = 0; q < 3; q++) {
-    if (weight[q] >= 1.0 && vertex_at_end[mesh->topology().triangles.vertices[m][q]]) return true;
-    if (weight[q] <= 0.0 && at_end[m][q]) return true;
-  }
-  return false;
+  const auto at = count_at_edges(mesh->topology(), is_watertight);
+  at_border.resize(at.size());
+  for (std::size_t m = 0; m < at.size(); m++)
+    for (int q = 0; q < 3; q++) at_border[m][q] = is_watertight(m) && at[m][q].chosen == 1;
 }
 
 bool TriangleSet::let_through(int first_type, int last_type, int groupbit)

@@ -59,9 +59,6 @@ class TriangleSet : protected Pointers {
       if (weight[q] <= 0.0 && is_border(element[t], q)) return true;
     return false;
   }
-  // the same, of the mesh with its porous triangles, also where it is a vertex that has the border
-  // at other triangles
-  bool is_on_end(int t, const Vec3 &weight) const;
 
   // of the triangles that are here, at the last list build
   double longest_edge_here() const { return longest_here; }
@@ -70,8 +67,7 @@ class TriangleSet : protected Pointers {
   Vec3 position(int slot) const;
 
  private:
-  std::vector<std::array<bool, 3>> at_border, at_end;    // of each element
-  std::vector<bool> vertex_at_end;
+  std::vector<std::array<bool, 3>> at_border;    // of each element
   std::vector<int> passing;    // bits of groups that an element lets through; empty: none does
 
   GhostReach ghosts;

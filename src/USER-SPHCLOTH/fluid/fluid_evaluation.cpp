@@ -362,11 +362,15 @@ void FluidEvaluation::find_boundary_pressures(const Particles &p)
   ghosts.send_to_ghosts(GhostData::DENSITY);
 }
 
-// Shares of inactive particles, which new lists forget, are not to be used: an impulse has that of
-// its active source.
+// New lists and virials change the shares of inactive particles.  An impulse has that of its active
+// source; where steps are equal inactive particles sleep, and are walls.
 
 void FluidEvaluation::find_viscosity_shares(const Particles &p)
 {
+  constexpr double WHOLE = 1.0;
+  if (p.active)
+    for (int i = 0; i < p.n_owned; i++)
+      if (!p.is_active(i)) viscosity_shares[i] = WHOLE;
   for (int t = 1; t <= atom->ntypes; t++)
     if (is_fluid(t)) core->model.viscosity_switch[t] = viscosity_switch(t);
   core->viscosity_shares(p, viscosity_shares.data());

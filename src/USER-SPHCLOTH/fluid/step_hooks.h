@@ -36,8 +36,9 @@ class StepHooks {
   virtual void find_times_since_update(double *since) const = 0;
   virtual KeptDensity kept_density() = 0;
 
-  // Densities and pressures are known.  At an output time this is where velocities are brought to
-  // that time (half-kick correction); true if any velocity has changed.
+  // Densities and pressures are known.  This is where velocities are brought to an output time
+  // (half-kick correction), and where water that has come to rest stops; true on all ranks if any
+  // velocity has changed.
   virtual bool correct_velocities() = 0;
 
   // For how many updates each particle goes on with the frequencies of before, by atom; then they

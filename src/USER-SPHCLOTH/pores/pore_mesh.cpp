@@ -58,10 +58,9 @@ void PoreMesh::find(double *flow)
   closest_points.clear();
   mesh.find_closest_points(0, closest_points, start,
                            [this](int i) { return set->sweep_of(i).start; });
-  const std::vector<int> &type = set->mesh->topology().triangles.type;
   const auto elsewhere = [&](const ClosestPoint &at) {
-    return !fluid.is_porous(type[set->element[at.triangle]]) ||
-        set->is_on_end(at.triangle, at.weight);
+    const int triangle = set->element[at.triangle];
+    return !is_porous(triangle) || ends.has(triangle, at.weight);
   };
   closest_points.erase(std::remove_if(closest_points.begin(), closest_points.end(), elsewhere),
                        closest_points.end());

@@ -5,6 +5,7 @@
 #define SPHCLOTH_PORES_PORE_MESH_H
 
 #include "contact/moving_triangles.h"
+#include "contact/triangle_ends.h"
 #include "core/pores/pore_law.h"
 #include "fluid/boundary_mesh.h"
 #include "pointers.h"
@@ -43,7 +44,8 @@ class PoreMesh : protected Pointers {
 
   PoreMesh(LAMMPS *lmp_, MovingTriangles *set_, const PoreFluid &fluid_) :
       Pointers(lmp_), set(set_), fluid(fluid_),
-      mesh(lmp, set, fluid.groupbit, BoundaryMesh::Part::ALL)
+      mesh(lmp, set, fluid.groupbit, BoundaryMesh::Part::ALL),
+      ends(set->mesh->topology(), [this](std::size_t triangle) { return is_porous(triangle); })
   {
   }
 
@@ -66,21 +68,27 @@ class PoreMesh : protected Pointers {
 
   double bytes() const
   {
-    return sphcloth::bytes_of(pairs, closest_points, pushed, start, velocity, area, passing, filled,
-                              part);
+    return ends.bytes() +
+        sphcloth::bytes_of(pairs, closest_points, pushed, start, velocity, area, passing, filled,
+                           part);
   }
 
  private:
   const PoreFluid &fluid;
   BoundaryMesh mesh;
+  const TriangleEnds ends;    // of the porous part
   std::vector<Vec3> pushed;    // by slot, 0 between steps
   std::vector<Vec3> start, velocity;    // by slot: at the start of the step
   // By slot: a third of the area of its triangles; shares of particles times upward displacements,
   // times widths, and shares; volumes times shares above and below; the parts of both layers
   std::vector<double> area;
   std::vector<Vec3> passing, filled, part;
-  std::vector<ClosestPoint> closest_points;    // on porous triangles, not at the end of the mesh
+  std::vector<ClosestPoint> closest_points;    // on porous triangles, not at their end
 
+  bool is_porous(std::size_t triangle) const    // of the mesh
+  {
+    return fluid.is_porous(set->mesh->topology().triangles.type[triangle]);
+  }
   void load_start();
   Vec3 relative_velocity(const ClosestPoint &) const;    // of the particle to the mesh
   int side_of(const ClosestPoint &) const;

@@ -156,7 +156,7 @@ void BlockImpulses::let_sleep()
   state.find_sleeping();
   state.measure_ranges();
   for (const int i : state.fluid->active_particles())
-    if (state.is_asleep(i)) std::fill_n(atom->f[i], 3, 0.0);
+    if (state.was_asleep(i)) std::fill_n(atom->f[i], 3, 0.0);
   state.select_giving();
   tell_neighbors();
   wake_marked();
@@ -193,7 +193,7 @@ void BlockImpulses::hand_out()
 {
   const double per_step = 1.0 / state.clock.smallest_ticks();
   for (const int i : state.fluid->active_particles()) {
-    const bool falls_asleep = state.is_asleep(i);
+    const bool falls_asleep = state.was_asleep(i);
     for (int d = 0; d < 3; d++)
       atom->f[i][d] = falls_asleep ? 0.0 : atom->f[i][d] - pair_forces[3 * i + d];
   }

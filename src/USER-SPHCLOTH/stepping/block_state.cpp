@@ -107,7 +107,7 @@ void BlockState::select_giving()
 {
   giving.clear();
   for (const int i : fluid->active_particles())
-    if (!any_asleep || !asleep[i]) giving.push_back(i);
+    if (!was_asleep(i)) giving.push_back(i);
 }
 
 void BlockState::begin_giving()
@@ -184,11 +184,15 @@ void BlockState::measure_ranges()
   if (ranges_known) fluid->order().measure_block_ranges(bin.data());
 }
 
+// What the same evaluation has woken before is new since: one that enters begins its step at once
+// where steps have been chosen.
+
 void BlockState::find_sleeping()
 {
   refresh_inactive();
   for (int i = 0; i < atom->nlocal; i++)
-    if (fluid->is_fluid(atom->type[i])) bin[i] = columns.bin(i);
+    if (fluid->is_fluid(atom->type[i]))
+      bin[i] = clock.chosen && is_new(i) ? Columns::ASLEEP : columns.bin(i);
   forward_bins();
   asleep.resize(atom->nmax);
   any_asleep = false;

@@ -102,7 +102,8 @@ class BlockState : protected Pointers {
   std::vector<int> bin, mark;
   // are the ranges of bins of whole blocks of space known, before some of them were raised?
   bool ranges_known = false;
-  std::vector<int> asleep;    // 1 or 0; with sleeping water only
+  // With sleeping water only, 1 or 0: in the last evaluation, which may have woken it since
+  std::vector<int> asleep;
   bool any_asleep = false;    // here, ghosts too
   HeldParticles held;
   int n_at_rest = 0;    // owned particles that sleep, or will from this step on
@@ -136,6 +137,7 @@ class BlockState : protected Pointers {
   void begin_own_step(int i);
   void forget_frequencies(int i);
 
+  bool was_asleep(int i) const { return any_asleep && asleep[i]; }
   void make_room();
   void forget_inactive() { inactive_known = false; }
   // arrays of atoms that are not updated, if they are not known any more

@@ -130,6 +130,13 @@ void BlockSteps::select_active()
   tell_active(all);
 }
 
+bool BlockSteps::correct_velocities()
+{
+  const bool kicked = half_kick.correct_velocities();
+  const bool stopped = !state.clock.chosen && sleeping.enabled() && sleeping.stop_resting();
+  return kicked || stopped;
+}
+
 // Unequal steps are chosen before forces are known, so that each particle gives its impulses in the
 // pass that finds its force; equal ones after that.
 
@@ -143,7 +150,6 @@ const Impulses *BlockSteps::begin_impulses()
 void BlockSteps::choose_bins()
 {
   if (!state.clock.chosen) {
-    if (sleeping.enabled()) sleeping.find_resting();
     const bool was_uniform = state.clock.uniform;
     bins.choose();
     if (was_uniform && !state.clock.uniform) frequencies.forget();

@@ -59,7 +59,7 @@ class BlockSteps : public Stepper, public StepHooks {
 
   // what the pair style calls
   void find_intervals(std::vector<double> &of_type) const override;
-  bool correct_velocities() override { return half_kick.correct_velocities(); }
+  bool correct_velocities() override;
   void find_times_since_update(double *since) const override;
   KeptDensity kept_density() override;
   const double *frequency_waits() const override { return frequencies.waits(); }

@@ -62,12 +62,31 @@ void SleepingWater::find_resting()
     state.n_at_rest += state.fluid->is_fluid(atom->type[i]) && state.is_asleep(i);
 }
 
+// Before forces are found: those that are found again where the next run begins are the same.
+
+bool SleepingWater::stop_resting()
+{
+  find_resting();
+  const int here = resting.empty() ? 0 : 1;
+  int anywhere;
+  MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+  if (!anywhere) return false;
+  state.make_room();
+  std::fill_n(state.kicks.begin(), 3 * atom->nlocal, 0.0);
+  for (const int i : resting)
+    for (int d = 0; d < 3; d++) {
+      state.kicks[3 * i + d] = -atom->v[i][d];
+      atom->v[i][d] = 0.0;
+    }
+  state.forward_kicks();
+  return true;
+}
+
 void SleepingWater::fall_asleep()
 {
   for (const int i : resting) {
     state.columns[Columns::BIN][i] = state.bin[i] = Columns::ASLEEP;
     state.columns[Columns::SLOW_SINCE][i] = physical_time(update);
-    std::fill_n(atom->v[i], 3, 0.0);
     state.ranges_known = false;
   }
 }
@@ -159,7 +178,7 @@ void SleepingWater::wake(int i)
     columns[Columns::EVENT][i] = Columns::NEW;
     columns[Columns::SLOW_SINCE][i] = physical_time(update);
     state.forget_frequencies(i);
-  } else
+  } else if (!state.is_new(i))
     columns[Columns::EVENT][i] = Columns::WOKEN;
 }
 

@@ -24,8 +24,9 @@ class SleepingWater : protected Pointers {
 
   bool enabled() const { return state.options.sleep > 0.0; }
   bool is_slow(int i) const;
-  // active particles that have been slow for long, among others that are slow
-  void find_resting();
+  // Stops active particles that have been slow for long, among others that are slow; true if there
+  // are any on any rank
+  bool stop_resting();
   void fall_asleep();    // those
   void begin_run() { n_atoms = atom->natoms; }
   // Particles that other styles have given speed or a force; all, where other fixes have taken
@@ -50,6 +51,7 @@ class SleepingWater : protected Pointers {
   std::vector<int> resting;
   bigint n_atoms = 0;    // in the last step
 
+  void find_resting();
   bool is_at_rest(int i);
   bool gains_speed(int i, double force_sq) const;
   bool all_neighbors_are_slow(int i) const;

@@ -301,13 +301,14 @@ struct FluctuationControl {
 };
 
 // The step that is taken: the tightest particle's limit between floor and ceiling, growing at
-// most by `growth` over the previous step (no limit if previous is 0: the first step).
+// most by `growth` over the previous step (no limit if previous is 0: the first step), and up to
+// the floor at once: a step ends below it where an output time cuts it.
 
 inline StepLimit bounded_step(StepLimit wanted, double previous, double growth, double floor,
                               double ceiling)
 {
   wanted.tighten(ceiling, Limit::CEILING);
-  if (previous > 0.0) wanted.tighten(growth * previous, Limit::GROWTH);
+  if (previous > 0.0) wanted.tighten(std::max(growth * previous, floor), Limit::GROWTH);
   if (wanted.dt < floor) {
     wanted.dt = floor;
     wanted.by = Limit::FLOOR;

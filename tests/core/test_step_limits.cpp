@@ -5,7 +5,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 
@@ -56,25 +55,6 @@ BOOST_AUTO_TEST_CASE(each_formula_on_its_own)
   relative.relative = 0.3;
   BOOST_CHECK_SMALL(particle_limit(relative, s).dt - 0.3 * 0.1 / 4.0, 1e-17);
   BOOST_CHECK(particle_limit(relative, s).by == Limit::RELATIVE);
-}
-
-BOOST_AUTO_TEST_CASE(free_flight_goes_farther_until_half_of_the_way_to_pressure)
-{
-  const StepCoefficients lambda;
-  StepState s{0.1, 4.0, 0.0, 0.0, 0.0, 1000.0, 0.0};
-  const double near = 0.15 * 0.1 / 2.0;
-  const auto limit_until = [&](double t) {
-    s.until_pressed = t;
-    const StepLimit limit = particle_limit(lambda, s);
-    BOOST_CHECK(limit.by == Limit::VELOCITY);
-    BOOST_CHECK(particle_limit<true>(lambda, s).dt == limit.dt);
-    return limit.dt;
-  };
-  BOOST_TEST(limit_until(0.0) == near, boost::test_tools::tolerance(1e-15));
-  BOOST_TEST(limit_until(1.9 * near) == near, boost::test_tools::tolerance(1e-15));
-  BOOST_TEST(limit_until(4.0 * near) == 2.0 * near, boost::test_tools::tolerance(1e-15));
-  const double never = std::numeric_limits<double>::infinity();
-  BOOST_TEST(limit_until(never) == 3.0 * near, boost::test_tools::tolerance(1e-15));
 }
 
 BOOST_AUTO_TEST_CASE(stability_of_frequencies_and_friction)

@@ -77,7 +77,7 @@ SHEET_AS_WALL = replace(
     forces=DROP_SCENE.forces.replace("2 2 boundary", "2 2 none"),
     settings=DROP_SCENE.settings.replace("neigh_modify", "comm_modify cutoff 0.3[m]\nneigh_modify"),
     fixes=DROP_SCENE.fixes.replace("cloth/contact 0.015[m]", "cloth/contact 0.015[m] wall yes"),
-    steps=11,
+    steps=12,
 )
 # impulses of ghosts are added in the order in which they come, another one behind a restart
 BLOCK = replace(

@@ -176,7 +176,7 @@ STONES = (
     + "timestep 0.01\n"
     + gravity()
     + """fix before first nve
-fix step water sph/integrate global velocity 0.15
+fix step water sph/integrate global
 fix behind last nve
 {style}
 run 5

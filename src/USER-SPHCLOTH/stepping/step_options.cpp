@@ -21,7 +21,6 @@ static void choose_stability(ArgReader &args, std::optional<double> stability,
                              std::optional<double> velocity, std::optional<double> force,
                              StepCoefficients &lambda)
 {
-  if (velocity) lambda.flight = 1.0;    // (10) as it is
   lambda.velocity = velocity.value_or(lambda.velocity);
   lambda.force = force.value_or(lambda.force);
   if (!acoustic && !viscous && !lambda.wetted) {
@@ -32,7 +31,6 @@ static void choose_stability(ArgReader &args, std::optional<double> stability,
     args.fail("stability", fmt::format("{}", *stability),
               "it takes the place of acoustic, viscous and wetted: leave these out");
   lambda.stability = 0.0;
-  lambda.flight = 1.0;
   lambda.velocity = velocity.value_or(StepCoefficients::VELOCITY);
   lambda.force = force.value_or(StepCoefficients::FORCE);
   lambda.acoustic = acoustic.value_or(StepCoefficients::ACOUSTIC);

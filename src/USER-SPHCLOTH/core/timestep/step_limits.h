@@ -76,7 +76,6 @@ inline const char *limit_name(Limit limit)
 struct StepCoefficients {
   double stability = 0.95;    // of the longest stable step, in the place of the next two
   double velocity = 0.15;    // lambda_v of (10)
-  double flight = 3.0;    // how many times as far in free flight
   double force = 0.2;    // lambda_f of (11)
   double acoustic = 0.0;    // of h_s/c; on a lattice stable up to 1.6
   double viscous = 0.0;    // of h_s^2/nu; stable up to 0.3 in 3-D
@@ -157,12 +156,8 @@ SPHCLOTH_INLINE StepLimit particle_limit(const StepCoefficients &lambda, const S
   const auto with = [](double coefficient, double dt) { return coefficient > 0.0 ? dt : NEVER; };
   const double smoothing = 0.5 * s.support;
   StepLimit limit;
-  // what is in free flight goes farther, but no more than half of the way to where it is pressed
-  const double by_velocity = ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq));
-  limit.tighten(
-      with(lambda.velocity,
-           std::max(by_velocity, std::min(lambda.flight * by_velocity, 0.5 * s.until_pressed))),
-      Limit::VELOCITY);
+  limit.tighten(with(lambda.velocity, ratio(lambda.velocity * s.support, std::sqrt(s.speed_sq))),
+                Limit::VELOCITY);
   limit.tighten(
       with(lambda.force, lambda.force * std::sqrt(ratio(s.support, std::sqrt(s.accel_sq)))),
       Limit::FORCE);
@@ -213,7 +208,7 @@ struct StepStates {
   }
   SPHCLOTH_INLINE StepState motion(int k) const
   {
-    return {support[k], speed_sq[k], accel_sq[k], 0.0, 0.0, rho[k], drho[k], 0.0, until_pressed[k]};
+    return {support[k], speed_sq[k], accel_sq[k], 0.0, 0.0, rho[k], drho[k]};
   }
   SPHCLOTH_INLINE StepState operator[](int k) const
   {

@@ -140,8 +140,8 @@ def falls_in_a_tank(neigh_modify):
             run 0 post no"""
         )
         pressures = []
-        for _ in range(25):
-            lmp.command("run 4 pre no post no")
+        for _ in range(100):
+            lmp.command("run 1 pre no post no")
             if lmp.extract_fix("step", 0, 1, 1) < 1:
                 pressures.append(lmp.get_thermo("press"))
         return by_id(lmp, "x"), np.array(pressures)

@@ -73,13 +73,14 @@ bool ParticleGaps::keep()
 bool ParticleGaps::put_back(int particle)
 {
   Sweep sweep = mesh.sweep_of(particle);
-  bool hit = false;
+  bool hit = false, moved = false;
   for (int pass = 0; pass < MAX_PASSES; pass++) {
     const Gap gap = deepest(sweep, pass == 0);
     if (gap.triangle < 0) break;
     sweep.end += gap.depth * gap.normal;
     for (int d = 0; d < 3; d++) atom->x[particle][d] = sweep.end[d];
     mesh.step_start.atoms_moved();
+    moved = true;
     if (!gap.hit) continue;
     hit = true;
     mesh.counts.stops++;
@@ -90,7 +91,7 @@ bool ParticleGaps::put_back(int particle)
         ContactRow(pair, {1.0, -gap.weight[0], -gap.weight[1], -gap.weight[2]}, gap.normal, 0.0),
         gap.max_approach);
   }
-  if (hit) mesh.moved.push_back(particle);
+  if (moved) mesh.moved.push_back(particle);
   return hit;
 }
 

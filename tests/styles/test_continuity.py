@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 from harness import by_id, instance, last_frame, run, write
 from reference_sph import C0, RHO0, H, lattice, two_particles, wendland, wendland_slope
-from scenes import FLUID, box, final_dump, gravity, header, jitter, neighbor, sph_tait
+from scenes import (
+    FLUID,
+    box,
+    cloth_box,
+    final_dump,
+    gravity,
+    header,
+    jitter,
+    neighbor,
+    sheet,
+    sph_tait,
+)
 from scenes import lattice as sites
 
 
@@ -96,6 +107,37 @@ def test_vortices_gain_no_energy_by_continuity():
     lmp.command("run 100")
     assert lmp.get_thermo("ke") > 0.9 * kinetic
     assert abs(lmp.get_thermo("etotal") - start) < 0.01 * kinetic
+
+
+def density_change_of_what_starts_too_near(density):
+    """Of two particles; the lower one, half a thickness above a table, is moved out at rest."""
+    lmp = instance()
+    lmp.commands_string(
+        header("f f f")
+        + cloth_box("-1 1 -1 1 -1 1")
+        + "create_atoms 1 single 0.013 0.021 0.01\ncreate_atoms 1 single 0.013 0.021 0.06\n"
+        + sheet(2, 4, "0.6 0.6", 0.1, "group table")
+        + "group water type 1\nmass 1 0.125\nset group water sph/rho 500\n"
+        + sph_tait("1 1 fluid 1000 c0 20", "2 2 none", options=f"density {density}")
+        + neighbor(0.05)
+        + """timestep 1e-3
+fix step water sph/integrate constant
+fix contact water cloth/contact 0.02 obstacle table
+run 0
+"""
+    )
+    before = by_id(lmp, "rho")[:2]
+    lmp.command("run 20")
+    np.testing.assert_allclose(by_id(lmp, "x")[:2, 2], [0.02, 0.06], rtol=1e-6)
+    assert np.all(by_id(lmp, "v")[:2] == 0)
+    return by_id(lmp, "rho")[:2] - before
+
+
+def test_density_follows_what_contact_moves_out_without_velocity():
+    summed = density_change_of_what_starts_too_near("summation")
+    assert summed.min() > 50
+    integrated = density_change_of_what_starts_too_near("continuity delta 0")
+    np.testing.assert_allclose(integrated, summed, rtol=0.01)
 
 
 def diffused(field, **options):

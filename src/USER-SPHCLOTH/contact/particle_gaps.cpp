@@ -73,13 +73,16 @@ bool ParticleGaps::keep()
 bool ParticleGaps::put_back(int particle)
 {
   Sweep sweep = mesh.sweep_of(particle);
-  bool hit = false;
+  const Vec3 unhindered = sweep.end;
+  bool hit = false, moved = false;
   for (int pass = 0; pass < MAX_PASSES; pass++) {
     const Gap gap = deepest(sweep, pass == 0);
     if (gap.triangle < 0) break;
+    const double too_near = gap.too_near + gap.normal.dot(sweep.end - unhindered);
     sweep.end += gap.depth * gap.normal;
     for (int d = 0; d < 3; d++) atom->x[particle][d] = sweep.end[d];
     mesh.step_start.atoms_moved();
+    moved = true;
     if (!gap.hit) continue;
     hit = true;
     mesh.counts.stops++;
@@ -88,9 +91,9 @@ bool ParticleGaps::put_back(int particle)
     mesh.counts.missed += approach_left(particle, gap) / mesh.w[pair.slots[0]];
     velocities.add(
         ContactRow(pair, {1.0, -gap.weight[0], -gap.weight[1], -gap.weight[2]}, gap.normal, 0.0),
-        gap.max_approach);
+        gap.max_approach, too_near);
   }
-  if (hit) mesh.moved.push_back(particle);
+  if (moved) mesh.moved.push_back(particle);
   return hit;
 }
 
@@ -133,9 +136,10 @@ ParticleGaps::Gap ParticleGaps::gap_over(const Sweep &p, const Near &pair) const
     PairMotion motion{PairKind::POINT_TRIANGLE, start, {}};
     for (int k = 0; k < 4; k++) motion.displacement[k] = end[k] - start[k];
     if (const auto weight = passage(motion)) {
-      gap = {pair.triangle, true, *weight,
-             side * normal, 0.0,  std::numeric_limits<double>::infinity()};
-      gap.depth = std::max(0.0, kept - gap.normal.dot(end[0] - end[1])) + slack;
+      gap = {pair.triangle, true, *weight, side * normal};
+      gap.too_near = std::max(0.0, kept - gap.normal.dot(end[0] - end[1]));
+      gap.depth = gap.too_near + slack;
+      gap.max_approach = std::numeric_limits<double>::infinity();
       return gap;
     }
   }
@@ -150,6 +154,7 @@ ParticleGaps::Gap ParticleGaps::gap_over(const Sweep &p, const Near &pair) const
   else
     gap.normal = vector / distance;
   gap.depth = into + OVERSHOOT * kept;
+  gap.too_near = kept - distance;
   gap.max_approach = APPROACH_FACTOR * into / update->dt;
   return gap;
 }

@@ -48,7 +48,7 @@ class ParticleGaps : protected Pointers {
     bool hit = false;    // not only too near since before the step
     Vec3 weight = Vec3::Zero(), normal = Vec3::Zero();
     double depth = 0.0;
-    double max_approach = 0.0;    // see VelocityRows
+    double too_near = 0.0, max_approach = 0.0;    // see VelocityRows
   };
 
   MovingTriangles &mesh;

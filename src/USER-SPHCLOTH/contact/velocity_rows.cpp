@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "core/contact/contact_impulse.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -18,7 +19,8 @@ void VelocityRows::solve()
   for (const Pushed &pushed : rows) masses.count(pushed.row);
   masses.share(mesh.halo);
   masses.clear_impulses();
-  for (const Pushed &pushed : rows) push(pushed);
+  for (Pushed &pushed : rows) push(pushed);
+  for (const Pushed &pushed : rows) take_back(pushed);
   mesh.halo.reverse_add(0, masses.impulse.data());
   for (int s = 0; s < static_cast<int>(velocity.size()); s++) {
     const Vec3 &impulse = masses.impulse[s];
@@ -39,7 +41,7 @@ void VelocityRows::load_velocities()
   mesh.halo.forward_velocities(0, velocity.data());
 }
 
-void VelocityRows::push(const Pushed &pushed)
+void VelocityRows::push(Pushed &pushed)
 {
   const ContactRules &of_row = rules.of(pushed.row.meeting);
   const Vec3 relative = pushed.row.relative(velocity), &normal = pushed.row.normal;
@@ -49,4 +51,29 @@ void VelocityRows::push(const Pushed &pushed)
                mass = masses.of(pushed.row, mesh.w), step = (1.0 + restitution) * removed * mass;
   const Vec3 sliding = mass * (relative - speed * normal);
   masses.apply(pushed.row, step * normal - clamp_length(sliding, of_row.friction * step));
+  if (of_row.friction > 0.0 && pushed.too_near > 0.0)
+    pushed.taken_back = slid_too_far(pushed, mass, -speed, of_row.friction * step);
+}
+
+// The velocity that friction removes was missing since the contact began.  It takes back no more
+// than the sliding of this step, so that nothing gains energy.
+
+VelocityRows::Vec3 VelocityRows::slid_too_far(const Pushed &pushed, double mass, double approach,
+                                              double max_friction) const
+{
+  const ContactRow &row = pushed.row;
+  const double dt = update->dt, duration = std::min(pushed.too_near / approach, dt);
+  const Vec3 way = row.relative(mesh.end) - row.relative(mesh.start),
+             slid = way - way.dot(row.normal) * row.normal;
+  return mesh.w[row.slots[0]] * duration * clamp_length(mass / dt * slid, max_friction);
+}
+
+void VelocityRows::take_back(const Pushed &pushed)
+{
+  if (pushed.taken_back.isZero(0.0)) return;
+  const int s = pushed.row.slots[0];
+  mesh.end[s] -= pushed.taken_back;
+  double *x = atom->x[mesh.atom_of(s)];
+  for (int d = 0; d < 3; d++) x[d] -= pushed.taken_back[d];
+  mesh.step_start.atoms_moved();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Velocities behind the solver: both sides of what was pushed apart lose their approach.
+// What friction slows has moved with less velocity since the contact began.
 
 #ifndef SPHCLOTH_CONTACT_VELOCITY_ROWS_H
 #define SPHCLOTH_CONTACT_VELOCITY_ROWS_H
@@ -20,10 +21,12 @@ class VelocityRows : protected Pointers {
   }
 
   void clear() { rows.clear(); }
-  // At most `max_approach` of its velocity is removed.
-  void add(const ContactRow &row, double max_approach = std::numeric_limits<double>::infinity())
+  // At most `max_approach` of its velocity is removed.  A particle that came too near by a length
+  // has slid too far for as long as that took.
+  void add(const ContactRow &row, double max_approach = std::numeric_limits<double>::infinity(),
+           double too_near = 0.0)
   {
-    rows.push_back({row, max_approach});
+    rows.push_back({row, max_approach, too_near});
   }
   // Collective.  What restitution gives back comes back at once.
   void solve();
@@ -34,7 +37,8 @@ class VelocityRows : protected Pointers {
   using Vec3 = Eigen::Vector3d;
   struct Pushed {
     ContactRow row;
-    double max_approach;
+    double max_approach, too_near;
+    Vec3 taken_back = Vec3::Zero();
   };
 
   MovingTriangles &mesh;
@@ -44,7 +48,9 @@ class VelocityRows : protected Pointers {
   std::vector<Vec3> velocity;    // by slot
 
   void load_velocities();
-  void push(const Pushed &);
+  void push(Pushed &);
+  Vec3 slid_too_far(const Pushed &, double mass, double approach, double max_friction) const;
+  void take_back(const Pushed &);
 };
 
 }    // namespace LAMMPS_NS

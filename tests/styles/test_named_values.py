@@ -237,7 +237,7 @@ def test_wrong_words_are_errors_that_name_them(free_sheet, style, words, error):
 
 
 @pytest.mark.parametrize("style", NAMES)
-def test_a_fix_that_is_not_there_is_an_error(free_sheet, style):
+def test_a_fix_that_is_not_there_is_an_error(free_sheet, style, tmp_path):
     fix, _, names = NAMES[style]
     of_fix_style = {"sph/step": "sph/integrate"}.get(style, style)
     lmp = free_sheet
@@ -250,6 +250,7 @@ def test_a_fix_that_is_not_there_is_an_error(free_sheet, style):
     bare = instance()
     bare.commands_string("region b block 0 1 0 1 0 1\ncreate_box 1 b\nmass 1 1")
     bare.command(f"compute x all {style} {names[0]}")
+    bare.command(f"write_data {tmp_path}/early.data")  # which initializes, before a run
     with pytest.raises(Exception, match=rf"compute x {style}: there is no fix {of_fix_style}"):
         bare.command("run 0")
     bare.close()

@@ -71,7 +71,12 @@ void NamedValues::set_flags()
   memory->create(vector, size_vector, "named_values:vector");
 }
 
-void NamedValues::init() { find_fix(); }
+// Commands such as write_data may come before the fix.
+
+void NamedValues::init()
+{
+  if (update->whichflag != 0) find_fix();
+}
 
 // Before every use: the user may have replaced the fix since init().
 

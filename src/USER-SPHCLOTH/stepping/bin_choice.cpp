@@ -366,7 +366,7 @@ void BinChoice::begin_steps()
   }
 }
 
-// The steps that they want have been summed with those of all ranks.
+// What they want has been summed where the base step was chosen.
 
 void BinChoice::begin_equal_steps()
 {

@@ -52,7 +52,7 @@ class BinChoice : protected Pointers {
   int finest_vertex;    // time bin of the shortest step of a vertex
   Vertices vertices;
   std::vector<double> wanted;    // step, by owned atom
-  double sum_of_rates = 0.0;    // of the active particles, where the base step has begun
+  double sum_of_rates = 0.0;    // of 1/wanted of the active particles, where a base step begins
   std::vector<int> in_flight;
 
   int find_max_difference(int type, int neighbor_type) const;

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from sphcloth import plots
 from sphcloth.log import ThermoTable
-from sphcloth.rendering.command import draw_frames, make_scene
+from sphcloth.rendering.command import make_scene
 from sphcloth.rendering.movie import write_pictures
 from sphcloth.rendering.scene_roles import SceneRoles
+from sphcloth.rendering.workers import draw_frames
 from sphcloth.results import SUMMARY_PICTURES
 from sphcloth.trajectory import Frame, Trajectory, evenly_spaced
 
@@ -36,7 +37,7 @@ def draw(
     """
     chosen = evenly_spaced(len(trajectory), frames)
     scene = make_scene(some, scene_roles)
-    images = draw_frames(trajectory, scene, chosen)
+    images = draw_frames(trajectory, scene, chosen, [0.0] * len(chosen))
     pictures = list(write_pictures(images, "png", folder / "pictures", ""))
     sheet, history = (folder / name for name in SUMMARY_PICTURES)
     shown = evenly_spaced(len(pictures), SHEET_PICTURES)

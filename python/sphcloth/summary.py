@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections import deque
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,7 +16,7 @@ from sphcloth.advice.evidence import Evidence
 from sphcloth.advice.unused import Finding, unused
 from sphcloth.fix_values import set_by
 from sphcloth.log import ThermoTable
-from sphcloth.metrics.intersections import REMEDY, most_met
+from sphcloth.metrics.intersections import REMEDY, MostMet
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
 from sphcloth.results import show_rows, text, versions, write_json
 from sphcloth.roles import Roles
@@ -170,15 +171,27 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
     poured = _last_count(table, "v_poured")
     evidence = Evidence.of_log(folder / "log.lammps", table)
     porous = evidence.commands.porous(scene_roles.mesh)
-    counted = table if can_balance else None
-    water = Water.of(trajectory, scene_roles, counted, roles.rest_density, porous)
+    layers = any(fix.value("cloth", "no") == "yes" for fix in evidence.commands.styled(CONTACT))
+    met = _met(scene_roles) if layers else None
+    densities = Densities(roles.rest_density)
+    watchers = [met.watch] if met else []
+    if scene_roles.mesh is not None and scene_roles.fluid:
+        watchers.append(densities.watch)
+        # the log counts the water of all types together
+        if can_balance and len(scene_roles.fluid) == 1:
+            fluid = min(scene_roles.fluid)
+            watchers.append(lambda frame: metrics.check_fluid_count(table, frame, fluid))
+    # reading takes most of the time, so each frame is read once for all
+    passing = _watched(trajectory, watchers)
+    water = Water.of(trajectory, passing, scene_roles, porous)
+    if watchers:
+        deque(passing, maxlen=0)
     pictures = []
     if frames is not None:
         # takes long to load, and a run without pictures has no use for it
         from sphcloth.pictures import draw
 
         pictures = draw(trajectory, some, scene_roles, table, folder, frames)
-    layers = any(fix.value("cloth", "no") == "yes" for fix in evidence.commands.styled(CONTACT))
     return Summary(
         time=float(table["Time"][-1]),
         steps=int(table["Step"][-1] - table["Step"][0]),
@@ -190,10 +203,10 @@ def summarize(folder: Path, name: str, frames: int | None) -> Summary:
         crossing_steps=water.crossing_steps,
         unclear_steps=water.unclear_steps,
         layers=layers,
-        intersections=_intersections(scene_roles, trajectory) if layers else None,
+        intersections=met.count if met else None,
         mass_defect=metrics.mass_balance(table) if can_balance else None,
         deviation=_largest(table, "v_deviation"),
-        compressed=water.compressed,
+        compressed=densities.compressed,
         momentum_defect=_largest(table, "v_momentum"),
         contact_share=_contact_share(table.runs[-1]),
         step_set_by=evidence.commands.steps_by_limit,
@@ -216,8 +229,6 @@ class Water:
         through_pores: particles that went through pores; None if there are none.
         crossing_steps: the steps of the frames after that, without repeats.
         unclear_steps: the same of those that moved too far.
-        compressed: share of the water, of all frames, that is denser than at rest by more than
-            1 %; None if the dump does not tell.
     """
 
     on_sheet: int | None = None
@@ -225,78 +236,55 @@ class Water:
     through_pores: int | None = None
     crossing_steps: list[int] = field(default_factory=list)
     unclear_steps: list[int] = field(default_factory=list)
-    compressed: float | None = None
 
     @classmethod
     def of(
         cls,
         trajectory: Trajectory,
+        frames: Iterable[Frame],
         scene_roles: SceneRoles,
-        table: ThermoTable | None,
-        rest_density: Mapping[int, float],
         porous: Collection[int] = (),
     ) -> Water:
-        """Follow all water through a dump; with a table, check that all of it is there.
+        """Follow all water through a dump.
 
         Args:
             trajectory: the dump.
+            frames: its frames, of which all or none are taken, each once.
             scene_roles: of its atoms.
-            table: of the log.
-            rest_density: of each type of water.
             porous: angle types of triangles with pores.
         """
-        if scene_roles.mesh is None or not scene_roles.fluid:
+        kinds, mesh = sorted(scene_roles.fluid), scene_roles.mesh
+        if mesh is None or not kinds:
             return cls()
-        last, mesh = trajectory[-1], scene_roles.mesh
-        above = [metrics.above_sheet(mesh, last, kind) for kind in scene_roles.fluid]
-        densities = Densities(rest_density)
+        on_sheet = int(np.count_nonzero(metrics.above_sheet(mesh, trajectory[-1], kinds)))
         if len(trajectory) < 2:
-            for _ in densities.watch(_counted(trajectory, table, scene_roles.fluid)):
-                pass
-            return cls(int(sum(map(np.count_nonzero, above))), compressed=densities.compressed)
-        passes = []
-        watertight = mesh.without_kinds(porous)
-        for kind in scene_roles.fluid:
-            frames = _counted(trajectory, table, scene_roles.fluid)
-            seen = frames if passes else densities.watch(frames)
-            passes.append(metrics.crossings(watertight, seen, kind))
-        clear, unclear = (
-            np.concatenate([one.steps[one.is_unclear == far] for one in passes])
-            for far in (False, True)
-        )
-        crossed = sum(len(np.unique(one.ids[~one.is_unclear])) for one in passes)
+            return cls(on_sheet)
+        found = metrics.crossings(mesh.without_kinds(porous), frames, kinds)
+        clear, unclear = (found.steps[found.is_unclear == far] for far in (False, True))
+        can_tell = len(clear) or not len(unclear)
+        crossed = len(np.unique(found.ids[~found.is_unclear])) if can_tell else None
         through = None
         if porous:
-            pores = mesh.of_kinds(porous)
-            found = (metrics.crossings(pores, trajectory, kind) for kind in scene_roles.fluid)
-            through = sum(one.count for one in found)
-        return cls(
-            int(sum(map(np.count_nonzero, above))),
-            crossed if len(clear) or not len(unclear) else None,
-            through,
-            np.unique(clear).tolist(),
-            np.unique(unclear).tolist(),
-            densities.compressed,
-        )
+            through = metrics.crossings(mesh.of_kinds(porous), trajectory, kinds).count
+        seen = np.unique(clear).tolist(), np.unique(unclear).tolist()
+        return cls(on_sheet, crossed, through, *seen)
 
 
 @dataclass
 class Densities:
-    """How much water of the frames that pass is compressed."""
+    """How much water of the frames is compressed."""
 
     rest: Mapping[int, float]
     dense: float = 0.0
     particles: int = 0
 
-    def watch(self, frames: Iterable[Frame]) -> Iterator[Frame]:
-        """Pass the frames on."""
-        for frame in frames:
-            for kind, rest in self.rest.items():
-                n = int(np.count_nonzero(frame.types == kind))
-                if n and "rho" in frame.columns:
-                    self.dense += n * metrics.compressed_share(frame, rest, kind)
-                    self.particles += n
-            yield frame
+    def watch(self, frame: Frame) -> None:
+        """Count those of a frame."""
+        for kind, rest in self.rest.items():
+            n = int(np.count_nonzero(frame.types == kind))
+            if n and "rho" in frame.columns:
+                self.dense += n * metrics.compressed_share(frame, rest, kind)
+                self.particles += n
 
     @property
     def compressed(self) -> float | None:
@@ -304,22 +292,21 @@ class Densities:
         return self.dense / self.particles if self.particles else None
 
 
-def _counted(
-    trajectory: Trajectory, table: ThermoTable | None, fluid: frozenset[int]
+def _watched(
+    frames: Iterable[Frame], watchers: Sequence[Callable[[Frame], None]]
 ) -> Iterator[Frame]:
-    """Pass the frames on; with a table, each checked to hold all of the water."""
-    for frame in trajectory:
-        # the log counts the water of all types together
-        if table is not None and len(fluid) == 1:
-            metrics.check_fluid_count(table, frame, *fluid)
+    """Pass frames on, each after all have seen it."""
+    for frame in frames:
+        for watch in watchers:
+            watch(frame)
         yield frame
 
 
-def _intersections(scene_roles: SceneRoles, trajectory: Trajectory) -> int | None:
-    """Return the most edges through triangles in a frame; None without ipctk, which finds them."""
+def _met(scene_roles: SceneRoles) -> MostMet | None:
+    """Return what counts edges through triangles; None without ipctk, which finds them."""
     if scene_roles.mesh is None or find_spec("ipctk") is None:
         return None
-    return most_met(scene_roles.mesh, scene_roles.cloth, trajectory)
+    return MostMet(scene_roles.mesh, scene_roles.cloth)
 
 
 def _updates(table: ThermoTable) -> float | None:

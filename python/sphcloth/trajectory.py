@@ -89,9 +89,9 @@ class Frame:
         wraps = np.round(displacements @ np.linalg.inv(self.cell)) * self.periodic
         return displacements - wraps @ self.cell
 
-    def select(self, atom_type: int) -> Frame:
-        """Return the atoms of one type as a frame of their own."""
-        chosen = self.types == atom_type
+    def select(self, atom_type: int | Sequence[int]) -> Frame:
+        """Return the atoms of one type, or of several, as a frame of their own."""
+        chosen = np.isin(self.types, atom_type)
         columns = {name: values[chosen] for name, values in self.columns.items()}
         return replace(self, columns=columns)
 

@@ -12,7 +12,7 @@ from conftest import make_frame, square_sheet
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics import intersections
-from sphcloth.metrics.intersections import Intersections, inspect, most_met
+from sphcloth.metrics.intersections import Intersections, MostMet, inspect
 from sphcloth.trajectory import Frame
 
 pytest.importorskip("ipctk", reason="pip install 'sphcloth[oracle]'")
@@ -171,5 +171,8 @@ def test_the_frame_with_most_edges_through_triangles_counts() -> None:
     counts = [oracle.count(frame.positions) for frame in frames]
     assert counts[0] == counts[2] == 2
     assert counts[1] > 2
-    assert most_met(mesh, cloth, frames) == counts[1] - 2
-    assert most_met(mesh, cloth, frames[::2]) == 0
+    for shown, count in ((frames, counts[1] - 2), (frames[::2], 0)):
+        met = MostMet(mesh, cloth)
+        for frame in shown:
+            met.watch(frame)
+        assert met.count == count

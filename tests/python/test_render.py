@@ -20,6 +20,7 @@ from sphcloth.plots import contact_sheet
 from sphcloth.rendering import backdrop, command, light, movie, scene
 from sphcloth.rendering.scene import Scene
 from sphcloth.rendering.scene_roles import Choice, SceneRoles
+from sphcloth.rendering.shading import Geometry
 from sphcloth.roles import Roles
 from sphcloth.trajectory import Frame
 
@@ -52,9 +53,13 @@ def scene_of(
     return Scene.of(shown, roles, SIZE, **options)
 
 
-def picture(whole: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
+def geometry_of(whole: Scene, frame: Frame) -> Geometry:
     renderer = whole.renderer()
-    return renderer.picture(renderer.geometry_of(frame), angle)
+    return renderer.geometry_of(frame, renderer.follow(frame))
+
+
+def picture(whole: Scene, frame: Frame, angle: float = 0.0) -> np.ndarray:
+    return whole.renderer().picture(geometry_of(whole, frame), angle)
 
 
 def share_of(image: np.ndarray, hue: float, least_saturation: float = 0.25) -> float:
@@ -89,7 +94,7 @@ def test_pins_are_the_vertices_that_never_move() -> None:
 
 def test_water_ends_at_the_sheet() -> None:
     flat = make_frame(0, block(5, 0.08, (0.3, 0.3, 0.0)), SHEET)
-    surface = scene_of([flat]).renderer().geometry_of(flat).water
+    surface = geometry_of(scene_of([flat]), flat).water
     # nodes of the grid are a quarter of the spacing apart, and the last smoothing moves them
     assert surface.points[:, 2].min() > -0.005
     assert surface.points[:, 2].max() > 0.38
@@ -109,8 +114,7 @@ def test_particles_that_never_move_are_walls() -> None:
     roles = SceneRoles.of([first, second], Roles(), Choice())
     assert (roles.fluid, roles.walls) == (frozenset({1}), frozenset({2}))
     whole = Scene.of([first, second], roles, SIZE)
-    renderer = whole.renderer()
-    assert len(renderer.geometry_of(first).walls.triangles)
+    assert len(geometry_of(whole, first).walls.triangles)
     assert picture(whole, first).shape
 
 
@@ -119,7 +123,7 @@ def test_a_scene_of_two_dimensions_stands_upright() -> None:
     flat = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
     whole = scene_of([make_frame(0, flat, np.zeros((0, 3)))], mesh=None)
     assert whole.roles.is_flat
-    water = whole.renderer().geometry_of(make_frame(0, flat, np.zeros((0, 3)))).water
+    water = geometry_of(whole, make_frame(0, flat, np.zeros((0, 3)))).water
     low, high = water.points.min(axis=0), water.points.max(axis=0)
     np.testing.assert_allclose(high[2] - low[2], 0.4, atol=0.04)
     np.testing.assert_allclose(high[0] - low[0], 0.8, atol=0.04)
@@ -132,7 +136,7 @@ def test_water_goes_on_across_a_periodic_boundary() -> None:
     frame = make_frame(0, layer, np.zeros((0, 3)))
     frame = replace(frame, box=np.array([[0.0] * 3, [6.0] * 3]), periodic=(True, True, False))
     whole = scene_of([frame], mesh=None, choice=Choice(spacing=1.0))
-    water = whole.renderer().geometry_of(frame).water
+    water = geometry_of(whole, frame).water
     np.testing.assert_allclose(water.points[:, 0].min(), 0, atol=0.1)
     near_the_end = abs(water.points[:, 0] - 0.6) < 0.2
     inner = near_the_end & (abs(water.points[:, 1] - 3) < 2) & (water.points[:, 2] > 1.5)
@@ -164,12 +168,12 @@ def test_a_lost_drop_changes_nothing() -> None:
 @pytest.mark.parametrize("fluid", [[[np.nan, 0, 0]], [[0, np.inf, 0]]])
 def test_positions_must_be_finite(fluid: list[list[float]]) -> None:
     with pytest.raises(UserError, match="not finite at step 3"):
-        scene_of(frames()).renderer().geometry_of(make_frame(3, fluid, SHEET))
+        geometry_of(scene_of(frames()), make_frame(3, fluid, SHEET))
 
 
 def test_a_coordinate_that_is_too_large_is_named_with_the_limit() -> None:
     with pytest.raises(UserError, match=r"coordinate of 2e\+12 at step 3: .* below 1e\+12"):
-        scene_of(frames()).renderer().geometry_of(make_frame(3, [[0, -2e12, 0]], SHEET))
+        geometry_of(scene_of(frames()), make_frame(3, [[0, -2e12, 0]], SHEET))
 
 
 # the command

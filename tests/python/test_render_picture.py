@@ -120,5 +120,6 @@ def test_pictures_do_not_depend_on_the_number_of_threads(monkeypatch: pytest.Mon
         monkeypatch.setattr(canvas, "THREADS", threads)
         monkeypatch.setattr(canvas, "PART", 500)
         renderer = Scene.of(frames, roles, SIZE).renderer()
-        pictures.append([renderer.picture(renderer.geometry_of(frame)) for frame in frames])
+        made = [renderer.geometry_of(frame, renderer.follow(frame)) for frame in frames]
+        pictures.append([renderer.picture(geometry) for geometry in made])
     np.testing.assert_array_equal(*pictures)

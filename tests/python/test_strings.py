@@ -82,7 +82,7 @@ def test_strings_and_their_knots_are_in_the_picture() -> None:
     roles = SceneRoles.of([frame], Roles(mesh=MESH, strings=strings()), Choice())
     scene = Scene.of([frame], roles, SIZE)
     renderer = scene.renderer()
-    geometry = renderer.geometry_of(frame)
+    geometry = renderer.geometry_of(frame, renderer.follow(frame))
     tube = geometry.solids[-1].surface
     assert tube.points[:, 2].min() == pytest.approx(-0.7, abs=1e-2)
     assert np.concatenate([balls.centers for balls in geometry.spheres]).tolist() == [

@@ -100,6 +100,10 @@ def render(
     view: View,
     form: Annotated[str, typer.Option("--format", help="png, gif or mp4.")] = "png",
     particles: Particles,
+    jobs: Annotated[
+        int,
+        typer.Option(min=0, help="Processes that draw, 0 for one on each core."),
+    ] = 0,
     json_file: JsonFile = None,
 ) -> None:
     """Draw a dump: water as a surface, cloth, walls; pictures or a film."""
@@ -119,6 +123,7 @@ def render(
         ),
         view=command.View(view.camera, view.target, view.turntable, view.size, view.spheres),
         form=form,
+        jobs=jobs,
         console=Console(),
     )
     if json_file is not None:

@@ -215,23 +215,30 @@ def inspect(
     )
 
 
-def most_met(mesh: ClothMesh, cloth: NDArray[np.bool_], frames: Iterable[Frame]) -> int:
-    """Return the number of edges and triangles that meet in the frame with most of such pairs.
+class MostMet:
+    """The number of edges and triangles that meet, in the frame with most of such pairs."""
 
-    Args:
-        mesh: of cloth and obstacles.
-        cloth: which of its triangles are cloth, shape (T,); others do not meet one another.
-        frames: of a run.
+    def __init__(self, mesh: ClothMesh, cloth: NDArray[np.bool_]) -> None:
+        """Take a mesh of cloth and obstacles.
 
-    Raises:
-        UserError: ipctk is not installed.
-    """
-    moving, resting = np.unique(mesh.triangles[cloth]), np.unique(mesh.triangles[~cloth])
-    order = np.concatenate([moving, np.setdiff1d(resting, moving)])
-    place = np.empty(len(mesh.ids), np.int64)
-    place[order] = np.arange(len(order))
-    oracle = Intersections(place[mesh.triangles], len(order), len(moving))
-    return max((oracle.count(unwrapped(mesh, frame)[order]) for frame in frames), default=0)
+        Args:
+            mesh: of both.
+            cloth: which of its triangles are cloth, shape (T,); others do not meet one another.
+
+        Raises:
+            UserError: ipctk is not installed.
+        """
+        moving, resting = np.unique(mesh.triangles[cloth]), np.unique(mesh.triangles[~cloth])
+        self._mesh, self.count = mesh, 0
+        self._order = np.concatenate([moving, np.setdiff1d(resting, moving)])
+        place = np.empty(len(mesh.ids), np.int64)
+        place[self._order] = np.arange(len(self._order))
+        self._oracle = Intersections(place[mesh.triangles], len(self._order), len(moving))
+
+    def watch(self, frame: Frame) -> None:
+        """Count those of a frame."""
+        positions = unwrapped(self._mesh, frame)[self._order]
+        self.count = max(self.count, self._oracle.count(positions))
 
 
 def unwrapped(mesh: ClothMesh, frame: Frame) -> NDArray[np.float64]:

@@ -52,7 +52,9 @@ class Crossings:
         return len(np.unique(self.ids))
 
 
-def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1) -> Crossings:
+def crossings(
+    mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int | Sequence[int] = 1
+) -> Crossings:
     """Find the fluid particles that end up on the other side of the moving sheet.
 
     Particles and vertices are taken to move along straight lines from frame to frame. In each
@@ -63,6 +65,11 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
 
     Through periodic faces, edges and paths are taken to be the shortest ones: both must be shorter
     than half the distance of opposite faces of the box.
+
+    Args:
+        mesh: of the sheet.
+        trajectory: frames; each is taken once, so they may be read on the way.
+        fluid_type: atom type of the fluid, or several.
 
     Raises:
         UserError: there is one frame, or a position that is not finite.
@@ -81,7 +88,9 @@ def crossings(mesh: ClothMesh, trajectory: Iterable[Frame], fluid_type: int = 1)
     )
 
 
-def above_sheet(mesh: ClothMesh, frame: Frame, fluid_type: int = 1) -> NDArray[np.bool_]:
+def above_sheet(
+    mesh: ClothMesh, frame: Frame, fluid_type: int | Sequence[int] = 1
+) -> NDArray[np.bool_]:
     """Tell which fluid particles have the sheet vertically below them, shape (fluid particles,).
 
     They rest on the sheet or are on their way down to it; the others missed it or ran off.
@@ -108,7 +117,9 @@ def above_sheet(mesh: ClothMesh, frame: Frame, fluid_type: int = 1) -> NDArray[n
     return above
 
 
-def _crossings_between(mesh: ClothMesh, before: Frame, after: Frame, fluid_type: int) -> Crossings:
+def _crossings_between(
+    mesh: ClothMesh, before: Frame, after: Frame, fluid_type: int | Sequence[int]
+) -> Crossings:
     """Compare the paths of the particles present in both frames with that of the sheet."""
     start, end = before.select(fluid_type), after.select(fluid_type)
     ids, first, second = np.intersect1d(start.ids, end.ids, True, return_indices=True)

@@ -16,6 +16,7 @@ from sphcloth.errors import UserError
 from sphcloth.rendering.movie import check_format, write_pictures
 from sphcloth.rendering.scene import Scene
 from sphcloth.rendering.scene_roles import QUANTITIES, Choice, SceneRoles
+from sphcloth.rendering.workers import draw_frames
 from sphcloth.results import write_json
 from sphcloth.roles import Roles, parse_types
 from sphcloth.trajectory import Frame, Trajectory, evenly_spaced, samples
@@ -137,21 +138,22 @@ def make_scene(frames: Sequence[Frame], roles: SceneRoles, view: View | None = N
     return scene.look_from(camera, target)
 
 
-def draw_frames(
-    trajectory: Trajectory, scene: Scene, numbers: Sequence[int], turntable: bool = False
+def draw(
+    trajectory: Trajectory,
+    scene: Scene,
+    numbers: Sequence[int],
+    turntable: bool = False,
+    jobs: int = 0,
 ) -> Iterator[NDArray[np.uint8]]:
-    """Draw frames, one in memory at a time.
+    """Draw frames, by so many processes, 0 for one on each core.
 
     On a turntable the camera goes once around; a single frame gives ``TURNTABLE_VIEWS`` pictures.
     """
-    renderer = scene.renderer()
-    views = TURNTABLE_VIEWS if turntable and len(numbers) == 1 else 1
-    total = views * len(numbers)
-    for place, number in enumerate(numbers):
-        geometry = renderer.geometry_of(trajectory[number])
-        for view in range(views):
-            angle = 2 * np.pi * (place * views + view) / total if turntable else 0.0
-            yield renderer.picture(geometry, angle)
+    if not turntable:
+        return draw_frames(trajectory, scene, numbers, [0.0] * len(numbers), jobs)
+    shown = [*numbers] * TURNTABLE_VIEWS if len(numbers) == 1 else numbers
+    around = np.linspace(0, 2 * np.pi, len(shown), endpoint=False).tolist()
+    return draw_frames(trajectory, scene, shown, around, jobs)
 
 
 def render(
@@ -164,6 +166,7 @@ def render(
     choice: Choice,
     view: View,
     form: str,
+    jobs: int,
     console: Console,
 ) -> Report:
     """Draw frames of a dump and say what was written.
@@ -177,6 +180,7 @@ def render(
         choice: which atoms are what, and the colors.
         view: camera and size.
         form: ``png``, ``gif`` or ``mp4``.
+        jobs: number of processes that draw; 0 for one on each core.
         console: where progress and the result appear.
 
     Raises:
@@ -191,7 +195,7 @@ def render(
     total = TURNTABLE_VIEWS if view.turntable and len(numbers) == 1 else len(numbers)
     start = time.perf_counter()
     pictures = track(
-        draw_frames(trajectory, scene, numbers, view.turntable), "drawing", total, console=console
+        draw(trajectory, scene, numbers, view.turntable, jobs), "drawing", total, console=console
     )
     paths = list(write_pictures(pictures, form, out, dump.stem))
     seconds = (time.perf_counter() - start) / total

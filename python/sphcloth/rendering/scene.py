@@ -128,14 +128,20 @@ class Renderer:
         self._walls: tuple[Particles, Surface] | None = None
         self._view: tuple[float, View] | None = None
 
-    def geometry_of(self, frame: Frame) -> Geometry:
-        """Make the surfaces of a frame.
+    def follow(self, frame: Frame) -> NDArray[np.float64] | None:
+        """Return the vertices without periodic wraps, shape (V, 3); None without cloth.
+
+        Frames must come in the order of the dump.
+        """
+        return None if self._unwrap is None else self._unwrap(frame)
+
+    def geometry_of(self, frame: Frame, sheet: NDArray[np.float64] | None) -> Geometry:
+        """Make the surfaces of a frame, whose vertices are where ``follow`` found them.
 
         Raises:
             UserError: a vertex or a column is not in the frame, or a number is not finite.
         """
         scene = self._scene
-        sheet = None if self._unwrap is None else self._unwrap(frame)
         solids = [] if sheet is None else self._solids(frame, sheet)
         spheres = [self._pins(frame)] if len(scene.pinned) else []
         particles = _within(scene.roles.water(frame), scene.environment)

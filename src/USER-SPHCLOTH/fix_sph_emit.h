@@ -34,13 +34,11 @@ class FixSPHEmit : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // what came in so far; energy: kinetic, of mass times velocity squared
+  // what came in so far, plain, for restart files; energy: kinetic, of mass times velocity squared
   struct Poured {
-    double mass;
-    Eigen::Vector3d momentum;
-    double energy;
+    double mass, momentum[3], energy;
   };
-  Poured poured() const;
+  const Poured &poured() const { return came_in; }
 
  private:
   using Vec3 = Eigen::Vector3d;
@@ -58,7 +56,7 @@ class FixSPHEmit : public Fix {
   double start;                 // physical time of the first layer
   double layer_time;            // between layers: spacing / speed
   bigint layers;                // poured so far
-  double momentum[3];           // that came in with the particles
+  Poured came_in{};             // so far
   tagint largest_id = 0;        // of atoms so far, also of those that have left
   std::vector<Vec3> pattern;    // one layer, relative to the center
   Vec3 sides[2];                // unit vectors along those of a rectangle

@@ -146,7 +146,7 @@ void FixClothGas::init()
     cloths.push_back(dynamic_cast<const ContactMesh *>(fix));
 }
 
-// those that are known go on
+// Those that are known go on, one also where its IDs are other ones now.
 
 void FixClothGas::begin_chambers()
 {
@@ -159,9 +159,17 @@ void FixClothGas::begin_chambers()
   for (std::size_t c = 0; c < n; c++) {
     const auto first_id = static_cast<double>(chambers.first_id(static_cast<int>(c)));
     if (states[c].first_id == first_id) continue;
-    states[c] = Chamber{};
+    const GasChambers::Frame &frame = chambers.new_frames()[c];
+    if (states[c].first_id == 0.0)
+      states[c].frame = frame;
+    else if (n > 1)
+      error->all(FLERR,
+                 "{}: atoms have other IDs than in the last run, and the {} chambers cannot be "
+                 "told apart: use 'reset_atoms id' before the fix is defined",
+                 label, n);
+    else if (has_law || !chambers.any_open())
+      states[c].frame.side = frame.side;    // IDs decide it where half of the triangles are turned
     states[c].first_id = first_id;
-    states[c].frame = chambers.new_frames()[c];
   }
 }
 

@@ -50,6 +50,7 @@ FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
   spacing = args.positive("spacing");
   read_options(args);
   make_pattern();
+  post_run();
 }
 
 void FixSPHEmit::read_options(ArgReader &args)
@@ -125,10 +126,11 @@ void FixSPHEmit::make_pattern()
     }
 }
 
-int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE; }
+int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | POST_RUN; }
 
 void FixSPHEmit::init()
 {
+  follow_renumbering();
   const auto *fluid = FluidState::find(force);
   if (!fluid || !fluid->is_fluid(itype))
     error->all(
@@ -179,6 +181,21 @@ void FixSPHEmit::setup_pre_exchange()
 void FixSPHEmit::post_integrate()
 {
   if (layer_is_due()) next_reneighbor = update->ntimestep;
+}
+
+void FixSPHEmit::post_run() { ids.assign(atom->tag, atom->tag + atom->nlocal); }
+
+// Where commands between two runs have given IDs anew, as reset_atoms does, there are none of
+// before any more.  Where atoms have only left, those that are there had the same IDs before.
+
+void FixSPHEmit::follow_renumbering()
+{
+  const tagint n = first_free_id(lmp, label, 0) - 1;
+  if (n != atom->natoms || n >= largest_id) return;    // new IDs have no gap
+  const bigint mine = std::count_if(ids.begin(), ids.end(), [n](tagint one) { return one <= n; });
+  bigint all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all < n) largest_id = n;
 }
 
 void FixSPHEmit::pre_exchange()

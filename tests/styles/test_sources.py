@@ -124,6 +124,33 @@ def test_ids_that_end_are_named():
 
 
 FOUR = "rectangle 0 0 0.8 0.1 0.1"  # particles a layer, every 25 steps
+LAST_ID = 2**31 - 1
+
+
+@pytest.mark.parametrize("restarts", [False, True])
+def test_ids_go_on_from_those_that_are_given_anew(tmp_path, restarts):
+    lmp = instance()
+    script = POUR.format(n=1000, dt=1e-3, opening=FOUR)
+    lmp.commands_string(script)
+    assert lmp.create_atoms(1, [LAST_ID - 20], [1], [0.3, 0.3, -0.3]) == 1
+    lmp.command("run 60")
+    assert by_id(lmp, "id").max() == LAST_ID - 8
+    if restarts:
+        file = tmp_path / "many.restart"
+        lmp.command(f"write_restart {file}")
+        lmp = instance()
+        lmp.commands_string(f"comm_modify vel yes\nread_restart {file}\n{neighbor(0.03)}")
+        lmp.commands_string(script.split("check yes\n")[1])
+    lmp.commands_string("reset_atoms id\nrun 140")
+    assert sorted(by_id(lmp, "id")) == list(range(1, 4 * 9 + 2))
+
+
+def test_ids_go_on_where_the_latest_have_been_deleted_between_runs():
+    lmp = pour(
+        opening=FOUR, extra="run 30\ngroup late id > 4\ndelete_atoms group late compress no\n"
+    )
+    lmp.command("run 20")
+    assert sorted(by_id(lmp, "id")) == [1, 2, 3, 4, 9, 10, 11, 12]
 
 
 @pytest.mark.parametrize(("speed", "layers"), [(2, 9), (1, 6), (4, 14), (0.2, 4)])

@@ -208,7 +208,8 @@ void FixClothGas::follow(Chamber &chamber, const GasChambers::Volume &now, Phase
   check_volume(chamber, now.value);
   const bool begins = chamber.started == 0.0;
   if (begins) begin(chamber, now);
-  if (begins || phase == Phase::MINIMIZE)
+  const bool moved = phase == Phase::AGAIN && has_been_moved(chamber, now.value);
+  if (begins || moved || phase == Phase::MINIMIZE)
     begin_steps(chamber, now);
   else if (phase == Phase::STEP) {
     chamber.earlier = chamber.before;
@@ -239,6 +240,14 @@ void FixClothGas::begin(Chamber &chamber, const GasChambers::Volume &now) const
   chamber.started = 1.0;
   chamber.gas = now.value;
   chamber.excess = has_law ? law.start - law.ambient : constant.value();
+}
+
+// between two runs: volumes of before say nothing of how fast the walls are
+
+bool FixClothGas::has_been_moved(const Chamber &chamber, double volume) const
+{
+  constexpr double ROUNDING = 1e-9;
+  return std::fabs(volume - chamber.volume) > ROUNDING * std::fabs(chamber.volume);
 }
 
 // as if no gas had pushed before

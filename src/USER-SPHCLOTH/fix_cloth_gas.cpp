@@ -146,7 +146,7 @@ void FixClothGas::init()
     cloths.push_back(dynamic_cast<const ContactMesh *>(fix));
 }
 
-// those that are known go on
+// Those that are known go on, one also where its IDs are other ones now.
 
 void FixClothGas::begin_chambers()
 {
@@ -159,9 +159,17 @@ void FixClothGas::begin_chambers()
   for (std::size_t c = 0; c < n; c++) {
     const auto first_id = static_cast<double>(chambers.first_id(static_cast<int>(c)));
     if (states[c].first_id == first_id) continue;
-    states[c] = Chamber{};
+    const GasChambers::Frame &frame = chambers.new_frames()[c];
+    if (states[c].first_id == 0.0)
+      states[c].frame = frame;
+    else if (n > 1)
+      error->all(FLERR,
+                 "{}: atoms have other IDs than in the last run, and the {} chambers cannot be "
+                 "told apart: use 'reset_atoms id' before the fix is defined",
+                 label, n);
+    else if (has_law || !chambers.any_open())
+      states[c].frame.side = frame.side;    // IDs decide it where half of the triangles are turned
     states[c].first_id = first_id;
-    states[c].frame = chambers.new_frames()[c];
   }
 }
 
@@ -200,7 +208,8 @@ void FixClothGas::follow(Chamber &chamber, const GasChambers::Volume &now, Phase
   check_volume(chamber, now.value);
   const bool begins = chamber.started == 0.0;
   if (begins) begin(chamber, now);
-  if (begins || phase == Phase::MINIMIZE)
+  const bool moved = phase == Phase::AGAIN && has_been_moved(chamber, now.value);
+  if (begins || moved || phase == Phase::MINIMIZE)
     begin_steps(chamber, now);
   else if (phase == Phase::STEP) {
     chamber.earlier = chamber.before;
@@ -231,6 +240,14 @@ void FixClothGas::begin(Chamber &chamber, const GasChambers::Volume &now) const
   chamber.started = 1.0;
   chamber.gas = now.value;
   chamber.excess = has_law ? law.start - law.ambient : constant.value();
+}
+
+// between two runs: volumes of before say nothing of how fast the walls are
+
+bool FixClothGas::has_been_moved(const Chamber &chamber, double volume) const
+{
+  constexpr double ROUNDING = 1e-9;
+  return std::fabs(volume - chamber.volume) > ROUNDING * std::fabs(chamber.volume);
 }
 
 // as if no gas had pushed before

@@ -79,6 +79,7 @@ class FixClothGas : public Fix {
   void follow(Chamber &, const GasChambers::Volume &, Phase);
   void check_volume(const Chamber &, double volume) const;
   void begin(Chamber &, const GasChambers::Volume &) const;
+  bool has_been_moved(const Chamber &, double volume) const;
   void begin_steps(Chamber &, const GasChambers::Volume &) const;
   void let_flow(Chamber &, Phase);
   void set_gas(Chamber &, double) const;

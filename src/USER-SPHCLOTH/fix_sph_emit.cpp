@@ -33,7 +33,7 @@ static constexpr double MAX_IN_LAYER = 1e8;
 FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} sph/emit", id)), total(0), emitted(0), itype(0),
     spacing(0.0), mass(0.0), center(Vec3::Zero()), velocity(Vec3::Zero()), extent{0.0, 0.0},
-    disc(false), start(0.0), layer_time(0.0), layers(0), momentum{}
+    disc(false), start(0.0), layer_time(0.0), layers(0)
 {
   restart_global = 1;
   force_reneighbor = 1;
@@ -50,6 +50,7 @@ FixSPHEmit::FixSPHEmit(LAMMPS *lmp_, int narg, char **arg) :
   spacing = args.positive("spacing");
   read_options(args);
   make_pattern();
+  post_run();
 }
 
 void FixSPHEmit::read_options(ArgReader &args)
@@ -125,10 +126,11 @@ void FixSPHEmit::make_pattern()
     }
 }
 
-int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE; }
+int FixSPHEmit::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | POST_RUN; }
 
 void FixSPHEmit::init()
 {
+  follow_renumbering();
   const auto *fluid = FluidState::find(force);
   if (!fluid || !fluid->is_fluid(itype))
     error->all(
@@ -181,6 +183,21 @@ void FixSPHEmit::post_integrate()
   if (layer_is_due()) next_reneighbor = update->ntimestep;
 }
 
+void FixSPHEmit::post_run() { ids.assign(atom->tag, atom->tag + atom->nlocal); }
+
+// Where commands between two runs have given IDs anew, as reset_atoms does, there are none of
+// before any more.  Where atoms have only left, those that are there had the same IDs before.
+
+void FixSPHEmit::follow_renumbering()
+{
+  const tagint n = first_free_id(lmp, label, 0) - 1;
+  if (n != atom->natoms || n >= largest_id) return;    // new IDs have no gap
+  const bigint mine = std::count_if(ids.begin(), ids.end(), [n](tagint one) { return one <= n; });
+  bigint all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all < n) largest_id = n;
+}
+
 void FixSPHEmit::pre_exchange()
 {
   while (layer_is_due()) emit_layer(physical_time(update) - due());
@@ -210,7 +227,9 @@ void FixSPHEmit::emit_layer(double age)
   atom->natoms += all[0];
   refresh_map(atom);
   const double more = static_cast<double>(all[0]) * mass_of_one();
-  for (int d = 0; d < 3; d++) momentum[d] += more * velocity[d];
+  came_in.mass += more;
+  for (int d = 0; d < 3; d++) came_in.momentum[d] += more * velocity[d];
+  came_in.energy += 0.5 * more * velocity.squaredNorm();
   emitted += all[0];
   layers++;
   largest_id = first + static_cast<tagint>(all[0]) - 1;
@@ -253,33 +272,24 @@ void FixSPHEmit::add_particle(const Vec3 &position, tagint tag)
 
 double FixSPHEmit::mass_of_one() const { return atom->rmass ? mass : atom->mass[itype]; }
 
-FixSPHEmit::Poured FixSPHEmit::poured() const
-{
-  const Vec3 all(momentum[0], momentum[1], momentum[2]);
-  return {static_cast<double>(emitted) * mass_of_one(), all, 0.5 * all.dot(velocity)};
-}
-
 // particles that are still to come, then the momentum that came in
 
 double FixSPHEmit::compute_vector(int n)
 {
-  return n == 0 ? static_cast<double>(total - emitted) : momentum[n - 1];
+  return n == 0 ? static_cast<double>(total - emitted) : came_in.momentum[n - 1];
 }
 
 struct FixSPHEmit::Record {
   bigint emitted, layers, largest_id;
-  double start, momentum[3], time;    // start and time: physical
+  double start, layer_time, time;    // start and time: physical
+  Poured came_in;
 };
 
 void FixSPHEmit::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  write_record(fp, Record{emitted,
-                          layers,
-                          largest_id,
-                          start,
-                          {momentum[0], momentum[1], momentum[2]},
-                          physical_time(update)});
+  write_record(fp, Record{emitted, layers, largest_id, start, layer_time, physical_time(update),
+                          came_in});
 }
 
 void FixSPHEmit::restart(char *buf)
@@ -288,7 +298,9 @@ void FixSPHEmit::restart(char *buf)
   emitted = record.emitted;
   layers = record.layers;
   largest_id = static_cast<tagint>(record.largest_id);
+  came_in = record.came_in;
   // reset_timestep may have come before this fix
   start = record.start + (physical_time(update) - record.time);
-  std::copy(record.momentum, record.momentum + 3, momentum);
+  // the layer that comes next is due when it was, also if those behind it have another interval
+  start += static_cast<double>(layers) * (record.layer_time - layer_time);
 }

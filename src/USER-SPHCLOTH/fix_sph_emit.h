@@ -29,18 +29,17 @@ class FixSPHEmit : public Fix {
   void setup_pre_exchange() override;
   void post_integrate() override;
   void pre_exchange() override;
+  void post_run() override;
   double compute_scalar() override { return static_cast<double>(emitted); }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // what came in so far; energy: kinetic, of mass times velocity squared
+  // what came in so far, plain, for restart files; energy: kinetic, of mass times velocity squared
   struct Poured {
-    double mass;
-    Eigen::Vector3d momentum;
-    double energy;
+    double mass, momentum[3], energy;
   };
-  Poured poured() const;
+  const Poured &poured() const { return came_in; }
 
  private:
   using Vec3 = Eigen::Vector3d;
@@ -58,8 +57,9 @@ class FixSPHEmit : public Fix {
   double start;                 // physical time of the first layer
   double layer_time;            // between layers: spacing / speed
   bigint layers;                // poured so far
-  double momentum[3];           // that came in with the particles
+  Poured came_in{};             // so far
   tagint largest_id = 0;        // of atoms so far, also of those that have left
+  std::vector<tagint> ids;      // of owned atoms when the last run ended
   std::vector<Vec3> pattern;    // one layer, relative to the center
   Vec3 sides[2];                // unit vectors along those of a rectangle
   bool warned = false;
@@ -69,6 +69,7 @@ class FixSPHEmit : public Fix {
   double due() const { return start + static_cast<double>(layers) * layer_time; }
   bool layer_is_due() const;
   double mass_of_one() const;
+  void follow_renumbering();
   void emit_layer(double);
   bigint count_in_the_way(double age) const;
   void warn_of_backwater(bigint particles);

@@ -290,9 +290,9 @@ FixSPHWatch::Balance FixSPHWatch::balance() const
 void FixSPHWatch::take_off_exchanged(Balance &b) const
 {
   for (const FixSPHEmit *source : sources) {
-    const FixSPHEmit::Poured in = source->poured();
+    const FixSPHEmit::Poured &in = source->poured();
     b.mass -= in.mass;
-    b.momentum -= in.momentum;
+    b.momentum -= Eigen::Vector3d(in.momentum);
     b.energy -= force->mvv2e * in.energy;
   }
   for (FixSPHDrain *sink : sinks) {

@@ -116,7 +116,7 @@ void PairSPHTait::init_style()
 
 void PairSPHTait::choose_skin() const
 {
-  constexpr double OF_SUPPORT = 0.5;
+  constexpr double OF_SUPPORT = 0.5, JUST_ABOVE = 1.0001;    // as one that is given
   const double usual = default_skin(update->unit_style);
   if (neighbor->skin != usual) return;
   double support = 0.0;
@@ -125,10 +125,11 @@ void PairSPHTait::choose_skin() const
   if (skin == usual || (skin < usual && force->pair != this)) return;
   neighbor->skin = skin;
   if (comm->me == 0)
-    utils::logmesg(lmp,
-                   "{}: neighbor skin {:g}, half of the support, in the place of {:g}, the default "
-                   "of units {}: give it by 'neighbor' if another one is faster\n",
-                   STYLE, skin, usual, update->unit_style);
+    utils::logmesg(
+        lmp,
+        "{}: neighbor skin {:g}, half of the support, in the place of {:g}, the default "
+        "of units {}: give it by 'neighbor' if another one is faster, as {:g} for the default\n",
+        STYLE, skin, usual, update->unit_style, JUST_ABOVE * usual);
 }
 
 // Only lengths are in a unit of their own.

@@ -121,6 +121,21 @@ def test_other_commands_change_nothing(here, scheme, between):
     np.testing.assert_array_equal(found[0], expected[0])
 
 
+@pytest.mark.parametrize("scheme", ["global", "block"])
+@pytest.mark.parametrize(
+    "between",
+    [
+        "fix evenly all balance 1000 1.0 shift x 5 1.0",
+        "fix forces all store/force",
+        "region low block INF INF INF INF INF 0.2\ngroup low dynamic all region low every 5",
+        "unfix gravity\nfix weight all gravity 9.81 vector 0 0 -1",
+    ],
+)
+def test_fixes_that_change_no_motion_change_no_step(here, scheme, between):
+    expected, found = end(scheme, "run 0"), end(scheme, between)
+    np.testing.assert_allclose(found[0], expected[0], rtol=0, atol=1e-11)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_run_upto(here, scheme):
     expected, found = end(scheme, "run 0"), end(scheme, "run 0", run="run 60 upto")

@@ -279,6 +279,44 @@ def test_chambers_have_states_of_their_own(balloon):
     assert value(lmp, 2) == pytest.approx(column(lmp, 2, 1) + column(lmp, 2, 2))
 
 
+def with_other_ids(balloon, faces, x, between):
+    """A balloon behind two other atoms, which go away."""
+    lone = [[0.2, 0, 0], [-0.2, 0, 0]]
+    lmp = balloon(np.vstack([lone, x]), faces + 2, gas=f"{LAW} inflow 0.01")
+    lmp.commands_string(f"run 20\ndelete_atoms group pair compress no\n{between}\nrun 20")
+    return [value(lmp, n) for n in range(7)]
+
+
+def test_a_chamber_goes_on_where_ids_are_given_anew(balloon):
+    x, faces = icosphere(1, RADIUS)
+    expected = with_other_ids(balloon, faces, x, "")
+    assert expected[1] > 10
+    found = with_other_ids(balloon, faces, x, "reset_atoms id")
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_chambers_that_cannot_be_told_apart_are_an_error(balloon):
+    x, faces = icosphere(0, RADIUS)
+    both = np.concatenate([x, 2 * x + [0.6, 0, 0]]), np.concatenate([faces, faces + len(x)])
+    with pytest.raises(Exception, match="the 2 chambers cannot be told apart: use 'reset_atoms"):
+        with_other_ids(balloon, both[1], both[0], "reset_atoms id")
+
+
+@pytest.mark.parametrize("move", ["fix move all nve", "fix move all pbd/cloth"])
+def test_where_vertices_are_moved_between_runs_the_gas_knows_no_speed_of_before(balloon, move):
+    """As behind minimize, where there have been no steps."""
+    ends = []
+    for between in ("", "minimize 0 0 0 0\n"):
+        lmp = balloon(move=move, dt=1e-4)
+        larger = "".join(
+            f"displace_atoms all ramp {d} -0.001 0.001 {d} -0.1 0.1 units box\n" for d in "xyz"
+        )
+        lmp.commands_string(f"run 3\n{larger}{between}run 1")
+        ends.append(by_id(lmp, "v"))
+    assert np.abs(ends[1]).max() > 1
+    np.testing.assert_allclose(*ends, rtol=0, atol=1e-9 * np.abs(ends[1]).max())
+
+
 def test_a_hole_is_named_and_can_be_closed_by_a_lid(balloon, capfd):
     x, faces = icosphere(0, RADIUS)
     apex = 5

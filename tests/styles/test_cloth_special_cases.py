@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from cloth_data import EPS, Cloth, motion, start
 from harness import by_id, instance
+from scenes import box, gravity, header
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +43,28 @@ def test_one_edge_is_a_cloth(folder):
     x, _, _ = motion(one_cloth([[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [2, 0, 0]]), folder)
     assert x[1, :, 0] == pytest.approx([-0.5, 1.5], abs=4 * EPS)
     assert (x[1:, :, 1:] == 0).all()
+
+
+@pytest.mark.parametrize("atoms", ["bond", "angle", "full"])
+def test_the_atom_style_needs_no_angles_and_no_dihedrals(folder, atoms):
+    """Three vertices that are thrown up, as with atom_style molecular."""
+    ends = []
+    for style in ("molecular", atoms):
+        with instance() as lmp:
+            lmp.commands_string(
+                header("f f f", style)
+                + box("-2 2 -2 2 -2 2", room="bond/types 1 extra/bond/per/atom 4")
+                + "mass 1 1\n"
+                + "".join(f"create_atoms 1 single {x - 1} {0.25 * x * x} 0\n" for x in range(3))
+                + "pair_style zero 1\npair_coeff * *\nbond_style pbd\nbond_coeff 1 1\n"
+                + "".join(f"create_bonds single/bond 1 {n} {n + 1}\n" for n in (1, 2))
+                + gravity()
+                + "velocity all ramp vz 0 3 x -1 1 units box\ntimestep 1e-2\n"
+                + "fix sheet all pbd/cloth\nrun 10\n"
+            )
+            ends.append(by_id(lmp, "x"))
+    assert abs(ends[0][2, 2]) > 0.1
+    np.testing.assert_array_equal(*ends)
 
 
 @pytest.mark.parametrize("text", ["compliance 1e300", "compliance 1e10 compress 1e-310"])

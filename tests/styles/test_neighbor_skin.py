@@ -43,6 +43,20 @@ def test_it_is_half_of_the_support_in_the_place_of_the_default_of_lammps(units, 
     assert f"the default of units {units}: give it by 'neighbor'" in text
 
 
+@pytest.mark.parametrize("units", UNITS)
+def test_the_default_of_lammps_is_had_by_one_just_above_it(units, tmp_path):
+    _, text = cutoff_and_log(tmp_path, water(3.0), units)
+    default, given = (
+        float(number)
+        for number in re.search(
+            r"in the place of ([\d.]+),.* as ([\d.]+) for the default", text
+        ).groups()
+    )
+    assert default < given < 1.001 * default
+    cutoff, _ = cutoff_and_log(tmp_path, water(3.0), units, f"neighbor {given} bin")
+    assert cutoff == pytest.approx(3.0 + given, rel=1e-5)
+
+
 def test_a_skin_that_is_given_stays(tmp_path):
     cutoff, text = cutoff_and_log(tmp_path, water(1.0), neighbor="neighbor 0.2 bin")
     assert cutoff == 1.2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from harness import by_id, instance, last_frame, run, write
-from scenes import cloth_styles, final_dump, header, neighbor, sph_tait
+from scenes import box, cloth_styles, final_dump, header, neighbor, sph_tait
 from scipy.spatial import cKDTree
 
 RADIUS = 0.3
@@ -263,6 +263,35 @@ def test_errors(tmp_path, fixes, words):
     text = scene(tmp_path, ball(), fixes, cloth=CLOTH, drops="create_atoms 2 single 0 0 0.9")
     with pytest.raises(Exception, match=words):
         instance().commands_string(text)
+
+
+@pytest.mark.parametrize("atoms", ["sph", "hybrid sph bond", "hybrid sph angle"])
+@pytest.mark.parametrize(
+    ("fixes", "message"),
+    [
+        ("fix c water cloth/contact 0.01 obstacle mesh", "obstacle group mesh has no triangles"),
+        ("fix s mesh pbd/cloth\nfix c water cloth/contact 0.01", "the cloth has no triangles"),
+    ],
+)
+def test_meshes_without_triangles_end_with_an_error_in_any_atom_style(atoms, fixes, message):
+    if "pbd/cloth" in fixes and atoms == "sph":
+        message = "atom_style sph has no bonds: use atom_style molecular"
+    bonds = "bond/types 1 extra/bond/per/atom 2" if atoms != "sph" else ""
+    with instance() as lmp, pytest.raises(Exception, match=message):
+        lmp.commands_string(
+            header(atoms=atoms)
+            + box("-1 1 -1 1 -1 1", 2, room=bonds)
+            + "mass * 0.1\n"
+            + "".join(
+                f"create_atoms {kind} single {x} 0 {z}\n"
+                for kind, x, z in ((1, 0, 0.3), (2, 0, 0), (2, 0.1, 0))
+            )
+            + "group water type 1\ngroup mesh type 2\n"
+            + sph_tait("1 1 fluid 1000 c0 20", "2 2 none")
+            + ("bond_style pbd\nbond_coeff 1 1\ncreate_bonds single/bond 1 2 3\n" if bonds else "")
+            + neighbor(0.1)
+            + f"timestep 1e-3\nfix step water sph/integrate constant\n{fixes}\nrun 1\n"
+        )
 
 
 def test_triangles_larger_than_the_ghost_cutoff(tmp_path):

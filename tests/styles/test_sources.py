@@ -123,6 +123,60 @@ def test_ids_that_end_are_named():
         lmp.command("run 0")
 
 
+FOUR = "rectangle 0 0 0.8 0.1 0.1"  # particles a layer, every 25 steps
+LAST_ID = 2**31 - 1
+
+
+@pytest.mark.parametrize("restarts", [False, True])
+def test_ids_go_on_from_those_that_are_given_anew(tmp_path, restarts):
+    lmp = instance()
+    script = POUR.format(n=1000, dt=1e-3, opening=FOUR)
+    lmp.commands_string(script)
+    assert lmp.create_atoms(1, [LAST_ID - 20], [1], [0.3, 0.3, -0.3]) == 1
+    lmp.command("run 60")
+    assert by_id(lmp, "id").max() == LAST_ID - 8
+    if restarts:
+        file = tmp_path / "many.restart"
+        lmp.command(f"write_restart {file}")
+        lmp = instance()
+        lmp.commands_string(f"comm_modify vel yes\nread_restart {file}\n{neighbor(0.03)}")
+        lmp.commands_string(script.split("check yes\n")[1])
+    lmp.commands_string("reset_atoms id\nrun 140")
+    assert sorted(by_id(lmp, "id")) == list(range(1, 4 * 9 + 2))
+
+
+def test_ids_go_on_where_the_latest_have_been_deleted_between_runs():
+    lmp = pour(
+        opening=FOUR, extra="run 30\ngroup late id > 4\ndelete_atoms group late compress no\n"
+    )
+    lmp.command("run 20")
+    assert sorted(by_id(lmp, "id")) == [1, 2, 3, 4, 9, 10, 11, 12]
+
+
+@pytest.mark.parametrize(("speed", "layers"), [(2, 9), (1, 6), (4, 14), (0.2, 4)])
+def test_a_source_with_another_velocity_goes_on_from_a_restart_file(tmp_path, speed, layers):
+    """The layer that comes next is due when it was, at 0.075, and the others follow it."""
+    file = tmp_path / "pour.restart"
+    script = POUR.format(n=1000, dt=1e-3, opening=FOUR)
+    lmp = instance()
+    lmp.commands_string(f"{script}run 60\nwrite_restart {file}")
+    assert lmp.extract_fix("pour", 0, 0) == 4 * 3
+    lmp = instance()
+    fixes = script.split("check yes\n")[1].replace("velocity 0 0 -2", f"velocity 0 0 -{speed}")
+    lmp.commands_string(
+        f"comm_modify vel yes\nread_restart {file}\n{neighbor(0.03)}{fixes}"
+        "thermo_style custom step\nfix watch water sph/watch every 1 energy 1e-6 momentum 1e-9\n"
+        "run 14"
+    )
+    assert lmp.extract_fix("pour", 0, 0) == 4 * 3
+    lmp.command("run 1")
+    assert lmp.extract_fix("pour", 0, 0) == 4 * 4
+    lmp.commands_string("unfix watch\nrun 125")
+    assert lmp.extract_fix("pour", 0, 0) == 4 * layers
+    expected = -4 * 0.1209 * (3 * 2 + (layers - 3) * speed)
+    assert lmp.extract_fix("pour", 0, 1, 3) == pytest.approx(expected)
+
+
 def test_what_leaves_is_counted_with_its_mass_and_momentum():
     lmp = pour(n=40, extra="fix out water sph/drain\n")
     lmp.command("run 1500")

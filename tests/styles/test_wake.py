@@ -199,6 +199,10 @@ PLANE, REFLECTING = "zlo 0", "\nfix floor all wall/reflect zlo 0 units box"
 GOES_AWAY = {
     "water that evaporates": (PLANE, "fix gone lower evaporate 5 20 low 777"),
     "a floor of LAMMPS": (REFLECTING, "unfix floor"),
+    "a floor of LAMMPS that is lowered": (
+        REFLECTING,
+        "unfix floor\nfix lower all wall/reflect zlo -0.2 units box",
+    ),
     "water that another type does not feel any more": (PLANE, "neigh_modify exclude type 1 2"),
 }
 
@@ -215,11 +219,14 @@ def test_water_falls_when_lammps_takes_away_what_it_slept_on(name):
         assert lmp.extract_compute("height", 0, 0) < before - 0.03
 
 
-def test_water_sleeps_on_beside_fixes_that_move_nothing():
+@pytest.mark.parametrize(
+    "fix", ["ave/time 1 1 1 c_thermo_temp", "balance 1000 1.0 shift x 5 1.0", "store/force"]
+)
+def test_water_sleeps_on_beside_fixes_that_move_nothing(fix):
     with instance() as lmp:
         lmp.commands_string(COLUMN.format(floor=PLANE))
         before = by_id(lmp, "x")
-        lmp.commands_string("fix mean all ave/time 1 1 1 c_thermo_temp\nrun 20")
+        lmp.commands_string(f"fix more all {fix}\nrun 20")
         assert np.array_equal(by_id(lmp, "x"), before)
 
 

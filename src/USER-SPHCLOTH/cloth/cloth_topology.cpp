@@ -143,41 +143,41 @@ void ClothTopology::gather(int groupbit, Leaving leaving)
   ids = allgather(mine, comm->nprocs, world);
   std::sort(ids.begin(), ids.end());
 
-  gather_elements(edges, "bond", leaving, [&](int i, auto add) {
-    for (int m = 0; m < atom->num_bond[i]; m++)
-      add({atom->tag[i], atom->bond_atom[i][m]}, atom->bond_type[i][m]);
+  gather_elements(edges, "bond", leaving, atom->num_bond, [&](int i, int m, auto add) {
+    add({atom->tag[i], atom->bond_atom[i][m]}, atom->bond_type[i][m]);
   });
-  gather_elements(triangles, "angle", leaving, [&](int i, auto add) {
-    for (int m = 0; m < atom->num_angle[i]; m++)
-      add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
-          atom->angle_type[i][m]);
+  gather_elements(triangles, "angle", leaving, atom->num_angle, [&](int i, int m, auto add) {
+    add({atom->angle_atom1[i][m], atom->angle_atom2[i][m], atom->angle_atom3[i][m]},
+        atom->angle_type[i][m]);
   });
-  gather_elements(hinges, "dihedral", leaving, [&](int i, auto add) {
-    for (int m = 0; m < atom->num_dihedral[i]; m++)
-      add({atom->dihedral_atom1[i][m], atom->dihedral_atom2[i][m], atom->dihedral_atom3[i][m],
-           atom->dihedral_atom4[i][m]},
-          atom->dihedral_type[i][m]);
+  gather_elements(hinges, "dihedral", leaving, atom->num_dihedral, [&](int i, int m, auto add) {
+    add({atom->dihedral_atom1[i][m], atom->dihedral_atom2[i][m], atom->dihedral_atom3[i][m],
+         atom->dihedral_atom4[i][m]},
+        atom->dihedral_type[i][m]);
   });
 }
 
+// counts: of each atom, null where the atom style has no such elements
+
 template <std::size_t N, class Collect>
 void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what, Leaving leaving,
-                                    Collect collect)
+                                    const int *counts, Collect collect)
 {
   // elements of owned atoms with at least one vertex in the cloth, or all, as N IDs and a type
   std::vector<tagint> mine;
-  for (int i = 0; i < atom->nlocal; i++)
-    collect(i, [&](const std::array<tagint, N> &members, int type) {
-      if (type <= 0) return;    // switched off by LAMMPS
-      bool any = false, all = true;
-      for (tagint id : members) {
-        any = any || index_of(id) >= 0;
-        all = all && index_of(id) >= 0;
-      }
-      if (!any || (!all && leaving == Leaving::LEFT_OUT)) return;
-      mine.insert(mine.end(), members.begin(), members.end());
-      mine.push_back(type);
-    });
+  const auto add = [&](const std::array<tagint, N> &members, int type) {
+    if (type <= 0) return;    // switched off by LAMMPS
+    bool any = false, all = true;
+    for (tagint id : members) {
+      any = any || index_of(id) >= 0;
+      all = all && index_of(id) >= 0;
+    }
+    if (!any || (!all && leaving == Leaving::LEFT_OUT)) return;
+    mine.insert(mine.end(), members.begin(), members.end());
+    mine.push_back(type);
+  };
+  for (int i = 0; counts && i < atom->nlocal; i++)
+    for (int m = 0; m < counts[i]; m++) collect(i, m, add);
   const std::vector<tagint> all = allgather(mine, comm->nprocs, world);
 
   struct Element {

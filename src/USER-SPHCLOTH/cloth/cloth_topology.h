@@ -66,7 +66,7 @@ class ClothTopology : protected Pointers {
   double longest = 0.0, widest = 0.0;
 
   template <std::size_t N, class Collect>
-  void gather_elements(ClothElements<N> &, const char *, Leaving, Collect);
+  void gather_elements(ClothElements<N> &, const char *, Leaving, const int *, Collect);
   // of this rank's share of the elements
   template <std::size_t N>
   double width_sq(const ClothElements<N> &, const std::vector<double> &x) const;

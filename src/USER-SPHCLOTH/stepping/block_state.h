@@ -39,6 +39,7 @@ struct BlockClock {
   // what the controller of compression allows in this base step, 0: it is off; the longest step
   // that a particle has been allowed, and the compression when that was
   double controlled = 0.0, longest = 0.0, largest_compression = 0.0;
+  std::uint64_t fixes = 0;    // that may hold water, in this run
 
   bool begun() const { return line.base > 0.0; }
   bool all_synchronized() const { return line.now == 0; }    // but for sleeping particles

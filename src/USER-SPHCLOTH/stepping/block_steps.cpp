@@ -35,13 +35,13 @@ void BlockSteps::init(FluidState *style, Change change)
   all_selected = false;
   state.init(style);
   bins.init(style);
-  sleeping.begin_run();
   fluid->set_step_hooks(this);
   count_flight();
   const std::uint64_t before = parts.control.watch.state().settings;
   const std::uint64_t settings = parts.limits.settings();
   if (parts.control.watch.begin_run(settings, change != Change::NOTHING) && before != 0)
     start_over(settings != before || change == Change::POSITIONS);
+  sleeping.begin_run();
 }
 
 // Steps and impulses are of another state.  Where only velocities have been changed those that are
@@ -52,6 +52,7 @@ void BlockSteps::start_over(bool other_scene)
   const BlockClock before = state.clock;
   state.clock = BlockClock();
   state.clock.uniform = before.uniform;
+  state.clock.fixes = before.fixes;
   state.clock.defers = before.defers;    // what vertices are still to get
   for (int i = 0; i < atom->nlocal; i++) {
     if (state.is_asleep(i) && !other_scene) continue;

@@ -9,6 +9,7 @@
 #include "fluid/fluid_boundary.h"
 #include "fluid/fluid_state.h"
 #include "force.h"
+#include "group.h"
 #include "lammps_util/atom_tools.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -75,17 +76,25 @@ double ParticleLimits::inverse_mass_of(int i) const
   return 0.0;
 }
 
-// What may hold water, or moves it, defined in any order.  Where others of this package act they
-// wake it.
+// Others of this package wake water where they act, and some of LAMMPS, as those that it defines
+// itself, move nothing though they are called where forces and positions change.
 
-std::uint64_t ParticleLimits::fixes_that_hold() const
+static bool may_hold(const Fix *fix, int mask)
 {
-  std::uint64_t sum = 0;
+  if (!(mask & (INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | POST_FORCE))) return false;
+  const auto is = [fix](const char *pattern) { return utils::strmatch(fix->style, pattern); };
+  return !is("^sph/") && !is("^balance$") && !is("^store/") && !is("^[A-Z]");
+}
+
+std::uint64_t ParticleLimits::fixes_that_hold(bool told_by_id) const
+{
+  std::uint64_t sum = EMPTY_HASH;
   for (int k = 0; k < modify->nfix; k++) {
-    const bool acts =
-        modify->fmask[k] & (INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | POST_FORCE);
-    if (acts && !utils::strmatch(modify->fix[k]->style, "^sph/"))
-      sum += hash_with(EMPTY_HASH, std::string_view(modify->fix[k]->id));
+    const Fix *fix = modify->fix[k];
+    if (!may_hold(fix, modify->fmask[k])) continue;
+    std::uint64_t hash = hash_with(EMPTY_HASH, std::string_view(fix->style));
+    hash = hash_with(hash, std::string_view(group->names[fix->igroup]));
+    sum += told_by_id ? hash_with(hash, std::string_view(fix->id)) : hash;
   }
   return sum;
 }
@@ -110,13 +119,14 @@ std::uint64_t ParticleLimits::settings() const
   MPI_Allreduce(&mine, &of_ranks, 1, MPI_UINT64_T, MPI_SUM, world);
   for (const FluidBoundary *boundary : find_fluid_boundaries(modify))
     hash = hash_with(hash, boundary->settings());
-  hash = hash_with(hash, fixes_that_hold());
+  hash = hash_with(hash, fixes_that_hold(false));
   for (int k = 0; k < neighbor->nex_type; k++)
     for (const int type : {neighbor->ex1_type[k], neighbor->ex2_type[k]})
       hash = hash_with(hash, static_cast<std::uint64_t>(type));
   // a box that a fix deforms is another one in each step
   const auto &fixes = modify->get_fix_list();
-  if (std::none_of(fixes.begin(), fixes.end(), [](const Fix *fix) { return fix->box_change; })) {
+  const auto deforms = [](const Fix *fix) { return fix->box_change & ~Fix::BOX_CHANGE_DOMAIN; };
+  if (std::none_of(fixes.begin(), fixes.end(), deforms)) {
     for (int d = 0; d < 3; d++)
       if (domain->periodicity[d]) hash = hash_with(hash, bits_of(domain->prd[d]));
     for (const double tilt : {domain->xy, domain->xz, domain->yz})

@@ -82,6 +82,10 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   // a number that changes with what stability follows from, but for positions; collective
   std::uint64_t settings() const;
 
+  // The same of the fixes that may hold water or move it, defined in any order: by style and group,
+  // or by their IDs as well, which change with arguments more often.
+  std::uint64_t fixes_that_hold(bool told_by_id) const;
+
   // smoothing length over speed of sound, the least of all fluids
   double shortest_sound_time() const;
   // in which sound crosses the support
@@ -111,7 +115,6 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   bool interpolates_density = false;
   sphcloth::StepCoefficients lambda;    // of for_particles() and of vertices
 
-  std::uint64_t fixes_that_hold() const;
   void find(const int *particles, int n, const Rates &, sphcloth::StepLimits &) const;
   sphcloth::StepLimit of_vertex(int i, const LimitedVertices &) const;
   void find_motions(const int *particles, int n, const Rates &, sphcloth::StepStates &) const;

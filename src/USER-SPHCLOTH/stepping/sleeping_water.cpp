@@ -91,6 +91,16 @@ void SleepingWater::fall_asleep()
   }
 }
 
+void SleepingWater::begin_run()
+{
+  n_atoms = atom->natoms;
+  if (!enabled()) return;
+  const std::uint64_t fixes = limits.fixes_that_hold(true);
+  if (fixes != state.clock.fixes)
+    for (int i = 0; i < atom->nlocal; i++) disturb(i);
+  state.clock.fixes = fixes;
+}
+
 // Contact or a command has given it speed, another force acts on it than when it fell asleep, or a
 // wall beside it moves.
 

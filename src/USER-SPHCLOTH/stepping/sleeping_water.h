@@ -28,7 +28,8 @@ class SleepingWater : protected Pointers {
   // are any on any rank
   bool stop_resting();
   void fall_asleep();    // those
-  void begin_run() { n_atoms = atom->natoms; }
+  // wakes all where what may hold it is another than in the last run
+  void begin_run();
   // Particles that other styles have given speed or a force; all, where other fixes have taken
   // atoms away
   void wake_disturbed();

@@ -206,10 +206,11 @@ void ContactRows::project(Vertex *displacement)
   for (int pass = 0; pass < passes_of_active; pass++) {
     masses.clear_impulses();
     wake(pass >= passes);
-    for_ahead(awake, [this](int k) {
-      project_normal(k);
-      if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
-    });
+    for_ahead(awake, [this](int k) { project_normal(k); });
+    if (rules.max_friction() > 0.0) {
+      masses.share_loads(mesh.halo);
+      for_ahead(active, [this](int k) { project_friction(k); });
+    }
     push_positions(displacement);
     if (pass < passes_of_active - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
@@ -232,16 +233,6 @@ void ContactRows::push_positions(Vertex *displacement)
     max_sq = std::max(max_sq, way.squaredNorm());
   }
   path += std::sqrt(max_sq);
-}
-
-void ContactRows::push_velocities(Vertex *v)
-{
-  mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    if (masses.impulse[s].isZero(0.0)) continue;
-    add(v[s], mesh.w_solver[s] * masses.impulse[s]);
-    received[s] += masses.impulse[s];
-  }
 }
 
 // What all vertices have moved together, in about this direction before, does not count.
@@ -386,55 +377,20 @@ double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
   return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
-// Coulomb friction against the sliding of this substep
+// Coulomb friction against the sliding of this substep.  The rows that push have all of the mass:
+// what they leave of the sliding is never removed.
 
 void ContactRows::project_friction(int k)
 {
   const ContactRow &row = rows[k];
+  if (rules_of(row).friction == 0.0) return;
   Vec3 &correction = details[k].friction_correction;
   Vec3 slip = row.relative(mesh.end) - row.relative(from);
   slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target =
-      clamp_length(correction - row.mass * slip, rules_of(row).friction * row.normal_correction);
+  const Vec3 target = clamp_length(correction - masses.by_load(row, mesh.w_solver) * slip,
+                                   rules_of(row).friction * row.normal_correction);
   masses.apply(row, target - correction);
   correction = target;
-}
-
-void ContactRows::end_substep(Vertex *v, double dt)
-{
-  const WallTimer clock(mesh.counts.seconds);
-  points.end_substep(dt);
-  masses.share_loads(mesh.halo);
-  load_velocities(v);
-  masses.clear_impulses();
-  for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  push_velocities(v);
-  points.push_velocities(masses.impulse);
-}
-
-void ContactRows::solve_velocity(int k, double dt)
-{
-  ContactRow &row = rows[k];
-  const ContactRules &of_row = rules_of(row);
-  if (row.normal_correction > 0.0) {
-    ContactMotion motion{row.relative(velocity), row.normal, 0.0,
-                         masses.by_load(row, mesh.w_solver)};
-    ExchangedImpulse so_far{row.normal_correction / dt};
-    if (row.meeting == Meeting::PARTICLE) mesh.counts.passed_on += so_far.normal;
-    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-    if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
-    masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));
-  }
-  row.active = false;
-  row.normal_correction = 0.0;
-  if (of_row.friction > 0.0) details[k].friction_correction.setZero();
-}
-
-void ContactRows::load_velocities(const Vertex *v)
-{
-  points.store_velocities(velocity);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = Vec3(v[s].x, v[s].y, v[s].z);
-  mesh.halo.forward_velocities(0, velocity.data());
 }
 
 void ContactRows::end_step()

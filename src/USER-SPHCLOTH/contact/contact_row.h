@@ -99,6 +99,16 @@ class SplitMasses {
     return inverse > 0.0 ? row.share / inverse : 0.0;
   }
 
+  // with other rows, of what can move
+  bool are_shared(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
+    for (int k = 0; k < 4; k++) {
+      const int s = row.slots[k];
+      if (inverse_mass[s] > 0.0 && shares[s][0] > row.share * std::fabs(row.weight[k])) return true;
+    }
+    return false;
+  }
+
   // The same by load, so that a row that hardly pushes hardly counts: what rows push more in a
   // substep is added, also behind sharing, which sums what all ranks have so far.  Collective.
   void clear_loads() { clear(loads); }

@@ -9,7 +9,6 @@
 #include "contact/contact_rows.h"
 
 #include "atom.h"
-#include "core/contact/contact_impulse.h"
 #include "core/util/bytes.h"
 #include "force.h"
 
@@ -35,11 +34,17 @@ static constexpr double ROUND_OFF = 1e-6;
 // the most of them where it is all of it.
 static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
+static constexpr double NONE = -1.0;
 
 // Rows share the mass of a vertex, so that one pass over many at a vertex leaves a part of each gap
 // missing, which heavy particles then get back behind the solver, as compression.
 static constexpr int PASSES_OF_PARTICLES = 3;
-static constexpr double NONE = -1.0;
+
+// The same where a particle is on two faces, whose normals differ by more than 8 degrees.
+// Friction takes what is left of the approach to one face for sliding along the other one, and of
+// what restitution gives back nothing may be left.
+static constexpr int PASSES_ON_TWO_FACES = 12;
+static constexpr double COS_ONE_FACE = 0.99;
 
 // By which, of the thickness, the two sides of a row may move past one another before their closest
 // points are found anew; until then its distance is along its normal.  At an edge or a vertex that
@@ -48,6 +53,21 @@ static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASI
                         MAX_SLIDE_APART = 0.5;
 
 void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
+
+// Is any particle on two faces?  Its rows, from `begin` on, follow one another.
+
+static bool are_on_two_faces(const std::vector<ContactRow> &rows, std::size_t begin)
+{
+  const ContactRow *first = nullptr;    // of a particle
+  for (std::size_t k = begin; k < rows.size(); k++) {
+    if (rows[k].share == 0.0) continue;
+    if (!first || first->slots[0] != rows[k].slots[0])
+      first = &rows[k];
+    else if (first->normal.dot(rows[k].normal) < COS_ONE_FACE)
+      return true;
+  }
+  return false;
+}
 
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
@@ -72,10 +92,20 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
   passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
-  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
   too_near = all > 0.0;
   points.begin_step(dt);
   start_rows();
+  passes_of_velocities = 1;
+  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
+  if (two_faces_matter()) {
+    const int here = are_on_two_faces(rows, n_rows_of_cloth);
+    int anywhere;
+    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+    if (anywhere) {
+      passes_of_velocities = MAX_PASSES;
+      passes_of_active = std::max(passes, PASSES_ON_TWO_FACES);
+    }
+  }
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
@@ -452,5 +482,5 @@ double ContactRows::memory_usage() const
 {
   return masses.bytes() + points.bytes() +
       bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, ghosts_before,
-               velocity, received);
+               velocity, received, exchanged);
 }

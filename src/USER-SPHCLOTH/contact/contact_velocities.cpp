@@ -3,7 +3,9 @@
 
 #include "contact/contact_rows.h"
 
-#include "core/contact/contact_impulse.h"
+#include "contact/pass_changes.h"
+
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace sphcloth;
@@ -13,29 +15,36 @@ void ContactRows::end_substep(Vertex *v, double dt)
   const WallTimer clock(mesh.counts.seconds);
   points.end_substep(dt);
   masses.share_loads(mesh.halo);
-  load_velocities(v);
-  masses.clear_impulses();
-  for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  push_velocities(v);
-  points.push_velocities(masses.impulse);
+  exchanged.clear();
+  PassChanges changes;
+  for (int pass = 1;; pass++) {
+    double largest = 0.0;
+    load_velocities(v);
+    masses.clear_impulses();
+    std::size_t n = 0;
+    for_ahead(active, [&](int k) {
+      if (pass == 1) exchanged.push_back(exchanged_by(k));
+      largest = std::max(largest, solve_velocity(k, exchanged[n++]));
+    });
+    push_velocities(v);
+    points.push_velocities(masses.impulse);
+    if (pass == passes_of_velocities || changes.are_small(largest, world)) break;
+  }
+  for_ahead(active, [this](int k) { release(k); });
 }
 
-void ContactRows::solve_velocity(int k, double dt)
+// The change of the speed
+
+double ContactRows::solve_velocity(int k, ExchangedImpulse &so_far)
 {
-  ContactRow &row = rows[k];
+  const ContactRow &row = rows[k];
   const ContactRules &of_row = rules_of(row);
-  if (row.normal_correction > 0.0) {
-    ContactMotion motion{row.relative(velocity), row.normal, 0.0,
-                         masses.by_load(row, mesh.w_solver)};
-    ExchangedImpulse so_far{row.normal_correction / dt};
-    if (row.meeting == Meeting::PARTICLE) mesh.counts.passed_on += so_far.normal;
-    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-    if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
-    masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));
-  }
-  row.active = false;
-  row.normal_correction = 0.0;
-  if (of_row.friction > 0.0) details[k].friction_correction.setZero();
+  if (!(row.normal_correction > 0.0)) return 0.0;
+  ContactMotion motion{row.relative(velocity), row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
+  if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
+  const Vec3 impulse = contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
+  masses.apply(row, impulse);
+  return motion.mass > 0.0 ? impulse.norm() / motion.mass : 0.0;
 }
 
 void ContactRows::load_velocities(const Vertex *v)

@@ -77,6 +77,7 @@ void FluidEvaluation::begin_run()
   }
   list_reach.assign(n * n, 0.0);
   moved = moved_here = std::vector<int>(n, 0);
+  measured.resize(n);
 }
 
 void FluidEvaluation::set_pair(int i, int j, double listed)
@@ -286,28 +287,24 @@ Motion FluidEvaluation::usual_motion(const Particles &p) const
 ------------------------------------------------------------------------- */
 
 // Volumes of boundary particles that share space among themselves follow their motion, as long as
-// there is fluid to feel them.
+// there is fluid to feel them: boxes and minimizers move particles without velocities, too.
 
 void FluidEvaluation::measure_volumes(const Particles &p)
 {
   const int n = atom->ntypes + 1;
   std::fill(moved.begin(), moved.end(), new_lists);
+  if (new_lists) find_measured(p);
   if (measure_volume && !new_lists && any_fluid) {
-    std::vector<int> &here = moved_here;
-    std::fill(here.begin(), here.end(), 0);
-    for (int i = 0; i < p.n_owned; i++) {
-      const double *v = p.v + 3 * i;
-      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) here[p.type[i]] = 1;
-    }
-    MPI_Allreduce(here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
+    for (int t = 1; t < n; t++) moved_here[t] = has_moved(p, t);
+    MPI_Allreduce(moved_here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
   }
-  bool measured = false;
+  bool any = new_lists;
   for (int t = 1; t < n; t++) {
     if (!is_measured(t) || !moved[t]) continue;
-    core->volumes(p, t, mass_or_volume.data());
-    measured = true;
+    measure_volumes(p, t);
+    any = true;
   }
-  if (!measured && !new_lists) return;
+  if (!any) return;
   ghosts.send_to_ghosts(GhostData::MASS_OR_VOLUME);
   if (!new_lists) return;
   std::array<int, 3> here{0, 0, 0}, anywhere{0, 0, 0};
@@ -322,6 +319,29 @@ void FluidEvaluation::measure_volumes(const Particles &p)
   extrapolate = anywhere[1];
   measure_volume = anywhere[2];
   find_equal_masses(p);
+}
+
+void FluidEvaluation::find_measured(const Particles &p)
+{
+  for (Measured &of_type : measured) of_type.atoms.clear();
+  for (int i = 0; i < p.n_all; i++)
+    if (is_measured(p.type[i])) measured[p.type[i]].atoms.push_back(i);
+  for (Measured &of_type : measured) of_type.x.resize(of_type.atoms.size());
+}
+
+bool FluidEvaluation::has_moved(const Particles &p, int itype) const
+{
+  const auto &[atoms, x] = measured[itype];
+  for (std::size_t k = 0; k < atoms.size(); k++)
+    if (!std::equal(x[k].begin(), x[k].end(), p.x + 3 * atoms[k])) return true;
+  return false;
+}
+
+void FluidEvaluation::measure_volumes(const Particles &p, int itype)
+{
+  auto &[atoms, x] = measured[itype];
+  for (std::size_t k = 0; k < atoms.size(); k++) std::copy_n(p.x + 3 * atoms[k], 3, x[k].begin());
+  core->volumes(p, itype, mass_or_volume.data());
 }
 
 // A mass that all particles of a type share leaves the sums.
@@ -421,7 +441,9 @@ void FluidEvaluation::find_pressures(const Particles &p)
 
 double FluidEvaluation::bytes() const
 {
-  return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
-      surface.bytes() +
+  double bytes = (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() +
+      integrated.bytes() + surface.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, approach, viscosity_shares, active_fluid);
+  for (const Measured &of_type : measured) bytes += bytes_of(of_type.atoms, of_type.x);
+  return bytes;
 }

@@ -212,13 +212,12 @@ void FixClothAir::post_integrate()
 void FixClothAir::end_step(const Cloth &cloth)
 {
   const AirMesh &mesh = *cloth.mesh;
-  const double inv_dt = 1.0 / update->dt;
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const int i = mesh.halo.atom_of(s);
     const Vec3 &j = mesh.impulse[s], &before = cloth.velocity[s];
     const Vec3 of_added = cloth.added ? cloth.added->impulse_on_mesh(s) : Vec3::Zero();
     const double w = cloth.fix->inverse_mass(i);
-    const Vec3 v = w == 0.0 ? Vec3(atom->v[i]) : Vec3(inv_dt * (Vec3(atom->x[i]) - mesh.x[s]));
+    const Vec3 v = cloth.fix->mean_velocity(i);
     const bool first = std::isnan(motion[VELOCITY][i]);
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Vec3 gain = first || w == 0.0 ? Vec3::Constant(unknown) : Vec3(v - before - w * j);

@@ -77,7 +77,6 @@ void FluidEvaluation::begin_run()
   }
   list_reach.assign(n * n, 0.0);
   moved = moved_here = std::vector<int>(n, 0);
-  measured.resize(n);
 }
 
 void FluidEvaluation::set_pair(int i, int j, double listed)
@@ -293,15 +292,16 @@ void FluidEvaluation::measure_volumes(const Particles &p)
 {
   const int n = atom->ntypes + 1;
   std::fill(moved.begin(), moved.end(), new_lists);
-  if (new_lists) find_measured(p);
+  if (new_lists) measured.begin_lists(p, atom->ntypes, [this](int t) { return is_measured(t); });
   if (measure_volume && !new_lists && any_fluid) {
-    for (int t = 1; t < n; t++) moved_here[t] = has_moved(p, t);
+    for (int t = 1; t < n; t++) moved_here[t] = measured.have_moved(p, t);
     MPI_Allreduce(moved_here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
   }
   bool any = new_lists;
   for (int t = 1; t < n; t++) {
     if (!is_measured(t) || !moved[t]) continue;
-    measure_volumes(p, t);
+    measured.note(p, t);
+    core->volumes(p, t, mass_or_volume.data());
     any = true;
   }
   if (!any) return;
@@ -319,29 +319,6 @@ void FluidEvaluation::measure_volumes(const Particles &p)
   extrapolate = anywhere[1];
   measure_volume = anywhere[2];
   find_equal_masses(p);
-}
-
-void FluidEvaluation::find_measured(const Particles &p)
-{
-  for (Measured &of_type : measured) of_type.atoms.clear();
-  for (int i = 0; i < p.n_all; i++)
-    if (is_measured(p.type[i])) measured[p.type[i]].atoms.push_back(i);
-  for (Measured &of_type : measured) of_type.x.resize(of_type.atoms.size());
-}
-
-bool FluidEvaluation::has_moved(const Particles &p, int itype) const
-{
-  const auto &[atoms, x] = measured[itype];
-  for (std::size_t k = 0; k < atoms.size(); k++)
-    if (!std::equal(x[k].begin(), x[k].end(), p.x + 3 * atoms[k])) return true;
-  return false;
-}
-
-void FluidEvaluation::measure_volumes(const Particles &p, int itype)
-{
-  auto &[atoms, x] = measured[itype];
-  for (std::size_t k = 0; k < atoms.size(); k++) std::copy_n(p.x + 3 * atoms[k], 3, x[k].begin());
-  core->volumes(p, itype, mass_or_volume.data());
 }
 
 // A mass that all particles of a type share leaves the sums.
@@ -441,9 +418,7 @@ void FluidEvaluation::find_pressures(const Particles &p)
 
 double FluidEvaluation::bytes() const
 {
-  double bytes = (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() +
-      integrated.bytes() + surface.bytes() +
+  return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
+      surface.bytes() + measured.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, approach, viscosity_shares, active_fluid);
-  for (const Measured &of_type : measured) bytes += bytes_of(of_type.atoms, of_type.x);
-  return bytes;
 }

@@ -6,9 +6,9 @@
 #define SPHCLOTH_FLUID_FLUID_EVALUATION_H
 
 #include "fluid/fluid_state.h"
+#include "fluid/measured_positions.h"
 #include "lammps_util/list_guard.h"
 
-#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -52,12 +52,7 @@ class FluidEvaluation : public FluidState {
   // pressure is the fluid's, fluid
   bool measure_volume = false, extrapolate = false, any_fluid = true;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
-  // by type: particles whose volume is measured, ghosts too, and where they were when it was
-  struct Measured {
-    std::vector<int> atoms;
-    std::vector<std::array<double, 3>> x;
-  };
-  std::vector<Measured> measured;
+  MeasuredPositions measured;
 
   void find_sides();
   double *pack(GhostData, int i, double *buf) const;    // of one atom; returns the end
@@ -67,9 +62,6 @@ class FluidEvaluation : public FluidState {
   sphcloth::Fluid::Box box() const;
   void select(const sphcloth::Particles &);
   void measure_volumes(const sphcloth::Particles &);
-  void find_measured(const sphcloth::Particles &);
-  bool has_moved(const sphcloth::Particles &, int itype) const;
-  void measure_volumes(const sphcloth::Particles &, int itype);
   void find_equal_masses(const sphcloth::Particles &);
   void find_densities(const sphcloth::Particles &);
   void find_pressures(const sphcloth::Particles &);

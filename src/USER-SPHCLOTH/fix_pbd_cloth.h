@@ -90,7 +90,8 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   Eigen::Vector3d mean_velocity(int i)
   {
     if (held.inverse_mass(i) == 0.0) return Vec3(atom->v[i]);
-    return (Vec3(atom->x[i]) - vertices.step_start[vertices.halo.slot_of(i)]) / update->dt;
+    const double inv_dt = 1.0 / update->dt;
+    return inv_dt * (Vec3(atom->x[i]) - vertices.step_start[vertices.halo.slot_of(i)]);
   }
 
   // takes part in the projections until the next init()

@@ -58,15 +58,16 @@ void MovingTriangles::load_positions()
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
 }
 
-// A held vertex has moved with its velocity already.
+// What a holder moves with its velocity has no drift, to the last bit.
 
 void MovingTriangles::find_drift(double dt)
 {
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     const Sweep sweep = sweep_of(i);
-    drift[s] = (sweep.end - sweep.start) / dt;
-    if (w[s] == 0.0) drift[s] -= Vec3(atom->v[i]);
+    Vec3 expected = sweep.start;
+    if (w[s] == 0.0) expected += dt * Vec3(atom->v[i]);
+    drift[s] = (sweep.end - expected) / dt;
   }
 }
 

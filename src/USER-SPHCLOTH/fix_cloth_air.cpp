@@ -54,11 +54,12 @@ FixClothAir::~FixClothAir()
 
 int FixClothAir::setmask()
 {
-  return INITIAL_INTEGRATE | POST_INTEGRATE | POST_NEIGHBOR | POST_FORCE;
+  return INITIAL_INTEGRATE | POST_INTEGRATE | POST_NEIGHBOR | POST_FORCE | POST_RUN;
 }
 
 void FixClothAir::init()
 {
+  forget_replaced_velocities();
   options.wind.check();
   water.init();
   cloths.clear();
@@ -84,6 +85,15 @@ void FixClothAir::init()
                                               options.drag.density * options.added_thickness);
     cloth.fix->register_first_coupling(cloth.added.get());
   }
+}
+
+// A vertex that got another velocity since the last run begins with it as in a first step.
+
+void FixClothAir::forget_replaced_velocities()
+{
+  takes_steps = false;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (motion[FINGERPRINT][i] != fingerprint_of(atom->v[i])) forget_motion(i);
 }
 
 // Each would take the push of the other for something that goes on in the next step.
@@ -139,6 +149,7 @@ void FixClothAir::initial_integrate(int)
     apply(cloth);
   }
   last_dt = update->dt;
+  takes_steps = true;
   options.wind.carry(update->dt);
 }
 
@@ -201,13 +212,12 @@ void FixClothAir::post_integrate()
 void FixClothAir::end_step(const Cloth &cloth)
 {
   const AirMesh &mesh = *cloth.mesh;
-  const double inv_dt = 1.0 / update->dt;
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
     const int i = mesh.halo.atom_of(s);
     const Vec3 &j = mesh.impulse[s], &before = cloth.velocity[s];
     const Vec3 of_added = cloth.added ? cloth.added->impulse_on_mesh(s) : Vec3::Zero();
     const double w = cloth.fix->inverse_mass(i);
-    const Vec3 v = w == 0.0 ? Vec3(atom->v[i]) : Vec3(inv_dt * (Vec3(atom->x[i]) - mesh.x[s]));
+    const Vec3 v = cloth.fix->mean_velocity(i);
     const bool first = std::isnan(motion[VELOCITY][i]);
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Vec3 gain = first || w == 0.0 ? Vec3::Constant(unknown) : Vec3(v - before - w * j);
@@ -219,6 +229,13 @@ void FixClothAir::end_step(const Cloth &cloth)
     }
     if (cloth.fix->is_attached(i)) cloth.fix->push_held(i, j);
   }
+}
+
+void FixClothAir::post_run()
+{
+  if (!takes_steps) return;
+  takes_steps = false;
+  for (int i = 0; i < atom->nlocal; i++) motion[FINGERPRINT][i] = fingerprint_of(atom->v[i]);
 }
 
 /* ----------------------------------------------------------------------
@@ -245,6 +262,11 @@ void FixClothAir::set_arrays(int i)
   for (int k = 0; k < motion.count(); k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
 }
 
+void FixClothAir::forget_motion(int i)
+{
+  for (int k = 0; k < FINGERPRINT; k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
+}
+
 int FixClothAir::pack_exchange(int i, double *buf)
 {
   return static_cast<int>(motion.pack(i, buf) - buf);
@@ -256,12 +278,13 @@ int FixClothAir::unpack_exchange(int i, double *buf)
   return motion.count();
 }
 
-// the first value of a restart record is its length
+// The first value of a restart record is its length.
 
 int FixClothAir::pack_restart(int i, double *buf)
 {
   buf[0] = 1 + motion.count();
   motion.pack(i, buf + 1);
+  if (takes_steps) buf[1 + FINGERPRINT] = fingerprint_of(atom->v[i]);
   return 1 + motion.count();
 }
 

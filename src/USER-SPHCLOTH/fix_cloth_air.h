@@ -41,6 +41,7 @@ class FixClothAir : public Fix {
   void post_force(int) override;
   void initial_integrate(int) override;
   void post_integrate() override;
+  void post_run() override;
   double compute_vector(int) override;
 
   void grow_arrays(int nmax) override { motion.grow(nmax); }
@@ -72,11 +73,12 @@ class FixClothAir : public Fix {
   WindShade shade;
   std::vector<Cloth> cloths;
   // of the last step, per atom: mean velocity of a vertex, and what it gained of that by all but
-  // the air; not a number before the first; and, with shaded, its position when the
-  // lee was found
-  enum Column { VELOCITY, GAIN = 3, SEEN = 6, N_COLUMNS = 9 };
+  // the air; not a number before the first; what tells the velocity of the atom behind the last
+  // step of a run from others; and, with shaded, its position when the lee was found
+  enum Column { VELOCITY, GAIN = 3, FINGERPRINT = 6, SEEN, N_COLUMNS = SEEN + 3 };
   ParticleColumns motion;
   double last_dt = 0.0;
+  bool takes_steps = false;    // minimize and rerun take none
 
   // of the last step, this rank's part: impulse, work, area; work since the fix was made, of all
   // that this rank has seen
@@ -87,6 +89,8 @@ class FixClothAir : public Fix {
   {
     return {motion[column][i], motion[column + 1][i], motion[column + 2][i]};
   }
+  void forget_replaced_velocities();
+  void forget_motion(int i);
   void refuse_vertices_of_others();
   void load(Cloth &);
   void find_shade();

@@ -103,6 +103,7 @@ void FixClothContact::init()
   auto *fluid = FluidState::find(force);
   const bool follows = fluid && fluid->integrates_density();
   excess_velocities.create(follows ? 3 : 0, atom->nmax);
+  step_start.wants_origins = follows;
   if (walls) {
     walls->init(fluid);
     for (std::size_t k = 0; k < surfaces.size(); k++)
@@ -328,6 +329,7 @@ static double missed_share(const ContactCounts &counts, MPI_Comm world)
 
 void FixClothContact::post_integrate()
 {
+  step_start.note_origins(update->dt);    // there may be no cloth
   if (together.back() != this) return;
   bool any = false;
   for (int round = 0; round < MAX_ROUNDS; round++) {
@@ -363,18 +365,20 @@ void FixClothContact::end_step(bool any_contact)
 
 void FixClothContact::subtract_excess_velocities()
 {
-  const auto subtract = [&](int i) {
+  const auto subtract = [this](int i, const Eigen::Vector3d &mean) {
     double *v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      const double excess = v[d] - (atom->x[i][d] - step_start.positions[d][i]) / update->dt;
+      const double excess = v[d] - mean[d];
       excess_velocities[d][i] += excess;
       v[d] -= excess;
     }
   };
   for (MeshContact *contact : contacts)
-    for (const int i : contact->mesh().moved) subtract(i);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & vertex_bits) subtract(i);
+    for (const int i : contact->mesh().moved)
+      subtract(i, (Eigen::Vector3d(atom->x[i]) - step_start.origin_of(i)) / update->dt);
+  for (FixPBDCloth *cloth : cloths)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (cloth->has_vertex(i)) subtract(i, cloth->mean_velocity(i));
 }
 
 void FixClothContact::post_force(int)

@@ -286,6 +286,7 @@ void FixPBDCloth::load()
     vertices.start[s] = {x[0] - back * u[0], x[1] - back * u[1], x[2] - back * u[2], w};
     vertices.v[s] = {u[0], u[1], u[2], w};
   }
+  vertices.note_step_start();
   for (int s : vertices.attached) holders.load_attached(s);
   vertices.halo.forward_positions(ClothConstraints::ALL, vertices.start.data(), update->dt);
 }

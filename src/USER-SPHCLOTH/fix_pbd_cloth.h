@@ -85,6 +85,14 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   }
 
   bool is_attached(int i) const { return held.is_attached(i); }
+  // Of an owned vertex behind its solver, over the step; that of its holder, if it has one.  What
+  // moves it without a velocity does not count.
+  Eigen::Vector3d mean_velocity(int i)
+  {
+    if (held.inverse_mass(i) == 0.0) return Vec3(atom->v[i]);
+    const double inv_dt = 1.0 / update->dt;
+    return inv_dt * (Vec3(atom->x[i]) - vertices.step_start[vertices.halo.slot_of(i)]);
+  }
 
   // takes part in the projections until the next init()
   void register_coupling(SolverCoupling *coupling)

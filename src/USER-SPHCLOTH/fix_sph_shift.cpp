@@ -168,7 +168,8 @@ void FixSPHShift::record_sites()
   }
 }
 
-// Contact with cloth follows a particle from where its velocity says that it came.
+// To contact with cloth a shift is motion.  Where that parts the fluid, this has a free surface;
+// here are vertices of which the fluid knows.
 
 bool FixSPHShift::near_surface_or_cloth(int i) const
 {

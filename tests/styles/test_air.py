@@ -23,6 +23,7 @@ from scenes import (
     gravity,
 )
 
+TELL_AIR = "thermo_style custom step f_air[*]\n"
 FAR = "-0.25 0.25 -0.25 0.25 0.3 0.4"  # of water that is not at the sheet
 
 
@@ -177,6 +178,48 @@ def test_what_a_rigid_body_feels_is_what_the_air_gives():
         total = lmp.numpy.extract_atom("mass")[1] * n
     c = 0.5 * RHO * NORMAL * 0.16 / total
     assert v.mean() == pytest.approx(5 - 5 / (1 + c * 5 * 0.2), rel=0.02)
+
+
+# a sheet that has been at rest, and commands that lead to its next run
+AT_REST = {
+    "run": "run 3",
+    "restart file": "run 3\nwrite_restart rest",
+    "restart file without an initialization": "run 3\nwrite_restart rest noinit",
+    "restart file from within a run": "restart 3 rest\nrun 4",
+    "minimization": "run 3\nminimize 0 0 1 1",
+    "fresh": "",
+}
+
+
+def two_impulses(lmp):
+    found = []
+    for _ in range(2):
+        lmp.command("run 1")
+        found.append(lmp.extract_fix("air", 0, 1, 2, 0))
+    return found
+
+
+@pytest.mark.parametrize("before", AT_REST)
+def test_another_velocity_between_two_runs_is_the_one_that_the_air_feels(
+    before, tmp_path, monkeypatch
+):
+    """The first impulse follows from the velocity of the atoms, the second from the step behind."""
+    monkeypatch.chdir(tmp_path)
+    make = sheet(areal=0.01).replace("pbd/cloth", "pbd/cloth solver gs direction current")
+    air = f"fix air cloth cloth/air {COEFFICIENTS}\ntimestep 1e-3\n{TELL_AIR}"
+    fast = "velocity cloth set 0 0 5\n"
+    with instance() as lmp:
+        lmp.commands_string(make + air + fast)
+        expected = two_impulses(lmp)
+    with instance() as lmp:
+        lmp.commands_string(make + air + AT_REST[before])
+        for file in tmp_path.glob("rest*"):
+            more = make[make.index("pair_style") :]
+            lmp.commands_string(f"clear\nread_restart {file.name}\n{more}{air}")
+        lmp.command(fast)
+        found = two_impulses(lmp)
+    assert max(expected) < -0.1
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
 def test_covered_triangles_take_no_air():

@@ -127,3 +127,40 @@ def test_volumes_follow_a_boundary_only_while_there_is_fluid(fluid):
     lmp.command("run 3")
     grown = lmp.extract_compute("mean", 0, 0) / before
     assert (grown > 1.01) if fluid else (grown == 1.0)
+
+
+# what moves a boundary without giving it a velocity
+MOVERS = {
+    "box, and all with it": "fix move all deform 1 x erate 0.5 remap x\nrun 10\n",
+    "box alone": "fix move all deform 1 x erate 0.5 remap none\nrun 10\n",
+    "barostat": "fix move all press/berendsen iso 1e5 1e5 1.0 modulus 1e5\nrun 10\n",
+    "minimization": "min_modify dmax 2e-3\nminimize 0 0 5 50\n",
+}
+
+
+@pytest.mark.parametrize("mover", MOVERS)
+def test_volumes_follow_what_moves_without_a_velocity(mover):
+    """With lists for the whole run as with new ones, for which they are measured anyway."""
+    found = []
+    for skin in (1e-6, 0.05):
+        lmp = instance()
+        lmp.commands_string(
+            header("p p p", FLUID)
+            + box("0 0.4 0 0.4 0 0.4", 2)
+            + "mass * 0.125\n"
+            + sites()
+            + filled("floor", "INF INF INF INF INF 0.15", 2)
+            + filled("water", "INF INF INF INF 0.15 INF", 1)
+            + "group water type 1\ngroup floor type 2\n"
+            + "displace_atoms all random 0.003 0.003 0.003 4711\n"
+            + sph_tait("1 1 fluid 1000 c0 10", "2 2 boundary")
+            + neighbor(skin)
+            + "timestep 1e-3\nfix step water sph/integrate constant\n"
+            + "compute volume floor sph/atom volume\ncompute sum floor reduce sum c_volume\n"
+            + "thermo_style custom step c_sum\nrun 0\n"
+        )
+        before = lmp.extract_compute("sum", 0, 0)
+        lmp.commands_string(MOVERS[mover])
+        found.append(lmp.extract_compute("sum", 0, 0) / before)
+    assert abs(found[0] - 1) > 1e-3
+    assert found[1] == pytest.approx(found[0], rel=1e-9)

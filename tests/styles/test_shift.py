@@ -9,13 +9,16 @@ from scenes import (
     FLUID,
     MAKE_FLOW,
     box,
+    cloth_box,
     filled,
     final_dump,
     header,
     jitter,
     lattice,
     neighbor,
+    no_other_bonds,
     sph_tait,
+    stiffness,
 )
 
 DX, H = 0.05, 0.15
@@ -220,6 +223,47 @@ def test_wall_particles_count():
     # without them the same rows are at a free surface
     lmp, _, _ = shift_once(water="INF INF 0.3 0.6 INF INF")
     assert lmp.extract_fix("shift", 0, 1, 2) == 120
+
+
+@pytest.mark.parametrize(
+    ("role", "contact", "shifted"),
+    [
+        ("boundary", None, False),
+        ("boundary", "sides no", False),
+        ("none", "", False),
+        ("none", "wall yes", False),
+        ("none", "sides no wall yes", True),
+        ("none", "sides no", True),
+        ("none", None, True),
+    ],
+)
+def test_nothing_moves_beside_a_sheet_that_the_fluid_feels(role, contact, shifted):
+    lmp = instance()
+    lmp.commands_string(
+        header("p p p", "hybrid sph molecular")
+        + cloth_box("0 0.6 0 0.6 0 0.6")
+        + "mass * 0.125\n"
+        + lattice()
+        + filled("water", "INF INF INF INF INF INF")
+        + "group water type 1\n"
+        + jitter(0.005, 4711, "water")
+        + "create_cloth 2 1.0 center 0.31 0.31 0.3 size 0.4 0.4 spacing 0.05 group cloth\n"
+        + sph_tait("1 1 fluid 1000 c0 10", f"2 2 {role}", options="tension yes")
+        + stiffness("1.0", "0.0")
+        + no_other_bonds()
+        + neighbor(0.05)
+        + "timestep 1e-3\nvelocity water set 0.3 0.4 0 units box\n"
+        + "fix sheet cloth pbd/cloth pin cloth\n"
+        + ("" if contact is None else f"fix contact water cloth/contact 0.01 {contact}\n")
+        + "fix shift water sph/shift\nrun 0\n"
+    )
+    water = by_id(lmp, "type") == 1
+    x = by_id(lmp, "x")[water]
+    lmp.command("run 1")
+    moved = np.any(by_id(lmp, "x")[water] != x, axis=1)
+    beside = np.all(np.abs(x - [0.31, 0.31, 0.3]) < [0.2, 0.2, 0.05], axis=1)
+    assert np.sum(beside) > 100
+    assert np.all(moved[beside] == shifted)
 
 
 def test_plane_walls_count():

@@ -23,6 +23,7 @@ struct ClothVertices {
   // inverse mass to forces: 0 for attached vertices, too, which another fix integrates
   std::vector<double> inverse_mass;
   std::vector<int> attached;    // slots
+  std::vector<Eigen::Vector3d> step_start;    // of owned ones, where the step takes them up
 
   // solver_mass: inverse masses of all slots in the solver
   void reset(const std::vector<double> &solver_mass, bool jacobi)
@@ -47,6 +48,12 @@ struct ClothVertices {
     }
   }
 
+  void note_step_start()
+  {
+    step_start.resize(halo.n_owned());
+    for (int s = 0; s < halo.n_owned(); s++) step_start[s] = {start[s].x, start[s].y, start[s].z};
+  }
+
   void update_positions()
   {
     for (int s = 0; s < halo.n_slots(); s++) {
@@ -58,7 +65,7 @@ struct ClothVertices {
 
   double bytes() const
   {
-    return sphcloth::bytes_of(p, v, start, displacement, change) + halo.memory_usage();
+    return sphcloth::bytes_of(p, v, start, displacement, change, step_start) + halo.memory_usage();
   }
 };
 

@@ -74,9 +74,10 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   const WallTimer clock(mesh.counts.seconds);
   mesh.step_start.atoms_moved();
   mesh.forget_particles();
+  find_drift(dt);
   for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    mesh.start[s] = Vec3(step_start[s].x, step_start[s].y, step_start[s].z);
-    mesh.end[s] = Vec3(step_end[s].x, step_end[s].y, step_end[s].z);
+    mesh.start[s] = before(s, step_start[s], dt);
+    mesh.end[s] = vector_of(step_end[s]);
   }
   remaining = dt;
   mesh.halo.forward_positions(0, mesh.start.data(), remaining);
@@ -214,7 +215,7 @@ void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double 
   const WallTimer clock(mesh.counts.seconds);
   substep_dt = dt;
   substep_start = vertices;
-  const double before = remaining;
+  const double until_end = remaining;
   remaining -= dt;
   active.clear();
   substep_begins = true;
@@ -222,9 +223,8 @@ void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double 
   if (rules.cloth.restitution > 0.0) load_velocities(v);
   if (rules.max_friction() > 0.0) {
     from = mesh.end;
-    for (int s = 0; s < mesh.halo.n_owned(); s++)
-      from[s] = Vec3(vertices[s].x, vertices[s].y, vertices[s].z);
-    mesh.halo.forward_positions(0, from.data(), before);
+    for (int s = 0; s < mesh.halo.n_owned(); s++) from[s] = before(s, vertices[s], until_end);
+    mesh.halo.forward_positions(0, from.data(), until_end);
   }
   points.begin_substep(dt);
 }

@@ -105,10 +105,23 @@ class ContactRows : public SolverCoupling, protected Pointers {
   void start_rows();
   double max_slide(const ContactRow &) const;
   double asleep(const ContactRow &, double distance, double slid) const;
+  // Those of obstacles are on their way already.
+  void find_drift(double dt)
+  {
+    mesh.step_start.note_origins(dt);
+    mesh.find_drift(dt);
+    for (int s = 0; s < mesh.halo.n_owned(); s++)
+      if (edges.is_obstacle(s)) mesh.drift[s].setZero();
+  }
+  static Vec3 vector_of(const sphcloth::Vertex &p) { return {p.x, p.y, p.z}; }
+  // of an owned vertex, where the solver has it so long before the end of the step
+  Vec3 before(int slot, const sphcloth::Vertex &in_solver, double until_end) const
+  {
+    return vector_of(in_solver) - until_end * mesh.drift[slot];
+  }
   Vec3 end_of(int slot, const sphcloth::Vertex *displacement) const
   {
-    const sphcloth::Vertex &start = substep_start[slot], &by = displacement[slot];
-    return {start.x + by.x, start.y + by.y, start.z + by.z};
+    return before(slot, substep_start[slot], remaining) + vector_of(displacement[slot]);
   }
   void push_positions(sphcloth::Vertex *displacement);
   void push_velocities(sphcloth::Vertex *v);

@@ -35,6 +35,7 @@ void MovingTriangles::rebuild(double max_distance)
   }
   halo.forward(0, w);
   halo.forward(0, w_solver);
+  drift.assign(halo.n_owned(), Vec3::Zero());
   start.resize(halo.n_slots());
   end.resize(halo.n_slots());
 }
@@ -55,6 +56,19 @@ void MovingTriangles::load_positions()
 {
   forget_particles();
   for (int s = 0; s < halo.n_slots(); s++) start[s] = end[s] = position(s);
+}
+
+// What a holder moves with its velocity has no drift, to the last bit.
+
+void MovingTriangles::find_drift(double dt)
+{
+  for (int s = 0; s < halo.n_owned(); s++) {
+    const int i = halo.atom_of(s);
+    const Sweep sweep = sweep_of(i);
+    Vec3 expected = sweep.start;
+    if (w[s] == 0.0) expected += dt * Vec3(atom->v[i]);
+    drift[s] = (sweep.end - expected) / dt;
+  }
 }
 
 double MovingTriangles::max_displacement(const std::vector<Vec3> &from) const
@@ -128,5 +142,5 @@ void MovingTriangles::push_held(int i, const Vec3 &impulse)
 double MovingTriangles::memory_usage() const
 {
   return halo.memory_usage() +
-      bytes_of(first, incident, start, end, w, w_solver, moved, particles, entry);
+      bytes_of(first, incident, start, end, w, w_solver, drift, moved, particles, entry);
 }

@@ -28,6 +28,9 @@ class MovingTriangles : public TriangleSet {
   std::vector<Vec3> start, end;    // of the step so far, by slot, those of particles too
   std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but attached vertices take part
+  // Velocity with which something that gives none has moved owned vertices since the last step: in
+  // the steps of their solver they are on that way as particles are.
+  std::vector<Vec3> drift;
   std::vector<int> moved;    // own particles that contact moved in this step, some repeated
 
   // after each list build; whole triangles are seen as far as this
@@ -36,6 +39,9 @@ class MovingTriangles : public TriangleSet {
   // start and end of the step from the atoms as they are, or of a step without motion
   void load_step();
   void load_positions();
+
+  // before the solver moves vertices
+  void find_drift(double dt);
 
   // of owned vertices in the step, from places by slot
   double max_displacement(const std::vector<Vec3> &from) const;

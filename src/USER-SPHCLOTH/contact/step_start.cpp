@@ -27,8 +27,17 @@ double StepStart::longest_sweep()
   return sweep;
 }
 
+void StepStart::note_origins(double dt)
+{
+  if (noted || !wants_origins) return;
+  noted = true;
+  origins.resize(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++) origins[i] = Vec3(atom->x[i]) - dt * Vec3(atom->v[i]);
+}
+
 void StepStart::take_positions()
 {
+  noted = false;
   path += longest_sweep();
   double *const x0 = positions[0], *const y0 = positions[1], *const z0 = positions[2];
   for (int i = 0; i < atom->nlocal; i++) {

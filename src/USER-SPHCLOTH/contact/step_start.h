@@ -9,12 +9,18 @@
 #include "lammps_util/particle_columns.h"
 #include "pointers.h"
 
+#include <Eigen/Core>
+
+#include <vector>
+
 namespace LAMMPS_NS {
 
 class StepStart : protected Pointers {
  public:
   using Pointers::Pointers;
+  using Vec3 = Eigen::Vector3d;
 
+  bool wants_origins = false;
   ParticleColumns positions;    // x, y, z, which follow the atoms
 
   // from where the last step has left it to where it is
@@ -25,12 +31,18 @@ class StepStart : protected Pointers {
   // No owned atom has come farther in the steps since the last list build.
   double longest_path() const { return path; }
 
+  // Where their velocities say that atoms were, once they have moved in a step and before contact
+  // moves them; not again until the next step.
+  void note_origins(double dt);
+  Vec3 origin_of(int i) const { return origins[i]; }
+
   void take_positions();    // the next step starts where atoms are
   void rebuild();    // after each list build
 
  private:
+  std::vector<Vec3> origins;
   double path = 0.0, sweep = 0.0;
-  bool measured = false;
+  bool measured = false, noted = false;
 };
 
 }    // namespace LAMMPS_NS

@@ -286,28 +286,25 @@ Motion FluidEvaluation::usual_motion(const Particles &p) const
 ------------------------------------------------------------------------- */
 
 // Volumes of boundary particles that share space among themselves follow their motion, as long as
-// there is fluid to feel them.
+// there is fluid to feel them: boxes and minimizers move particles without velocities, too.
 
 void FluidEvaluation::measure_volumes(const Particles &p)
 {
   const int n = atom->ntypes + 1;
   std::fill(moved.begin(), moved.end(), new_lists);
+  if (new_lists) measured.begin_lists(p, atom->ntypes, [this](int t) { return is_measured(t); });
   if (measure_volume && !new_lists && any_fluid) {
-    std::vector<int> &here = moved_here;
-    std::fill(here.begin(), here.end(), 0);
-    for (int i = 0; i < p.n_owned; i++) {
-      const double *v = p.v + 3 * i;
-      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) here[p.type[i]] = 1;
-    }
-    MPI_Allreduce(here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
+    for (int t = 1; t < n; t++) moved_here[t] = measured.have_moved(p, t);
+    MPI_Allreduce(moved_here.data(), moved.data(), n, MPI_INT, MPI_MAX, world);
   }
-  bool measured = false;
+  bool any = new_lists;
   for (int t = 1; t < n; t++) {
     if (!is_measured(t) || !moved[t]) continue;
+    measured.note(p, t);
     core->volumes(p, t, mass_or_volume.data());
-    measured = true;
+    any = true;
   }
-  if (!measured && !new_lists) return;
+  if (!any) return;
   ghosts.send_to_ghosts(GhostData::MASS_OR_VOLUME);
   if (!new_lists) return;
   std::array<int, 3> here{0, 0, 0}, anywhere{0, 0, 0};
@@ -422,6 +419,6 @@ void FluidEvaluation::find_pressures(const Particles &p)
 double FluidEvaluation::bytes() const
 {
   return (core ? core->bytes() : 0.0) + stability.bytes() + scaled.bytes() + integrated.bytes() +
-      surface.bytes() +
+      surface.bytes() + measured.bytes() +
       bytes_of(mass_or_volume, p_over_rho2, approach, viscosity_shares, active_fluid);
 }

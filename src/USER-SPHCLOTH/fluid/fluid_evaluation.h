@@ -6,6 +6,7 @@
 #define SPHCLOTH_FLUID_FLUID_EVALUATION_H
 
 #include "fluid/fluid_state.h"
+#include "fluid/measured_positions.h"
 #include "lammps_util/list_guard.h"
 
 #include <vector>
@@ -51,6 +52,7 @@ class FluidEvaluation : public FluidState {
   // pressure is the fluid's, fluid
   bool measure_volume = false, extrapolate = false, any_fluid = true;
   std::vector<int> moved, moved_here;    // types of which a particle moves, on any rank and here
+  MeasuredPositions measured;
 
   void find_sides();
   double *pack(GhostData, int i, double *buf) const;    // of one atom; returns the end

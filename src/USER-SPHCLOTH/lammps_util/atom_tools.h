@@ -27,6 +27,14 @@ inline double atom_mass(const Atom *atom, int i)
   return atom->rmass ? atom->rmass[i] : atom->mass[atom->type[i]];
 }
 
+// Other velocities have another one, but by chance: it tells what something else has changed
+// between two runs.
+
+inline double fingerprint_of(const double *v)
+{
+  return v[0] + 1.6180339887 * v[1] + 2.7182818 * v[2];
+}
+
 // FNV-1a
 
 inline constexpr std::uint64_t EMPTY_HASH = 0xcbf29ce484222325U;

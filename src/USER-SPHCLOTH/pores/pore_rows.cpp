@@ -30,6 +30,7 @@ bool PoreRows::begin_step(const Vertex *, const Vertex *, double dt)
   step_impulse.setZero();
   step_lost = 0.0;
   rows.clear();
+  mesh.set->find_drift(dt);
   for (const PorePair &pair : mesh.pairs) {
     const Sweep sweep = mesh.set->sweep_of(pair.particle);
     rows.emplace_back();
@@ -58,7 +59,8 @@ void PoreRows::load_displacements(const Vertex *displacement)
 {
   VertexHalo &halo = mesh.set->halo;
   for (int s = 0; s < halo.n_owned(); s++)
-    displaced[s] = Vec3(displacement[s].x, displacement[s].y, displacement[s].z);
+    displaced[s] = Vec3(displacement[s].x, displacement[s].y, displacement[s].z) +
+        substep_dt * mesh.set->drift[s];
   halo.forward_displacements(0, displaced.data(), substep_dt);
 }
 

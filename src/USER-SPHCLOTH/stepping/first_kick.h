@@ -9,6 +9,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "lammps_util/atom_tools.h"
 #include "lammps_util/lammps_version.h"
 #include "lammps_util/particle_columns.h"
 
@@ -46,7 +47,7 @@ class FirstKick {
       double &state = columns[STATE][i];
       const bool moves_by_itself = state == RECORDED;
       if (!moves_by_itself && state != PRESENT) continue;
-      const bool same = columns[VELOCITY][i] == fingerprint(atom->v[i]);
+      const bool same = columns[VELOCITY][i] == fingerprint_of(atom->v[i]);
       state = moves_by_itself && same ? STAGGERED : GIVEN;
       if (has_been_moved(i, atom->x[i], domain))
         change = Change::POSITIONS;
@@ -60,7 +61,7 @@ class FirstKick {
     for (int i = 0; i < atom->nlocal; i++) {
       double &state = columns[STATE][i];
       state = state == STAGGERED ? RECORDED : PRESENT;
-      columns[VELOCITY][i] = fingerprint(atom->v[i]);
+      columns[VELOCITY][i] = fingerprint_of(atom->v[i]);
       for (int d = 0; d < 3; d++) columns[POSITION + d][i] = atom->x[i][d];
     }
   }
@@ -69,12 +70,6 @@ class FirstKick {
   enum Column { STATE, VELOCITY, POSITION, N_COLUMNS = POSITION + 3 };
   // at the end of a run: RECORDED, what it has moved, and PRESENT, all else
   static constexpr double GIVEN = 0.0, STAGGERED = 1.0, RECORDED = 2.0, PRESENT = 3.0;
-
-  // other velocities have another one, but by chance
-  static double fingerprint(const double *v)
-  {
-    return v[0] + 1.6180339887 * v[1] + 2.7182818 * v[2];
-  }
 
   // by more than what comes from being moved by a period
   bool has_been_moved(int i, const double *x, const Domain *domain) const

@@ -165,7 +165,7 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
 {
   // elements of owned atoms with at least one vertex in the cloth, or all, as N IDs and a type
   std::vector<tagint> mine;
-  const auto add = [&](const std::array<tagint, N> &members, int type) {
+  const auto take = [&](const std::array<tagint, N> &members, int type) {
     if (type <= 0) return;    // switched off by LAMMPS
     bool any = false, all = true;
     for (tagint id : members) {
@@ -177,7 +177,7 @@ void ClothTopology::gather_elements(ClothElements<N> &elements, const char *what
     mine.push_back(type);
   };
   for (int i = 0; counts && i < atom->nlocal; i++)
-    for (int m = 0; m < counts[i]; m++) collect(i, m, add);
+    for (int m = 0; m < counts[i]; m++) collect(i, m, take);
   const std::vector<tagint> all = allgather(mine, comm->nprocs, world);
 
   struct Element {

@@ -21,8 +21,8 @@ from sphcloth.trajectory import Frame
 MAX_JOBS = 8
 # those are drawn in the time in which a process starts
 MANY_PIXELS = 2_000_000
-# pictures of one task: few, so that processes end together and memory holds few
-MAX_SHOTS = 4
+# tasks of a process, so that all end together, and pictures of one task, so that memory holds few
+MANY_TASKS, MAX_SHOTS = 8, 4
 # tasks of a process at which no more are handed out
 WAITING = 2
 # each process has the cores of one
@@ -99,7 +99,7 @@ def _tasks(
     jobs: int,
 ) -> Iterator[list[Shot]]:
     """Yield the pictures in groups; here, since sheets are followed from frame to frame."""
-    size = min(max(len(numbers) // (WAITING * jobs), 1), MAX_SHOTS)
+    size = min(max(len(numbers) // (MANY_TASKS * jobs), 1), MAX_SHOTS)
     last, shots = None, []
     for number, angle in zip(numbers, angles, strict=True):
         if last is None or number != last[0]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,18 +62,18 @@ def draw_frames(
     """
     jobs = min(jobs or _number_of_jobs(len(numbers), scene), len(numbers))
     renderer = scene.renderer()
-    tasks = _tasks(trajectory, renderer, numbers, angles, jobs)
-    if jobs == 1:
-        for shots in tasks:
-            yield from _draw(renderer, shots)
+    shots = _shots(trajectory, renderer, numbers, angles)
+    if jobs <= 1:
+        yield from _draw(renderer, shots)
         return
+    size = min(max(len(numbers) // (MANY_TASKS * jobs), 1), MAX_SHOTS)
     waiting = deque()
     pool = ProcessPoolExecutor(jobs, initializer=_take, initargs=(scene,), env=ONE_THREAD)
     try:
-        for shots in tasks:
+        while task := list(itertools.islice(shots, size)):
             if len(waiting) == WAITING * jobs:
                 yield from waiting.popleft().result()
-            waiting.append(pool.submit(_draw_taken, shots))
+            waiting.append(pool.submit(_draw_taken, task))
         while waiting:
             yield from waiting.popleft().result()
     except TerminatedWorkerError as error:
@@ -91,26 +92,18 @@ def _number_of_jobs(pictures: int, scene: Scene) -> int:
     return min(len(os.sched_getaffinity(0)), MAX_JOBS)
 
 
-def _tasks(
+def _shots(
     trajectory: Sequence[Frame],
     renderer: Renderer,
     numbers: Sequence[int],
     angles: Sequence[float],
-    jobs: int,
-) -> Iterator[list[Shot]]:
-    """Yield the pictures in groups; here, since sheets are followed from frame to frame."""
-    size = min(max(len(numbers) // (MANY_TASKS * jobs), 1), MAX_SHOTS)
-    last, shots = None, []
-    for number, angle in zip(numbers, angles, strict=True):
-        if last is None or number != last[0]:
-            frame = trajectory[number]
-            last = number, frame, renderer.follow(frame)
-        shots.append(Shot(*last[1:], angle))
-        if len(shots) == size:
-            yield shots
-            shots = []
-    if shots:
-        yield shots
+) -> Iterator[Shot]:
+    """Yield the pictures one by one; sheets are followed from frame to frame."""
+    for number, group in itertools.groupby(zip(numbers, angles, strict=True), lambda pair: pair[0]):
+        frame = trajectory[number]
+        sheet = renderer.follow(frame)
+        for _, angle in group:
+            yield Shot(frame, sheet, angle)
 
 
 # what a process draws with
@@ -123,14 +116,13 @@ def _take(scene: Scene) -> None:
 
 
 def _draw_taken(shots: Sequence[Shot]) -> list[NDArray[np.uint8]]:
-    return _draw(*_taken, shots)
+    return list(_draw(*_taken, shots))
 
 
-def _draw(renderer: Renderer, shots: Sequence[Shot]) -> list[NDArray[np.uint8]]:
+def _draw(renderer: Renderer, shots: Iterable[Shot]) -> Iterator[NDArray[np.uint8]]:
     """Draw some pictures; surfaces of a frame are made once."""
-    pictures, made = [], None
+    last, geometry = None, None
     for shot in shots:
-        if made is None or shot.frame is not made[0]:
-            made = shot.frame, renderer.geometry_of(shot.frame, shot.sheet)
-        pictures.append(renderer.picture(made[1], shot.angle))
-    return pictures
+        if shot.frame is not last:
+            last, geometry = shot.frame, renderer.geometry_of(shot.frame, shot.sheet)
+        yield renderer.picture(geometry, shot.angle)

@@ -80,7 +80,7 @@ def _speeds(run: Evidence) -> Iterator[Finding]:
 
 def _builds(run: Evidence) -> Iterator[Finding]:
     builds, words = _total(run, "v_advise_builds"), run.commands.neighbor
-    skin = f"skin {float(words[0]):.3g}" if words else "the usual skin"
+    skin = f"skin {float(words[0]):.3g}" if words else "the default skin"
     often = f"built every {run.steps / builds:.3g} steps" if builds else "never built again"
     yield Finding("neighbor lists", f"{often}, {skin}")
 

@@ -104,6 +104,16 @@ def test_small_pictures_start_no_process(monkeypatch: pytest.MonkeyPatch) -> Non
         drawn(wandering(2), 0)
 
 
+def test_without_semaphores_one_process_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object, **__: object) -> None:
+        raise OSError(38, "Function not implemented")
+
+    frames = wandering(3)
+    expected = drawn(frames, 1)
+    monkeypatch.setattr(workers, "ProcessPoolExecutor", none)
+    np.testing.assert_array_equal(drawn(frames, 2), expected)
+
+
 def _processes_that_draw() -> list[int]:
     """Return the children of this process that wait for pictures to draw."""
     found = []

@@ -63,12 +63,12 @@ def draw_frames(
     jobs = min(jobs or _number_of_jobs(len(numbers), scene), len(numbers))
     renderer = scene.renderer()
     shots = _shots(trajectory, renderer, numbers, angles)
-    if jobs <= 1:
+    pool = _processes(jobs, scene) if jobs > 1 else None
+    if pool is None:
         yield from _draw(renderer, shots)
         return
     size = min(max(len(numbers) // (MANY_TASKS * jobs), 1), MAX_SHOTS)
     waiting = deque()
-    pool = ProcessPoolExecutor(jobs, initializer=_take, initargs=(scene,), env=ONE_THREAD)
     try:
         while task := list(itertools.islice(shots, size)):
             if len(waiting) == WAITING * jobs:
@@ -90,6 +90,14 @@ def _number_of_jobs(pictures: int, scene: Scene) -> int:
     if pictures * math.prod(scene.camera.size) < MANY_PIXELS:
         return 1
     return min(len(os.sched_getaffinity(0)), MAX_JOBS)
+
+
+def _processes(jobs: int, scene: Scene) -> ProcessPoolExecutor | None:
+    """Return processes that draw a scene; None where the system has no semaphores for them."""
+    try:
+        return ProcessPoolExecutor(jobs, initializer=_take, initargs=(scene,), env=ONE_THREAD)
+    except (ImportError, OSError, NotImplementedError):
+        return None
 
 
 def _shots(

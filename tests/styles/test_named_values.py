@@ -293,3 +293,17 @@ def test_pairs_are_the_neighbors_that_loops_evaluate():
     assert updates == 20 * len(x)
     assert 2 * 20 * inside <= pairs < 3 * 22 * inside
     assert pairs - before[0] == pytest.approx(before[0], rel=0.2)
+
+
+def test_a_variable_that_reads_no_compute_asks_for_no_virial():
+    """By loops that would be counted, in each step."""
+    pairs = []
+    for speed in ("0.1", "v_speed"):
+        with instance() as lmp:
+            lmp.commands_string(
+                "variable speed equal 0.1\n"
+                + FREE_SHEET.replace("damping 1.0", f"pin cloth velocity {speed} 0 0")
+                + "compute it all sph/step pairs\nthermo 100\nrun 20"
+            )
+            pairs.append(lmp.extract_compute("it", 0, 0))
+    assert pairs[0] == pairs[1] > 0

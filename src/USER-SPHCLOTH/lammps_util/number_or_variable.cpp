@@ -4,6 +4,7 @@
 #include "lammps_util/number_or_variable.h"
 
 #include "atom.h"
+#include "compute.h"
 #include "core/util/bytes.h"
 #include "error.h"
 #include "group.h"
@@ -49,7 +50,8 @@ void NumberOrVariable::check(LAMMPS *lmp, const std::string &owner)
   if (per_atom) number = 0.0;
 }
 
-// Computes that a variable reads must know that they are asked again.
+// Computes that a variable reads must know that they are asked again.  By Modify::addstep_compute()
+// all of them would be asked, and energy and virial be summed in every step.
 
 void NumberOrVariable::evaluate(LAMMPS *lmp, const std::string &owner, int igroup, Span of)
 {
@@ -58,7 +60,8 @@ void NumberOrVariable::evaluate(LAMMPS *lmp, const std::string &owner, int igrou
   lmp->modify->clearstep_compute();
   for (std::size_t k = 0; k < n; k++)
     if (begin[k]->is_variable()) begin[k]->evaluate(lmp, owner, igroup);
-  lmp->modify->addstep_compute(lmp->update->ntimestep + 1);
+  for (Compute *compute : lmp->modify->get_compute_list())
+    if (compute->timeflag && compute->invoked_flag) compute->addstep(lmp->update->ntimestep + 1);
 }
 
 void NumberOrVariable::evaluate(LAMMPS *lmp, const std::string &owner, int igroup)

@@ -179,6 +179,7 @@ void FixClothContact::join()
 
 void FixClothContact::pre_exchange()
 {
+  for (auto &obstacle : obstacles) require_inside_box(lmp, label, obstacle->groupbit);
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require_in_run(needed, wanted);

@@ -161,6 +161,7 @@ void FixPBDCloth::setup_post_neighbor()
 
 void FixPBDCloth::pre_exchange()
 {
+  require_inside_box(lmp, label, groupbit);
   if (!ghosts.matters()) return;
   vertices.halo.forward_positions(ClothConstraints::ALL, vertices.p.data());
   constraints.check_lengths(vertices);

@@ -25,6 +25,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/substepping.h"
 #include "contact/contact_mesh.h"
 #include "fluid/scaled_vertices.h"
+#include "lammps_util/box_faces.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/list_guard.h"
 #include "lammps_util/timed_dumps.h"
@@ -41,6 +42,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ~FixPBDCloth() override;
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override { require_inside_box(lmp, label, groupbit); }
   void setup_post_neighbor() override;
   void pre_exchange() override;
   void min_pre_exchange() override

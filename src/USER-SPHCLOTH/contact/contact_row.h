@@ -99,8 +99,18 @@ class SplitMasses {
     return inverse > 0.0 ? row.share / inverse : 0.0;
   }
 
+  // with other rows, of what can move
+  bool are_shared(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
+    for (int k = 0; k < 4; k++) {
+      const int s = row.slots[k];
+      if (inverse_mass[s] > 0.0 && shares[s][0] > row.share * std::fabs(row.weight[k])) return true;
+    }
+    return false;
+  }
+
   // The same by load, so that a row that hardly pushes hardly counts: what rows push more in a
-  // substep is added.  Sharing is collective.
+  // substep is added, also behind sharing, which sums what all ranks have so far.  Collective.
   void clear_loads() { clear(loads); }
   void add_load(const ContactRow &row, double load)
   {
@@ -108,14 +118,19 @@ class SplitMasses {
   }
   void share_loads(VertexHalo &halo)
   {
-    halo.reverse_add(0, loads.data());
-    halo.forward(0, loads.data());
+    of_all_ranks = loads;
+    halo.reverse_add(0, of_all_ranks.data());
+    halo.forward(0, of_all_ranks.data());
   }
   double by_load(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
     double inverse = 0.0;
-    for (int k = 0; k < 4; k++)
-      inverse += inverse_mass[row.slots[k]] * std::fabs(row.weight[k]) * loads[row.slots[k]][0];
+    for (int k = 0; k < 4; k++) {
+      const int s = row.slots[k];
+      const double weight = std::fabs(row.weight[k]);
+      inverse +=
+          inverse_mass[s] * weight * std::max(row.normal_correction * weight, of_all_ranks[s][0]);
+    }
     return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
   }
 
@@ -125,10 +140,10 @@ class SplitMasses {
     for (int k = 0; k < 4; k++) impulse[row.slots[k]] += row.weight[k] * by;
   }
 
-  double bytes() const { return sphcloth::bytes_of(impulse, shares, loads); }
+  double bytes() const { return sphcloth::bytes_of(impulse, shares, loads, of_all_ranks); }
 
  private:
-  std::vector<Vec3> shares, loads;    // by slot, in [0]
+  std::vector<Vec3> shares, loads, of_all_ranks;    // by slot, in [0]; the last of loads
 
   // as one block of numbers: in every pass, of all slots
   void clear(std::vector<Vec3> &of) const

@@ -9,7 +9,6 @@
 #include "contact/contact_rows.h"
 
 #include "atom.h"
-#include "core/contact/contact_impulse.h"
 #include "core/util/bytes.h"
 #include "force.h"
 
@@ -35,11 +34,17 @@ static constexpr double ROUND_OFF = 1e-6;
 // the most of them where it is all of it.
 static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
+static constexpr double NONE = -1.0;
 
 // Rows share the mass of a vertex, so that one pass over many at a vertex leaves a part of each gap
 // missing, which heavy particles then get back behind the solver, as compression.
 static constexpr int PASSES_OF_PARTICLES = 3;
-static constexpr double NONE = -1.0;
+
+// The same where a particle is on two faces, whose normals differ by more than 8 degrees.
+// Friction takes what is left of the approach to one face for sliding along the other one, and of
+// what restitution gives back nothing may be left.
+static constexpr int PASSES_ON_TWO_FACES = 12;
+static constexpr double COS_ONE_FACE = 0.99;
 
 // By which, of the thickness, the two sides of a row may move past one another before their closest
 // points are found anew; until then its distance is along its normal.  At an edge or a vertex that
@@ -48,6 +53,21 @@ static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASI
                         MAX_SLIDE_APART = 0.5;
 
 void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
+
+// Is any particle on two faces?  Its rows, from `begin` on, follow one another.
+
+static bool are_on_two_faces(const std::vector<ContactRow> &rows, std::size_t begin)
+{
+  const ContactRow *first = nullptr;    // of a particle
+  for (std::size_t k = begin; k < rows.size(); k++) {
+    if (rows[k].share == 0.0) continue;
+    if (!first || first->slots[0] != rows[k].slots[0])
+      first = &rows[k];
+    else if (first->normal.dot(rows[k].normal) < COS_ONE_FACE)
+      return true;
+  }
+  return false;
+}
 
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
@@ -73,10 +93,20 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
   passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
-  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
   too_near = all > 0.0;
   points.begin_step(dt);
   start_rows();
+  passes_of_velocities = 1;
+  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
+  if (two_faces_matter()) {
+    const int here = are_on_two_faces(rows, n_rows_of_cloth);
+    int anywhere;
+    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
+    if (anywhere) {
+      passes_of_velocities = MAX_PASSES;
+      passes_of_active = std::max(passes, PASSES_ON_TWO_FACES);
+    }
+  }
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
@@ -206,10 +236,11 @@ void ContactRows::project(Vertex *displacement)
   for (int pass = 0; pass < passes_of_active; pass++) {
     masses.clear_impulses();
     wake(pass >= passes);
-    for_ahead(awake, [this](int k) {
-      project_normal(k);
-      if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
-    });
+    for_ahead(awake, [this](int k) { project_normal(k); });
+    if (rules.max_friction() > 0.0) {
+      masses.share_loads(mesh.halo);
+      for_ahead(active, [this](int k) { project_friction(k); });
+    }
     push_positions(displacement);
     if (pass < passes_of_active - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
@@ -232,16 +263,6 @@ void ContactRows::push_positions(Vertex *displacement)
     max_sq = std::max(max_sq, way.squaredNorm());
   }
   path += std::sqrt(max_sq);
-}
-
-void ContactRows::push_velocities(Vertex *v)
-{
-  mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    if (masses.impulse[s].isZero(0.0)) continue;
-    add(v[s], mesh.w_solver[s] * masses.impulse[s]);
-    received[s] += masses.impulse[s];
-  }
 }
 
 // What all vertices have moved together, in about this direction before, does not count.
@@ -386,55 +407,20 @@ double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
   return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
-// Coulomb friction against the sliding of this substep
+// Coulomb friction against the sliding of this substep.  The rows that push have all of the mass:
+// what they leave of the sliding is never removed.
 
 void ContactRows::project_friction(int k)
 {
   const ContactRow &row = rows[k];
+  if (rules_of(row).friction == 0.0) return;
   Vec3 &correction = details[k].friction_correction;
   Vec3 slip = row.relative(mesh.end) - row.relative(from);
   slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target =
-      clamp_length(correction - row.mass * slip, rules_of(row).friction * row.normal_correction);
+  const Vec3 target = clamp_length(correction - masses.by_load(row, mesh.w_solver) * slip,
+                                   rules_of(row).friction * row.normal_correction);
   masses.apply(row, target - correction);
   correction = target;
-}
-
-void ContactRows::end_substep(Vertex *v, double dt)
-{
-  const WallTimer clock(mesh.counts.seconds);
-  points.end_substep(dt);
-  masses.share_loads(mesh.halo);
-  load_velocities(v);
-  masses.clear_impulses();
-  for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  push_velocities(v);
-  points.push_velocities(masses.impulse);
-}
-
-void ContactRows::solve_velocity(int k, double dt)
-{
-  ContactRow &row = rows[k];
-  const ContactRules &of_row = rules_of(row);
-  if (row.normal_correction > 0.0) {
-    ContactMotion motion{row.relative(velocity), row.normal, 0.0,
-                         masses.by_load(row, mesh.w_solver)};
-    ExchangedImpulse so_far{row.normal_correction / dt};
-    if (row.meeting == Meeting::PARTICLE) mesh.counts.passed_on += so_far.normal;
-    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-    if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
-    masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));
-  }
-  row.active = false;
-  row.normal_correction = 0.0;
-  if (of_row.friction > 0.0) details[k].friction_correction.setZero();
-}
-
-void ContactRows::load_velocities(const Vertex *v)
-{
-  points.store_velocities(velocity);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift[s];
-  mesh.halo.forward_velocities(0, velocity.data());
 }
 
 void ContactRows::end_step()
@@ -496,5 +482,5 @@ double ContactRows::memory_usage() const
 {
   return masses.bytes() + points.bytes() +
       bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, ghosts_before,
-               velocity, received);
+               velocity, received, exchanged);
 }

@@ -11,6 +11,7 @@
 #include "contact/cloth_candidates.h"
 #include "contact/contact_points.h"
 #include "contact/contact_row.h"
+#include "core/contact/contact_impulse.h"
 #include "core/util/simd.h"
 
 #include <vector>
@@ -65,7 +66,9 @@ class ContactRows : public SolverCoupling, protected Pointers {
   std::vector<Vec3> ghosts_before;
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
   const sphcloth::Vertex *substep_start = nullptr;
+  std::vector<sphcloth::ExchangedImpulse> exchanged;    // in this substep, by active rows
   int passes = 1, passes_of_active = 1;    // of a projection, in this step
+  int passes_of_velocities = 1;    // at most, in a substep
   bool too_near = false;    // is some cloth to cloth, on any rank?
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
@@ -78,6 +81,12 @@ class ContactRows : public SolverCoupling, protected Pointers {
   {
     return row < n_rows_of_cloth ? 2.0 * path
                                  : path + points.path(slot_of_particle[row - n_rows_of_cloth]);
+  }
+  // of a particle: without both its approach alone is removed, a part in each substep
+  bool two_faces_matter() const
+  {
+    const ContactRules &of = rules.of(Meeting::PARTICLE);
+    return !of_particles.none() && (of.friction > 0.0 || of.restitution > 0.0);
   }
   bool recovers_in_solver() const { return of_particles.none(); }
   void wake(bool only_active)
@@ -136,7 +145,24 @@ class ContactRows : public SolverCoupling, protected Pointers {
   double leaning_of(int row, const sphcloth::ClosestPoints &) const;
   double leaning_beside(int edge, const Vec3 &from_nearest,
                         const std::array<int, 2> &other_side) const;
-  void solve_velocity(int row, double dt);
+  // in this substep, by the projection
+  sphcloth::ExchangedImpulse exchanged_by(int k) const
+  {
+    sphcloth::ExchangedImpulse so_far{rows[k].normal_correction / substep_dt};
+    if (rules_of(rows[k]).friction > 0.0)
+      so_far.friction = details[k].friction_correction / substep_dt;
+    return so_far;
+  }
+  double solve_velocity(int row, sphcloth::ExchangedImpulse &so_far);
+  void release(int k)
+  {
+    ContactRow &row = rows[k];
+    if (row.meeting == Meeting::PARTICLE && row.normal_correction > 0.0)
+      mesh.counts.passed_on += row.normal_correction / substep_dt;
+    row.active = false;
+    row.normal_correction = 0.0;
+    if (rules_of(row).friction > 0.0) details[k].friction_correction.setZero();
+  }
   void push_held() const;
   void recover_gaps();
   void find_missing_gaps();

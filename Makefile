@@ -188,8 +188,8 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner curtain cloth_on_water hammock net parachute sail \
-  shower strainer two_resolutions)
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner chair curtain cloth_on_water hammock net \
+  parachute sail shower stack strainer towel two_resolutions water_balloon)
 pictures: $(EXAMPLE_PICTURES)
 
 $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed

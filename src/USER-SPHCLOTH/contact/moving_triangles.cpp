@@ -142,5 +142,5 @@ void MovingTriangles::push_held(int i, const Vec3 &impulse)
 double MovingTriangles::memory_usage() const
 {
   return halo.memory_usage() +
-      bytes_of(first, incident, start, end, w, w_solver, drift, moved, particles, entry);
+      bytes_of(first, incident, start, end, w, w_solver, drift, particles, entry);
 }

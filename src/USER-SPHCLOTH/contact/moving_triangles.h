@@ -31,7 +31,6 @@ class MovingTriangles : public TriangleSet {
   // Velocity with which something that gives none has moved owned vertices since the last step: in
   // the steps of their solver they are on that way as particles are.
   std::vector<Vec3> drift;
-  std::vector<int> moved;    // own particles that contact moved in this step, some repeated
 
   // after each list build; whole triangles are seen as far as this
   void rebuild(double max_distance);

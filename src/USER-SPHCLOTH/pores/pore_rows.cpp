@@ -128,6 +128,7 @@ void PoreRows::end_step()
   for (std::size_t k = 0; k < rows.size(); k++) {
     const Row &row = rows[k];
     const int i = mesh.pairs[k].particle;
+    if (row.velocity != row.velocity_before) mesh.set->step_start.moved.push_back(i);
     for (int d = 0; d < 3; d++) {
       atom->x[i][d] += row.offset[d];
       atom->v[i][d] += row.velocity[d] - row.velocity_before[d];

@@ -433,7 +433,7 @@ void ContactRows::solve_velocity(int k, double dt)
 void ContactRows::load_velocities(const Vertex *v)
 {
   points.store_velocities(velocity);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift[s];
+  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift_of(s);
   mesh.halo.forward_velocities(0, velocity.data());
 }
 

@@ -60,7 +60,7 @@ void PoreRows::load_displacements(const Vertex *displacement)
   VertexHalo &halo = mesh.set->halo;
   for (int s = 0; s < halo.n_owned(); s++)
     displaced[s] = Vec3(displacement[s].x, displacement[s].y, displacement[s].z) +
-        substep_dt * mesh.set->drift[s];
+        substep_dt * mesh.set->drift_of(s);
   halo.forward_displacements(0, displaced.data(), substep_dt);
 }
 

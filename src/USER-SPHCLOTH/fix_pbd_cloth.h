@@ -28,6 +28,7 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "lammps_util/box_faces.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/list_guard.h"
+#include "lammps_util/replaced_velocities.h"
 #include "lammps_util/timed_dumps.h"
 #include "stepping/limited_vertices.h"
 
@@ -55,6 +56,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
+  void post_run() override { velocities.end_run(atom); }
   void end_of_step() override { renew_computes_for_timed_dumps(lmp); }
   double compute_vector(int) override;
 
@@ -68,7 +70,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   int size_restart(int) override { return maxsize_restart(); }
   int maxsize_restart() override
   {
-    return 1 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
+    return 2 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
   }
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -142,6 +144,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ClothVertices vertices;
   ListGuard lists_of_atoms;
   HolderForces holders;
+  ReplacedVelocities velocities;
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;
   ScaledVertices scaled;    // of those beside fluid
@@ -159,7 +162,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void load();
   void store();
   void measure();
-  static constexpr int N_KEPT = 3;
+  static constexpr int N_KEPT = 4;
   ParticleColumns *kept(int n);
 };
 

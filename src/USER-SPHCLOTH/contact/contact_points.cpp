@@ -63,7 +63,7 @@ void ContactPoints::end_step(Atom *atom)
   const bool adds = mesh.has_pores();
   for_all([&](const Point &point, int slot) {
     const int i = mesh.atom_of(slot);
-    if (point.moved) mesh.moved.push_back(i);
+    if (point.moved) mesh.step_start.moved.push_back(i);
     for (int d = 0; d < 3; d++) {
       atom->v[i][d] += point.velocity[d] - point.velocity_before[d];
       atom->x[i][d] = adds ? atom->x[i][d] + (mesh.end[slot][d] - point.ahead[d])

@@ -111,13 +111,13 @@ class ContactRows : public SolverCoupling, protected Pointers {
     mesh.step_start.note_origins(dt);
     mesh.find_drift(dt);
     for (int s = 0; s < mesh.halo.n_owned(); s++)
-      if (edges.is_obstacle(s)) mesh.drift[s].setZero();
+      if (edges.is_obstacle(s)) mesh.forget_drift(s);
   }
   static Vec3 vector_of(const sphcloth::Vertex &p) { return {p.x, p.y, p.z}; }
   // of an owned vertex, where the solver has it so long before the end of the step
   Vec3 before(int slot, const sphcloth::Vertex &in_solver, double until_end) const
   {
-    return vector_of(in_solver) - until_end * mesh.drift[slot];
+    return vector_of(in_solver) - until_end * mesh.drift_of(slot);
   }
   Vec3 end_of(int slot, const sphcloth::Vertex *displacement) const
   {

@@ -50,7 +50,7 @@ double ContactRows::solve_velocity(int k, ExchangedImpulse &so_far)
 void ContactRows::load_velocities(const Vertex *v)
 {
   points.store_velocities(velocity);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift[s];
+  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift_of(s);
   mesh.halo.forward_velocities(0, velocity.data());
 }
 

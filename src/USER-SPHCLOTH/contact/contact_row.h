@@ -33,6 +33,7 @@ struct alignas(64) ContactRow {
   sphcloth::PairKind kind;
   Meeting meeting;
   bool active = false;    // in this substep
+  bool in_corner = false;    // of a particle on two faces
 
   ContactRow(const ContactPair &pair, const std::array<double, 4> &weight_, const Vec3 &normal_,
              double gap_) :
@@ -90,13 +91,13 @@ class SplitMasses {
   // 0 if nothing can move; a row that was not counted counts itself
   double of(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
-    double inverse = 0.0;
-    for (int k = 0; k < 4; k++) {
-      const int s = row.slots[k];
-      const double weight = std::fabs(row.weight[k]);
-      inverse += inverse_mass[s] * weight * std::max(row.share * weight, shares[s][0]);
-    }
+    const double inverse = split(row, 0, row.share, shares, inverse_mass);
     return inverse > 0.0 ? row.share / inverse : 0.0;
+  }
+  // without the first member, inverse
+  double inverse_of_others(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
+    return row.share > 0.0 ? split(row, 1, row.share, shares, inverse_mass) / row.share : 0.0;
   }
 
   // with other rows, of what can move
@@ -124,14 +125,15 @@ class SplitMasses {
   }
   double by_load(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
-    double inverse = 0.0;
-    for (int k = 0; k < 4; k++) {
-      const int s = row.slots[k];
-      const double weight = std::fabs(row.weight[k]);
-      inverse +=
-          inverse_mass[s] * weight * std::max(row.normal_correction * weight, of_all_ranks[s][0]);
-    }
-    return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
+    const double load = row.normal_correction,
+                 inverse = split(row, 0, load, of_all_ranks, inverse_mass);
+    return inverse > 0.0 ? load / inverse : 0.0;
+  }
+  double inverse_of_others_by_load(const ContactRow &row,
+                                   const std::vector<double> &inverse_mass) const
+  {
+    const double load = row.normal_correction;
+    return load > 0.0 ? split(row, 1, load, of_all_ranks, inverse_mass) / load : 0.0;
   }
 
   void clear_impulses() { clear(impulse); }
@@ -144,6 +146,19 @@ class SplitMasses {
 
  private:
   std::vector<Vec3> shares, loads, of_all_ranks;    // by slot, in [0]; the last of loads
+
+  // inverse masses from the member `first` on, each times what all rows have of it
+  static double split(const ContactRow &row, int first, double part,
+                      const std::vector<Vec3> &of_all, const std::vector<double> &inverse_mass)
+  {
+    double inverse = 0.0;
+    for (int k = first; k < 4; k++) {
+      const int s = row.slots[k];
+      const double weight = std::fabs(row.weight[k]);
+      inverse += inverse_mass[s] * weight * std::max(part * weight, of_all[s][0]);
+    }
+    return inverse;
+  }
 
   // as one block of numbers: in every pass, of all slots
   void clear(std::vector<Vec3> &of) const

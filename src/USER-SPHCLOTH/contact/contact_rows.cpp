@@ -40,12 +40,6 @@ static constexpr double NONE = -1.0;
 // missing, which heavy particles then get back behind the solver, as compression.
 static constexpr int PASSES_OF_PARTICLES = 3;
 
-// The same where a particle is on two faces, whose normals differ by more than 8 degrees.
-// Friction takes what is left of the approach to one face for sliding along the other one, and of
-// what restitution gives back nothing may be left.
-static constexpr int PASSES_ON_TWO_FACES = 12;
-static constexpr double COS_ONE_FACE = 0.99;
-
 // By which, of the thickness, the two sides of a row may move past one another before their closest
 // points are found anew; until then its distance is along its normal.  At an edge or a vertex that
 // turns, and rows that lean too far do not push.  And of the distance to contact.
@@ -53,21 +47,6 @@ static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASI
                         MAX_SLIDE_APART = 0.5;
 
 void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
-
-// Is any particle on two faces?  Its rows, from `begin` on, follow one another.
-
-static bool are_on_two_faces(const std::vector<ContactRow> &rows, std::size_t begin)
-{
-  const ContactRow *first = nullptr;    // of a particle
-  for (std::size_t k = begin; k < rows.size(); k++) {
-    if (rows[k].share == 0.0) continue;
-    if (!first || first->slots[0] != rows[k].slots[0])
-      first = &rows[k];
-    else if (first->normal.dot(rows[k].normal) < COS_ONE_FACE)
-      return true;
-  }
-  return false;
-}
 
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
@@ -96,17 +75,8 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   too_near = all > 0.0;
   points.begin_step(dt);
   start_rows();
-  passes_of_velocities = 1;
   passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
-  if (two_faces_matter()) {
-    const int here = are_on_two_faces(rows, n_rows_of_cloth);
-    int anywhere;
-    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);
-    if (anywhere) {
-      passes_of_velocities = MAX_PASSES;
-      passes_of_active = std::max(passes, PASSES_ON_TWO_FACES);
-    }
-  }
+  find_corners();
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
@@ -236,16 +206,27 @@ void ContactRows::project(Vertex *displacement)
   for (int pass = 0; pass < passes_of_active; pass++) {
     masses.clear_impulses();
     wake(pass >= passes);
-    for_ahead(awake, [this](int k) { project_normal(k); });
-    if (rules.max_friction() > 0.0) {
-      masses.share_loads(mesh.halo);
-      for_ahead(active, [this](int k) { project_friction(k); });
-    }
+    for_ahead(awake, [this](int k) {
+      if (!rows[k].in_corner) project_normal(k);
+    });
+    for (const Corner &which : corners) project_corner(which);
+    if (pass == passes_of_active - 1 && rules.max_friction() > 0.0) project_friction();
     push_positions(displacement);
     if (pass < passes_of_active - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
     points.measure_paths(Vec3::Zero());
   }
+}
+
+// Against what is left of sliding when all push: in the last pass.
+
+void ContactRows::project_friction()
+{
+  masses.share_loads(mesh.halo);
+  for_ahead(active, [this](int k) {
+    if (!rows[k].in_corner) masses.apply(rows[k], rub(k, slip(rows[k])));
+  });
+  for (const Corner &which : corners) project_friction(which);
 }
 
 // vertices, by what rows of all ranks have pushed
@@ -300,10 +281,10 @@ void ContactRows::load_ghosts(const Vec3 &aside)
 // on what wakes it.  One that pushes has those of this substep: with older ones it would feed the
 // vibration of vertices that are light beside what they bear.
 
-void ContactRows::project_normal(int k)
+bool ContactRows::measure(int k, Vec3 &vector)
 {
   ContactRow &row = rows[k];
-  Vec3 vector = row.relative(mesh.end);
+  vector = row.relative(mesh.end);
   double slid = (vector - row.distance * row.normal).norm();
   const bool starts = !row.active && slid > 0.0 && row.pushes(vector.dot(row.normal));
   if (slid > max_slide(row) || starts) {
@@ -311,25 +292,29 @@ void ContactRows::project_normal(int k)
     slid = 0.0;
   }
   const double distance = vector.dot(row.normal);
-  if (!row.pushes(distance)) {
-    awake_from[k] = path_of(k) + asleep(row, distance, slid);
-    return;
-  }
-  if (!row.active) {
-    if (rules_of(row).restitution > 0.0)
-      details[k].speed_before = row.relative(velocity).dot(row.normal);
-    row.active = true;
-    active.push_back(k);
-  }
-  if (row.meeting == Meeting::PARTICLE) {
-    mesh.counts.contacts++;
-    mesh.counts.deepest = std::max(mesh.counts.deepest, row.gap - distance);
-  } else
-    mesh.counts.cloth_contacts++;
-  const double step = std::max((row.gap - distance) * row.mass, -row.normal_correction);
-  row.normal_correction += step;
-  masses.apply(row, step * row.normal);
-  masses.add_load(row, step);
+  if (row.pushes(distance)) return true;
+  awake_from[k] = path_of(k) + asleep(row, distance, slid);
+  return false;
+}
+
+void ContactRows::project_normal(int k)
+{
+  Vec3 vector;
+  if (!measure(k, vector)) return;
+  ContactRow &row = rows[k];
+  const double distance = vector.dot(row.normal);
+  if (!row.active) activate(k);
+  count(row, distance);
+  masses.apply(row, push(row, row.mass, distance) * row.normal);
+}
+
+void ContactRows::activate(int k)
+{
+  ContactRow &row = rows[k];
+  if (rules_of(row).restitution > 0.0)
+    details[k].speed_before = row.relative(velocity).dot(row.normal);
+  row.active = true;
+  active.push_back(k);
 }
 
 // They turn little: where their direction turns round inside both, one side has passed the other.
@@ -410,17 +395,15 @@ double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
 // Coulomb friction against the sliding of this substep.  The rows that push have all of the mass:
 // what they leave of the sliding is never removed.
 
-void ContactRows::project_friction(int k)
+ContactRows::Vec3 ContactRows::rub(int k, const Vec3 &slipped)
 {
   const ContactRow &row = rows[k];
-  if (rules_of(row).friction == 0.0) return;
+  if (rules_of(row).friction == 0.0) return Vec3::Zero();
   Vec3 &correction = details[k].friction_correction;
-  Vec3 slip = row.relative(mesh.end) - row.relative(from);
-  slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target = clamp_length(correction - masses.by_load(row, mesh.w_solver) * slip,
-                                   rules_of(row).friction * row.normal_correction);
-  masses.apply(row, target - correction);
-  correction = target;
+  const Vec3 sliding = slipped - slipped.dot(row.normal) * row.normal, before = correction;
+  correction = clamp_length(before - masses.by_load(row, mesh.w_solver) * sliding,
+                            rules_of(row).friction * row.normal_correction);
+  return correction - before;
 }
 
 void ContactRows::end_step()
@@ -482,5 +465,5 @@ double ContactRows::memory_usage() const
 {
   return masses.bytes() + points.bytes() +
       bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, ghosts_before,
-               velocity, received, exchanged);
+               velocity, received, corners, corner.rows);
 }

@@ -9,9 +9,9 @@
 #include "cloth/solver_coupling.h"
 #include "contact/candidate_pairs.h"
 #include "contact/cloth_candidates.h"
+#include "contact/contact_corner.h"
 #include "contact/contact_points.h"
 #include "contact/contact_row.h"
-#include "core/contact/contact_impulse.h"
 #include "core/util/simd.h"
 
 #include <vector>
@@ -65,10 +65,13 @@ class ContactRows : public SolverCoupling, protected Pointers {
   std::vector<Vec3> from, velocity;    // vertices at the start of the substep
   std::vector<Vec3> ghosts_before;
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
+  struct Corner {    // rows of a particle on two faces
+    int begin, end;
+  };
+  std::vector<Corner> corners;    // in this step
+  ContactCorner corner;    // of those, the one that is solved
   const sphcloth::Vertex *substep_start = nullptr;
-  std::vector<sphcloth::ExchangedImpulse> exchanged;    // in this substep, by active rows
   int passes = 1, passes_of_active = 1;    // of a projection, in this step
-  int passes_of_velocities = 1;    // at most, in a substep
   bool too_near = false;    // is some cloth to cloth, on any rank?
   double remaining = 0.0, substep_dt = 0.0;    // of the step, behind this substep
   double path = 0.0;    // longest of a vertex since the step began, beside what all move together
@@ -81,12 +84,6 @@ class ContactRows : public SolverCoupling, protected Pointers {
   {
     return row < n_rows_of_cloth ? 2.0 * path
                                  : path + points.path(slot_of_particle[row - n_rows_of_cloth]);
-  }
-  // of a particle: without both its approach alone is removed, a part in each substep
-  bool two_faces_matter() const
-  {
-    const ContactRules &of = rules.of(Meeting::PARTICLE);
-    return !of_particles.none() && (of.friction > 0.0 || of.restitution > 0.0);
   }
   bool recovers_in_solver() const { return of_particles.none(); }
   void wake(bool only_active)
@@ -137,8 +134,34 @@ class ContactRows : public SolverCoupling, protected Pointers {
       visit(some[n]);
     }
   }
+  bool measure(int row, Vec3 &vector);    // from the second side to the first; does it push?
+  void activate(int row);
   void project_normal(int row);
-  void project_friction(int row);
+  // the impulse, mass times length
+  double push(ContactRow &row, double mass, double distance)
+  {
+    const double step = std::max((row.gap - distance) * mass, -row.normal_correction);
+    row.normal_correction += step;
+    masses.add_load(row, step);
+    return step;
+  }
+  void count(const ContactRow &row, double distance)
+  {
+    if (row.meeting == Meeting::PARTICLE) {
+      mesh.counts.contacts++;
+      mesh.counts.deepest = std::max(mesh.counts.deepest, row.gap - distance);
+    } else
+      mesh.counts.cloth_contacts++;
+  }
+  // in this substep
+  Vec3 slip(const ContactRow &row) const { return row.relative(mesh.end) - row.relative(from); }
+  Vec3 rub(int row, const Vec3 &slipped);
+  void find_corners();
+  void split_corner(double inverse_mass);
+  void project_corner(const Corner &);
+  void project_friction();
+  void project_friction(const Corner &);
+  void solve_velocities(const Corner &);
   Vec3 find_closest_points(int row);
   Vec3 normal_of(const ContactRow &, const sphcloth::ClosestPoints &) const;
   double share(int row, const sphcloth::ClosestPoints &) const;
@@ -153,7 +176,7 @@ class ContactRows : public SolverCoupling, protected Pointers {
       so_far.friction = details[k].friction_correction / substep_dt;
     return so_far;
   }
-  double solve_velocity(int row, sphcloth::ExchangedImpulse &so_far);
+  Vec3 velocity_impulse(int row, const Vec3 &relative, sphcloth::ExchangedImpulse &so_far) const;
   void release(int k)
   {
     ContactRow &row = rows[k];

@@ -3,10 +3,6 @@
 
 #include "contact/contact_rows.h"
 
-#include "contact/pass_changes.h"
-
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace sphcloth;
 
@@ -15,36 +11,28 @@ void ContactRows::end_substep(Vertex *v, double dt)
   const WallTimer clock(mesh.counts.seconds);
   points.end_substep(dt);
   masses.share_loads(mesh.halo);
-  exchanged.clear();
-  PassChanges changes;
-  for (int pass = 1;; pass++) {
-    double largest = 0.0;
-    load_velocities(v);
-    masses.clear_impulses();
-    std::size_t n = 0;
-    for_ahead(active, [&](int k) {
-      if (pass == 1) exchanged.push_back(exchanged_by(k));
-      largest = std::max(largest, solve_velocity(k, exchanged[n++]));
-    });
-    push_velocities(v);
-    points.push_velocities(masses.impulse);
-    if (pass == passes_of_velocities || changes.are_small(largest, world)) break;
-  }
+  load_velocities(v);
+  masses.clear_impulses();
+  for_ahead(active, [this](int k) {
+    const ContactRow &row = rows[k];
+    if (row.in_corner || !(row.normal_correction > 0.0)) return;
+    ExchangedImpulse so_far = exchanged_by(k);
+    masses.apply(row, velocity_impulse(k, row.relative(velocity), so_far));
+  });
+  for (const Corner &which : corners) solve_velocities(which);
+  push_velocities(v);
+  points.push_velocities(masses.impulse);
   for_ahead(active, [this](int k) { release(k); });
 }
 
-// The change of the speed
-
-double ContactRows::solve_velocity(int k, ExchangedImpulse &so_far)
+ContactRows::Vec3 ContactRows::velocity_impulse(int k, const Vec3 &relative,
+                                                ExchangedImpulse &so_far) const
 {
   const ContactRow &row = rows[k];
   const ContactRules &of_row = rules_of(row);
-  if (!(row.normal_correction > 0.0)) return 0.0;
-  ContactMotion motion{row.relative(velocity), row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
+  ContactMotion motion{relative, row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
   if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-  const Vec3 impulse = contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
-  masses.apply(row, impulse);
-  return motion.mass > 0.0 ? impulse.norm() / motion.mass : 0.0;
+  return contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
 }
 
 void ContactRows::load_velocities(const Vertex *v)

@@ -33,7 +33,7 @@ void ContactRows::find_corners()
 // The mass of the particle over its rows, as far as they push one another: the larger the less they
 // have in common, and all of it where they are at right angles.
 
-void ContactRows::split_corner(double inverse_mass)
+static void split(ContactCorner &corner, const std::vector<ContactRow> &rows, double inverse_mass)
 {
   for (ContactCorner::Row &of : corner.rows) {
     const ContactRow &row = rows[of.number];
@@ -55,7 +55,7 @@ void ContactRows::project_corner(const Corner &which)
     if (!measure(k, vector) && rows[k].share == 0.0) continue;
     corner.rows.push_back({k, vector, masses.inverse_of_others(rows[k], mesh.w_solver)});
   }
-  split_corner(inverse_mass);
+  split(corner, rows, inverse_mass);
   corner.repeat(inverse_mass, [this](ContactCorner::Row &of, const Vec3 &relative) -> Vec3 {
     ContactRow &row = rows[of.number];
     const double distance = relative.dot(row.normal);

@@ -46,8 +46,6 @@ static constexpr int PASSES_OF_PARTICLES = 3;
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05,
                         MAX_SLIDE_APART = 0.5;
 
-void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
-
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
@@ -172,14 +170,6 @@ double ContactRows::max_slide(const ContactRow &row) const
                   MAX_SLIDE_APART * (row.distance - row.gap));
 }
 
-// How far both sides may move before the row may push, or its closest points are found anew.
-
-double ContactRows::asleep(const ContactRow &row, double distance, double slid) const
-{
-  const double room = max_slide(row) - slid;
-  return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
-}
-
 void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
@@ -216,17 +206,6 @@ void ContactRows::project(Vertex *displacement)
     points.push(masses.impulse);
     points.measure_paths(Vec3::Zero());
   }
-}
-
-// Against what is left of sliding when all push: in the last pass.
-
-void ContactRows::project_friction()
-{
-  masses.share_loads(mesh.halo);
-  for_ahead(active, [this](int k) {
-    if (!rows[k].in_corner) masses.apply(rows[k], rub(k, slip(rows[k])));
-  });
-  for (const Corner &which : corners) project_friction(which);
 }
 
 // vertices, by what rows of all ranks have pushed
@@ -297,26 +276,6 @@ bool ContactRows::measure(int k, Vec3 &vector)
   return false;
 }
 
-void ContactRows::project_normal(int k)
-{
-  Vec3 vector;
-  if (!measure(k, vector)) return;
-  ContactRow &row = rows[k];
-  const double distance = vector.dot(row.normal);
-  if (!row.active) activate(k);
-  count(row, distance);
-  masses.apply(row, push(row, row.mass, distance) * row.normal);
-}
-
-void ContactRows::activate(int k)
-{
-  ContactRow &row = rows[k];
-  if (rules_of(row).restitution > 0.0)
-    details[k].speed_before = row.relative(velocity).dot(row.normal);
-  row.active = true;
-  active.push_back(k);
-}
-
 // They turn little: where their direction turns round inside both, one side has passed the other.
 // A point then passes one triangle, but with it all edges that end there: these count as they did.
 
@@ -365,13 +324,6 @@ double ContactRows::share(int k, const ClosestPoints &at) const
   if (of_edges == 0.0) return 0.0;
   return of_edges * share_of_leaning(leaning_beside(members[0], -at.vector, {a, b})) *
       share_of_leaning(leaning_beside(members[1], at.vector, {p, q}));
-}
-
-// of a point into other triangles
-
-double ContactRows::leaning_of(int k, const ClosestPoints &at) const
-{
-  return mesh.leaning_into_others(details[k].members[1], at, LEANS_AWAY, rows[k].slots[0]);
 }
 
 // into a triangle at an edge whose third vertex is none of the other side

@@ -30,7 +30,8 @@ class ContactRows : public SolverCoupling, protected Pointers {
   {
   }
 
-  void rebuild();    // after each list build
+  // after each list build
+  void rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
@@ -101,7 +102,12 @@ class ContactRows : public SolverCoupling, protected Pointers {
   void add_row(const ContactPair &, const sphcloth::ClosestPoints &at_start, double gap);
   void start_rows();
   double max_slide(const ContactRow &) const;
-  double asleep(const ContactRow &, double distance, double slid) const;
+  // how far both sides may move before the row may push, or its closest points are found anew
+  double asleep(const ContactRow &row, double distance, double slid) const
+  {
+    const double room = max_slide(row) - slid;
+    return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
+  }
   // Those of obstacles are on their way already.
   void find_drift(double dt)
   {
@@ -135,8 +141,14 @@ class ContactRows : public SolverCoupling, protected Pointers {
     }
   }
   bool measure(int row, Vec3 &vector);    // from the second side to the first; does it push?
-  void activate(int row);
-  void project_normal(int row);
+  void activate(int k)
+  {
+    ContactRow &row = rows[k];
+    if (rules_of(row).restitution > 0.0)
+      details[k].speed_before = row.relative(velocity).dot(row.normal);
+    row.active = true;
+    active.push_back(k);
+  }
   // the impulse, mass times length
   double push(ContactRow &row, double mass, double distance)
   {
@@ -153,19 +165,41 @@ class ContactRows : public SolverCoupling, protected Pointers {
     } else
       mesh.counts.cloth_contacts++;
   }
+  void project_normal(int k)
+  {
+    Vec3 vector;
+    if (!measure(k, vector)) return;
+    ContactRow &row = rows[k];
+    const double distance = vector.dot(row.normal);
+    if (!row.active) activate(k);
+    count(row, distance);
+    masses.apply(row, push(row, row.mass, distance) * row.normal);
+  }
   // in this substep
   Vec3 slip(const ContactRow &row) const { return row.relative(mesh.end) - row.relative(from); }
   Vec3 rub(int row, const Vec3 &slipped);
   void find_corners();
-  void split_corner(double inverse_mass);
   void project_corner(const Corner &);
-  void project_friction();
   void project_friction(const Corner &);
+  // against what is left of sliding when all push
+  void project_friction()
+  {
+    masses.share_loads(mesh.halo);
+    for_ahead(active, [this](int k) {
+      if (!rows[k].in_corner) masses.apply(rows[k], rub(k, slip(rows[k])));
+    });
+    for (const Corner &which : corners) project_friction(which);
+  }
   void solve_velocities(const Corner &);
   Vec3 find_closest_points(int row);
   Vec3 normal_of(const ContactRow &, const sphcloth::ClosestPoints &) const;
   double share(int row, const sphcloth::ClosestPoints &) const;
-  double leaning_of(int row, const sphcloth::ClosestPoints &) const;
+  // of a point into other triangles
+  double leaning_of(int k, const sphcloth::ClosestPoints &at) const
+  {
+    return mesh.leaning_into_others(details[k].members[1], at, sphcloth::LEANS_AWAY,
+                                    rows[k].slots[0]);
+  }
   double leaning_beside(int edge, const Vec3 &from_nearest,
                         const std::array<int, 2> &other_side) const;
   // in this substep, by the projection
@@ -176,7 +210,14 @@ class ContactRows : public SolverCoupling, protected Pointers {
       so_far.friction = details[k].friction_correction / substep_dt;
     return so_far;
   }
-  Vec3 velocity_impulse(int row, const Vec3 &relative, sphcloth::ExchangedImpulse &so_far) const;
+  Vec3 velocity_impulse(int k, const Vec3 &relative, sphcloth::ExchangedImpulse &so_far) const
+  {
+    const ContactRow &row = rows[k];
+    const ContactRules &of_row = rules_of(row);
+    sphcloth::ContactMotion motion{relative, row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
+    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
+    return sphcloth::contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
+  }
   void release(int k)
   {
     ContactRow &row = rows[k];

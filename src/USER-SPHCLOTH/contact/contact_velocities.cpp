@@ -25,16 +25,6 @@ void ContactRows::end_substep(Vertex *v, double dt)
   for_ahead(active, [this](int k) { release(k); });
 }
 
-ContactRows::Vec3 ContactRows::velocity_impulse(int k, const Vec3 &relative,
-                                                ExchangedImpulse &so_far) const
-{
-  const ContactRow &row = rows[k];
-  const ContactRules &of_row = rules_of(row);
-  ContactMotion motion{relative, row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
-  if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-  return contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
-}
-
 void ContactRows::load_velocities(const Vertex *v)
 {
   points.store_velocities(velocity);

@@ -18,6 +18,7 @@ from MDAnalysis.coordinates.LAMMPS import DumpReader
 from MDAnalysis.lib.util import NamedStream
 from numpy.typing import NDArray
 
+from sphcloth.arguments import types
 from sphcloth.dump import HEADER_LINES, REQUIRED_COLUMNS, Entry, index
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
@@ -89,9 +90,15 @@ class Frame:
         wraps = np.round(displacements @ np.linalg.inv(self.cell)) * self.periodic
         return displacements - wraps @ self.cell
 
-    def select(self, atom_type: int | Sequence[int]) -> Frame:
-        """Return the atoms of one type, or of several, as a frame of their own."""
-        chosen = np.isin(self.types, atom_type)
+    def select(self, atom_type: int | Collection[int]) -> Frame:
+        """Return the atoms of one type, or of several, as a frame of their own.
+
+        It is empty where there are none of the type.
+
+        Raises:
+            UserError: a type that is no whole number from 1 on.
+        """
+        chosen = np.isin(self.types, types("select: type", atom_type))
         columns = {name: values[chosen] for name, values in self.columns.items()}
         return replace(self, columns=columns)
 

@@ -41,6 +41,24 @@ def test_atoms_come_sorted_by_id_with_all_their_columns(write_dump: WriteDump) -
     assert frame.select(2).ids.tolist() == [1]
 
 
+@pytest.mark.parametrize("several", [list, tuple, set, frozenset, np.array])
+def test_one_type_or_several_are_selected(write_dump: WriteDump, several: type) -> None:
+    frame = Trajectory(write_dump(dump_frame(5, MANY, COLUMNS)))[0]
+    for one in (1, np.int64(1), np.int32(1), 1.0, several([1])):
+        assert frame.select(one).ids.tolist() == [7, 8, 9]
+    assert frame.select(several([1, 2])).ids.tolist() == [1, 7, 8, 9]
+    for absent in (77, several([])):
+        assert len(frame.select(absent)) == 0
+
+
+@pytest.mark.parametrize("wrong", ["1", "water", 1.5, 0, -1, np.nan, np.inf, True, None, ["1"]])
+def test_what_is_no_type_selects_nothing(write_dump: WriteDump, wrong: object) -> None:
+    frame = Trajectory(write_dump(dump_frame(5, MANY, COLUMNS)))[0]
+    for types in (wrong, [1, wrong]):
+        with pytest.raises(UserError, match=r"select: type .*: types are whole numbers from 1"):
+            frame.select(types)
+
+
 def test_columns_are_those_that_mdanalysis_reads(write_dump: WriteDump) -> None:
     columns = f"{COLUMNS} fx fy fz mass"
     dump = write_dump(dump_frame(5, [[*row, 7, 8, 9, 0.25] for row in MANY], columns))

@@ -107,6 +107,27 @@ def test_a_last_frame_that_is_cut_off_is_left_out(write_dump: WriteDump, kept: i
     assert trajectory.steps.tolist() == [0]
 
 
+def test_frames_that_repeat_a_step_are_left_out(write_dump: WriteDump) -> None:
+    """A run that goes on in the same file dumps the step again at which the one before ended."""
+    frames = [(0, FEW), (10, FEW), (10, MANY), (20, MANY), (20, FEW), (20, FEW)]
+    dump = write_dump("".join(dump_frame(step, rows, COLUMNS) for step, rows in frames))
+    with pytest.warns(UserWarning, match="that repeat the step before them are left out: 3 of 6"):
+        trajectory = Trajectory(dump)
+    assert trajectory.steps.tolist() == [0, 10, 20]
+    assert trajectory.counts.tolist() == [2, 2, 4]
+    assert [len(frame) for frame in trajectory] == [2, 2, 4]
+
+
+@pytest.mark.parametrize(("steps", "line"), [((20, 10, 0), 12), ((0, 20, 10), 23)])
+def test_steps_that_go_back_name_file_and_frames(
+    write_dump: WriteDump, steps: tuple[int, ...], line: int
+) -> None:
+    dump = write_dump("".join(dump_frame(step, FEW, COLUMNS) for step in steps))
+    message = rf"run\.lammpstrj, line {line}: a frame of step 10 follows one of step 20: give each"
+    with pytest.raises(UserError, match=message):
+        Trajectory(dump)
+
+
 def test_garbage_between_frames_names_file_and_line(write_dump: WriteDump) -> None:
     dump = write_dump(dump_frame(0, FEW, COLUMNS) + "rubbish\n" + dump_frame(5, MANY, COLUMNS))
     with pytest.raises(UserError, match=r"run\.lammpstrj, line 12: expected 'ITEM: TIMESTEP'"):

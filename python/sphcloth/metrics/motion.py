@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sphcloth.arguments import numbers
 from sphcloth.errors import UserError
-from sphcloth.trajectory import Frame
+from sphcloth.trajectory import Frame, successive
 
 Array = NDArray[np.float64]
 NO_GRAVITY = (0.0, 0.0, 0.0)
@@ -100,11 +99,11 @@ def outer_force(
         gravity: acceleration, three components.
 
     Raises:
-        UserError: no times, atoms that come or go, fewer than two frames, or masses or gravity as
-            for the potential energy.
+        UserError: no times, steps that go back, atoms that come or go, fewer than two frames, or
+            masses or gravity as for the potential energy.
     """
     gravity, forces = _vector("gravity", gravity), []
-    for before, after in itertools.pairwise(frames):
+    for before, after in successive(frames, "outer_force"):
         if not np.array_equal(before.ids, after.ids):
             raise UserError(
                 f"outer_force: atoms came or went between steps {before.step} and {after.step}"

@@ -2,8 +2,8 @@
 
 The series solution, as in Morris, Fox and Zhu, J. Comput. Phys. 136 (1997) 214. Its terms decay as
 exp(-n^2 pi^2 nu t / gap^2), which at the start is not at all. There the plates are mirrors of
-Stokes's flow under a single plate (Carslaw and Jaeger, Conduction of Heat in Solids (1959),
-section 12.5), with s = 2 sqrt(nu t):
+Stokes's flow under a single plate (method of images: Carslaw and Jaeger,
+Conduction of Heat in Solids, 1959), with s = 2 sqrt(nu t):
 
   u = lid sum_k erfc(((2 k + 1) gap - y) / s) - erfc(((2 k + 1) gap + y) / s),   k = 0, 1, ...
 """

@@ -2,8 +2,8 @@
 
 The series solution, as in Morris, Fox and Zhu, J. Comput. Phys. 136 (1997) 214. Its terms decay as
 exp(-n^2 pi^2 nu t / gap^2), which at the start is not at all. There the sum is that of the images
-of the flow over a single plate (Carslaw and Jaeger, Conduction of Heat in Solids (1959), section
-3.14), with s = 2 sqrt(nu t) and the second integral of erfc, i2erfc:
+of the flow over a single plate (method of images: Carslaw and Jaeger, Conduction
+of Heat in Solids, 1959), with s = 2 sqrt(nu t) and the second integral of erfc, i2erfc:
 
   u = drive t (1 - 4 sum_k (-1)^k (i2erfc((k gap + y) / s) + i2erfc(((k + 1) gap - y) / s)))
 """

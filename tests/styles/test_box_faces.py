@@ -7,8 +7,7 @@ from scenes import cloth_box, cloth_styles, header, neighbor, sheet, sph_tait
 FACES = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi"]
 SOLVED = "velocity cloth set {} units box\nfix sheet cloth pbd/cloth\n"
 CARRIED = (
-    "fix carry cloth move linear {} units box\n"
-    "fix contact rest cloth/contact 0.02 obstacle cloth\n"
+    "fix carry cloth move linear {} units box\nfix contact rest cloth/contact 0.02 obstacle cloth\n"
 )
 
 

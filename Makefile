@@ -28,7 +28,7 @@ $(BIN)/cmake --build build/$(1)/core
 endef
 
 .PHONY: source-check arm-check dist demo test validate stress equality endure fuzz mutate mutate-random reference-logs \
-        reliability-page lint docs \
+        nudged-examples reliability-page lint docs \
         wheel-check pictures clean warnings tidy sanitize memcheck coverage fuzz-guided
 
 demo: $(VENV)/installed
@@ -88,6 +88,10 @@ mutate-random: $(VENV)/strict
 # the logs of the examples on 1 and 4 ranks and of nudged runs; 'tests/reference_logs.py --check' compares them
 reference-logs: $(VENV)/installed
 	$(BIN)/python tests/reference_logs.py
+
+# the examples at their usual size, five times each, with steps that differ by a millionth
+nudged-examples: $(VENV)/installed
+	$(BIN)/python tests/nudged_examples.py
 
 # the tables of the page, of whatever the targets above have left
 reliability-page: $(VENV)/installed
@@ -188,8 +192,8 @@ clean:
 	rm -rf build dist demo $(VENV)
 
 # the pictures of the READMEs: what `sphcloth run` draws of an example of the usual size
-EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner curtain cloth_on_water hammock net parachute sail \
-  shower strainer two_resolutions)
+EXAMPLE_PICTURES := $(patsubst %,docs/pictures/%.png,pour balloon banner chair curtain cloth_on_water hammock net \
+  parachute sail shower stack strainer towel two_resolutions water_balloon)
 pictures: $(EXAMPLE_PICTURES)
 
 $(EXAMPLE_PICTURES): docs/pictures/%.png: $(VENV)/installed

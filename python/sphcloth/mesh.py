@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from sphcloth.arguments import types
 from sphcloth.errors import UserError
 from sphcloth.trajectory import Frame
 
@@ -130,7 +131,8 @@ class ClothMesh:
         """Return the triangles of some angle types, over the same vertices.
 
         Raises:
-            UserError: the types of the triangles are not known.
+            UserError: the types of the triangles are not known, or a type that is no whole number
+                from 1 on.
         """
         return self._only(self._is_of(chosen))
 
@@ -141,7 +143,7 @@ class ClothMesh:
     def _is_of(self, chosen: Collection[int]) -> NDArray[np.bool_]:
         if self.kinds is None:
             raise UserError("the angle types of the triangles are not known: read a data file")
-        return np.isin(self.kinds, list(chosen))
+        return np.isin(self.kinds, types("angle type", chosen))
 
     def _only(self, chosen: NDArray[np.bool_]) -> ClothMesh:
         return ClothMesh(self.ids, self.triangles[chosen], self.kinds[chosen])

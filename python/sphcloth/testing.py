@@ -186,6 +186,8 @@ def assert_close_to_reference(
     values, exact = np.asarray(values, dtype=float), np.asarray(exact, dtype=float)
     if values.shape != exact.shape:
         raise AssertionError(f"{what}: shape {values.shape}, the reference has {exact.shape}")
+    if not values.size:
+        raise AssertionError(f"{what}: there is no value")
     error = np.linalg.norm(values - exact) / (np.linalg.norm(exact) or 1.0)
     if not error <= within:
         difference = np.nan_to_num(np.abs(values - exact), nan=np.inf)

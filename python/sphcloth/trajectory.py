@@ -7,7 +7,9 @@ indexed once and each frame's text goes to MDAnalysis' reader on its own.
 from __future__ import annotations
 
 import io
-from collections.abc import Collection, Sequence
+import itertools
+import warnings
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +20,7 @@ from MDAnalysis.coordinates.LAMMPS import DumpReader
 from MDAnalysis.lib.util import NamedStream
 from numpy.typing import NDArray
 
+from sphcloth.arguments import types
 from sphcloth.dump import HEADER_LINES, REQUIRED_COLUMNS, Entry, index
 from sphcloth.errors import UserError
 from sphcloth.log import ThermoTable
@@ -89,9 +92,15 @@ class Frame:
         wraps = np.round(displacements @ np.linalg.inv(self.cell)) * self.periodic
         return displacements - wraps @ self.cell
 
-    def select(self, atom_type: int | Sequence[int]) -> Frame:
-        """Return the atoms of one type, or of several, as a frame of their own."""
-        chosen = np.isin(self.types, atom_type)
+    def select(self, atom_type: int | Collection[int]) -> Frame:
+        """Return the atoms of one type, or of several, as a frame of their own.
+
+        It is empty where there are none of the type.
+
+        Raises:
+            UserError: a type that is no whole number from 1 on.
+        """
+        chosen = np.isin(self.types, types("select: type", atom_type))
         columns = {name: values[chosen] for name, values in self.columns.items()}
         return replace(self, columns=columns)
 
@@ -123,16 +132,18 @@ class Trajectory(Sequence[Frame]):
             columns: those that frames shall have beside these five, as far as they are in the
                 dump; None for all. What is left out takes no time.
 
-        A last frame that is not complete is left out with a warning.
+        A last frame that is not complete is left out with a warning, and so are frames that repeat
+        the step before them, as the first one of a run that goes on in the dump of another.
 
         Raises:
-            UserError: no such file, not a dump (with the line), columns missing, or no frame.
+            UserError: no such file, not a dump (with the line), columns missing, no frame, or steps
+                that go back.
         """
         self.path = Path(dump)
         if not self.path.is_file():
             raise UserError(f"no dump file {self.path}")
         with self.path.open("rb") as file:
-            self._entries = list(index(file, self.path))
+            self._entries = _in_order(list(index(file, self.path)), self.path)
         if not self._entries:
             raise UserError(f"{self.path} holds no complete frame")
         self.steps = np.array([entry.step for entry in self._entries])
@@ -170,6 +181,41 @@ def evenly_spaced(total: int, wanted: int) -> list[int]:
 def samples(trajectory: Trajectory) -> list[Frame]:
     """Return a few frames that tell what there is in a dump."""
     return [trajectory[index] for index in evenly_spaced(len(trajectory), SAMPLE)]
+
+
+def successive(frames: Iterable[Frame], what: str) -> Iterator[tuple[Frame, Frame]]:
+    """Yield each frame and the next, between which ``what`` follows the atoms.
+
+    Raises:
+        UserError: steps that go back.
+    """
+    for before, after in itertools.pairwise(frames):
+        if after.step < before.step:
+            raise UserError(
+                f"{what}: a frame of step {after.step} follows one of step {before.step}: atoms "
+                "are followed from frame to frame, give them in the order of their steps"
+            )
+        yield before, after
+
+
+def _in_order(entries: list[Entry], path: Path) -> list[Entry]:
+    """Return the frames without those that repeat a step; UserError where steps go back."""
+    for before, after in itertools.pairwise(entries):
+        if after.step < before.step:
+            raise UserError(
+                f"{path}, line {after.line}: a frame of step {after.step} follows one of step "
+                f"{before.step}: give each run a dump of its own, or leave out of the first what "
+                f"comes behind step {after.step}"
+            )
+    kept = [first for _, (first, *_) in itertools.groupby(entries, lambda entry: entry.step)]
+    repeated = len(entries) - len(kept)
+    if repeated:
+        warnings.warn(
+            f"{path}: frames that repeat the step before them are left out: {repeated} of "
+            f"{len(entries)}",
+            stacklevel=3,
+        )
+    return kept
 
 
 class _FrameReader(DumpReader):

@@ -40,6 +40,7 @@ FixClothAir::FixClothAir(LAMMPS *lmp_, int narg, char **arg) :
 
   ArgReader args(lmp, label, narg, arg, 3);
   options.read(args);
+  velocities.create(atom->nmax);
   motion.create(options.shaded ? N_COLUMNS : SEEN, atom->nmax);
   for (int i = 0; i < atom->nlocal; i++) FixClothAir::set_arrays(i);
   atom->add_callback(Atom::GROW);
@@ -59,7 +60,7 @@ int FixClothAir::setmask()
 
 void FixClothAir::init()
 {
-  forget_replaced_velocities();
+  velocities.begin_run(atom, [this](int i) { forget_motion(i); });
   options.wind.check();
   water.init();
   cloths.clear();
@@ -85,15 +86,6 @@ void FixClothAir::init()
                                               options.drag.density * options.added_thickness);
     cloth.fix->register_first_coupling(cloth.added.get());
   }
-}
-
-// A vertex that got another velocity since the last run begins with it as in a first step.
-
-void FixClothAir::forget_replaced_velocities()
-{
-  takes_steps = false;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (motion[FINGERPRINT][i] != fingerprint_of(atom->v[i])) forget_motion(i);
 }
 
 // Each would take the push of the other for something that goes on in the next step.
@@ -149,7 +141,7 @@ void FixClothAir::initial_integrate(int)
     apply(cloth);
   }
   last_dt = update->dt;
-  takes_steps = true;
+  velocities.begin_step();
   options.wind.carry(update->dt);
 }
 
@@ -231,13 +223,6 @@ void FixClothAir::end_step(const Cloth &cloth)
   }
 }
 
-void FixClothAir::post_run()
-{
-  if (!takes_steps) return;
-  takes_steps = false;
-  for (int i = 0; i < atom->nlocal; i++) motion[FINGERPRINT][i] = fingerprint_of(atom->v[i]);
-}
-
 /* ----------------------------------------------------------------------
    output: force of the air on the cloth (x, y, z), its power, its work, area that takes air
 ------------------------------------------------------------------------- */
@@ -257,35 +242,50 @@ double FixClothAir::compute_vector(int n)
    what is kept
 ------------------------------------------------------------------------- */
 
+void FixClothAir::grow_arrays(int nmax)
+{
+  velocities.fingerprints.grow(nmax);
+  motion.grow(nmax);
+}
+
+void FixClothAir::copy_arrays(int i, int j, int)
+{
+  velocities.fingerprints.copy(i, j);
+  motion.copy(i, j);
+}
+
 void FixClothAir::set_arrays(int i)
 {
+  velocities.forget(i);
   for (int k = 0; k < motion.count(); k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
 }
 
+// A vertex that got another velocity begins with it as in a first step.
+
 void FixClothAir::forget_motion(int i)
 {
-  for (int k = 0; k < FINGERPRINT; k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
+  for (int k = 0; k < SEEN; k++) motion[k][i] = std::numeric_limits<double>::quiet_NaN();
 }
 
 int FixClothAir::pack_exchange(int i, double *buf)
 {
-  return static_cast<int>(motion.pack(i, buf) - buf);
+  return static_cast<int>(motion.pack(i, velocities.fingerprints.pack(i, buf)) - buf);
 }
 
 int FixClothAir::unpack_exchange(int i, double *buf)
 {
-  motion.unpack(i, buf);
-  return motion.count();
+  velocities.fingerprints.unpack(i, buf);
+  motion.unpack(i, buf + 1);
+  return 1 + motion.count();
 }
 
 // The first value of a restart record is its length.
 
 int FixClothAir::pack_restart(int i, double *buf)
 {
-  buf[0] = 1 + motion.count();
-  motion.pack(i, buf + 1);
-  if (takes_steps) buf[1 + FINGERPRINT] = fingerprint_of(atom->v[i]);
-  return 1 + motion.count();
+  buf[0] = size_restart(i);
+  motion.pack(i, velocities.pack_restart(atom, i, buf + 1));
+  return size_restart(i);
 }
 
 void FixClothAir::unpack_restart(int i, int nth)
@@ -293,8 +293,9 @@ void FixClothAir::unpack_restart(int i, int nth)
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
   // the lee may have been found before, and not be asked for now, or the other way round
-  const int n = std::min(static_cast<int>(*record) - 1, motion.count());
-  for (int k = 0; k < n; k++) motion[k][i] = record[1 + k];
+  const int n = std::min(static_cast<int>(*record) - 2, motion.count());
+  velocities.fingerprints.unpack(i, record + 1);
+  for (int k = 0; k < n; k++) motion[k][i] = record[2 + k];
 }
 
 struct FixClothAir::Record {
@@ -325,7 +326,8 @@ void FixClothAir::restart(char *buf)
 
 double FixClothAir::memory_usage()
 {
-  double bytes = motion.bytes() + options.wind.bytes() + water.bytes() + shade.bytes();
+  double bytes = velocities.fingerprints.bytes() + motion.bytes() + options.wind.bytes() +
+      water.bytes() + shade.bytes();
   for (const Cloth &cloth : cloths)
     bytes += cloth.mesh->bytes() + (cloth.added ? cloth.added->bytes() : 0.0) +
         sphcloth::bytes_of(cloth.velocity);

@@ -18,6 +18,7 @@ FixStyle(cloth/air,FixClothAir);
 #include "air/water_beside.h"
 #include "air/wind_shade.h"
 #include "lammps_util/particle_columns.h"
+#include "lammps_util/replaced_velocities.h"
 
 #include <Eigen/Core>
 
@@ -41,18 +42,18 @@ class FixClothAir : public Fix {
   void post_force(int) override;
   void initial_integrate(int) override;
   void post_integrate() override;
-  void post_run() override;
+  void post_run() override { velocities.end_run(atom); }
   double compute_vector(int) override;
 
-  void grow_arrays(int nmax) override { motion.grow(nmax); }
-  void copy_arrays(int i, int j, int) override { motion.copy(i, j); }
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
-  int size_restart(int) override { return 1 + motion.count(); }
-  int maxsize_restart() override { return 1 + motion.count(); }
+  int size_restart(int) override { return maxsize_restart(); }
+  int maxsize_restart() override { return 2 + motion.count(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;
@@ -73,12 +74,11 @@ class FixClothAir : public Fix {
   WindShade shade;
   std::vector<Cloth> cloths;
   // of the last step, per atom: mean velocity of a vertex, and what it gained of that by all but
-  // the air; not a number before the first; what tells the velocity of the atom behind the last
-  // step of a run from others; and, with shaded, its position when the lee was found
-  enum Column { VELOCITY, GAIN = 3, FINGERPRINT = 6, SEEN, N_COLUMNS = SEEN + 3 };
+  // the air; not a number before the first; and, with shaded, its position when the lee was found
+  enum Column { VELOCITY, GAIN = 3, SEEN = 6, N_COLUMNS = SEEN + 3 };
   ParticleColumns motion;
+  ReplacedVelocities velocities;
   double last_dt = 0.0;
-  bool takes_steps = false;    // minimize and rerun take none
 
   // of the last step, this rank's part: impulse, work, area; work since the fix was made, of all
   // that this rank has seen
@@ -89,7 +89,6 @@ class FixClothAir : public Fix {
   {
     return {motion[column][i], motion[column + 1][i], motion[column + 2][i]};
   }
-  void forget_replaced_velocities();
   void forget_motion(int i);
   void refuse_vertices_of_others();
   void load(Cloth &);

@@ -179,6 +179,7 @@ void FixClothContact::join()
 
 void FixClothContact::pre_exchange()
 {
+  for (auto &obstacle : obstacles) require_inside_box(lmp, label, obstacle->groupbit);
   if (!ghosts.matters()) return;
   const auto [needed, wanted] = ghosts_needed_and_wanted();
   ghosts.require_in_run(needed, wanted);
@@ -309,7 +310,7 @@ void FixClothContact::find_sides()
 
 void FixClothContact::initial_integrate(int)
 {
-  for (MeshContact *contact : contacts) contact->mesh().moved.clear();
+  step_start.moved.clear();
   impulses.begin_step(atom->nlocal, update->dt);
   counts.cloth_gap = options.cloth_rules.thickness;
   counts.passed_on = counts.missed = 0.0;
@@ -373,9 +374,8 @@ void FixClothContact::subtract_excess_velocities()
       v[d] -= excess;
     }
   };
-  for (MeshContact *contact : contacts)
-    for (const int i : contact->mesh().moved)
-      subtract(i, (Eigen::Vector3d(atom->x[i]) - step_start.origin_of(i)) / update->dt);
+  for (const int i : step_start.moved)
+    subtract(i, (Eigen::Vector3d(atom->x[i]) - step_start.origin_of(i)) / update->dt);
   for (FixPBDCloth *cloth : cloths)
     for (int i = 0; i < atom->nlocal; i++)
       if (cloth->has_vertex(i)) subtract(i, cloth->mean_velocity(i));
@@ -486,7 +486,7 @@ void FixClothContact::unpack_restart(int i, int nth)
 
 double FixClothContact::memory_usage()
 {
-  double bytes = sheet_layers.bytes();
+  double bytes = sheet_layers.bytes() + step_start.bytes();
   for (const ParticleColumns *each : columns()) bytes += each->bytes();
   for_all_surfaces([&bytes](const ContactSurface &surface) { bytes += surface.memory_usage(); });
   for (const MeshContact *contact : contacts) bytes += contact->memory_usage();

@@ -20,6 +20,7 @@ FixStyle(cloth/contact,FixClothContact);
 #include "contact/obstacle_impulses.h"
 #include "fluid/mesh_boundary.h"
 #include "fluid/side_source.h"
+#include "lammps_util/box_faces.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/particle_columns.h"
 #include "neighbor.h"

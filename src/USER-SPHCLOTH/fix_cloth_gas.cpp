@@ -132,11 +132,12 @@ void FixClothGas::check(ArgReader &args)
 int FixClothGas::setmask()
 {
   return POST_FORCE | MIN_POST_FORCE | POST_NEIGHBOR | MIN_POST_NEIGHBOR | PRE_EXCHANGE |
-      MIN_PRE_EXCHANGE;
+      MIN_PRE_EXCHANGE | POST_RUN;
 }
 
 void FixClothGas::init()
 {
+  takes_steps = false;
   for (NumberOrVariable *one : {&constant, &inflow}) one->check(lmp, label);
   chambers.gather(groupbit, false);
   chambers.require_ghosts();
@@ -191,6 +192,7 @@ double FixClothGas::inverse_mass(int i) const
 
 void FixClothGas::evaluate(Phase phase)
 {
+  takes_steps = takes_steps || phase == Phase::STEP;
   NumberOrVariable::evaluate(lmp, label, igroup, {&constant, &inflow});
   std::vector<GasChambers::Frame> frames;
   for (const Chamber &chamber : states) frames.push_back(chamber.frame);
@@ -208,7 +210,7 @@ void FixClothGas::follow(Chamber &chamber, const GasChambers::Volume &now, Phase
   check_volume(chamber, now.value);
   const bool begins = chamber.started == 0.0;
   if (begins) begin(chamber, now);
-  const bool moved = phase == Phase::AGAIN && has_been_moved(chamber, now.value);
+  const bool moved = phase == Phase::AGAIN && has_been_moved(chamber, now);
   if (begins || moved || phase == Phase::MINIMIZE)
     begin_steps(chamber, now);
   else if (phase == Phase::STEP) {
@@ -242,12 +244,29 @@ void FixClothGas::begin(Chamber &chamber, const GasChambers::Volume &now) const
   chamber.excess = has_law ? law.start - law.ambient : constant.value();
 }
 
-// between two runs: volumes of before say nothing of how fast the walls are
+// Other fixes may change velocities behind the forces.
 
-bool FixClothGas::has_been_moved(const Chamber &chamber, double volume) const
+void FixClothGas::record_rates()
+{
+  if (!takes_steps) return;
+  const std::vector<double> rates = chambers.rates();
+  for (std::size_t c = 0; c < states.size(); c++) states[c].rate = rates[c];
+}
+
+void FixClothGas::post_run()
+{
+  record_rates();
+  takes_steps = false;
+}
+
+// Or have walls got other velocities between two runs?  Volumes of before say nothing of these.
+
+bool FixClothGas::has_been_moved(const Chamber &chamber, const GasChambers::Volume &now) const
 {
   constexpr double ROUNDING = 1e-9;
-  return std::fabs(volume - chamber.volume) > ROUNDING * std::fabs(chamber.volume);
+  const double by = std::max(std::fabs(now.value - chamber.volume),
+                             chamber.dt * std::fabs(now.rate - chamber.rate));
+  return by > ROUNDING * std::fabs(chamber.volume);
 }
 
 // as if no gas had pushed before
@@ -257,6 +276,7 @@ void FixClothGas::begin_steps(Chamber &chamber, const GasChambers::Volume &now) 
   chamber.dt = chamber.dt_before = update->dt;
   chamber.before = now.value - chamber.dt * now.rate;
   chamber.earlier = chamber.before - chamber.dt * now.rate;
+  chamber.rate = now.rate;
   chamber.applied_before = 0.0;
   chamber.excess_before = chamber.excess;
   if (has_law && chamber.before > 0.0)
@@ -360,6 +380,7 @@ double FixClothGas::compute_array(int chamber, int column)
 
 void FixClothGas::write_restart(FILE *fp)
 {
+  record_rates();
   if (comm->me == 0) write_records(fp, states);
 }
 

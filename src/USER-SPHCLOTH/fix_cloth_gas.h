@@ -37,6 +37,7 @@ class FixClothGas : public Fix {
   void post_force(int) override { evaluate(Phase::STEP); }
   void min_setup(int) override { evaluate(Phase::MINIMIZE); }
   void min_post_force(int) override { evaluate(Phase::MINIMIZE); }
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double compute_array(int chamber, int column) override;
@@ -54,6 +55,7 @@ class FixClothGas : public Fix {
     GasChambers::Frame frame;
     double gas;    // the volume that it would fill at the pressure of the start
     double volume, before, earlier;    // now, and after the last two steps
+    double rate;    // of the volume by the velocities at the end of the last run
     double dt, dt_before;    // of these steps
     double excess, excess_before;    // by the law, now and a step ago
     double applied, applied_before;    // in the coming step, and in the last one
@@ -65,6 +67,7 @@ class FixClothGas : public Fix {
   bool has_law;
   NumberOrVariable constant, inflow;
   bool has_inflow = false;
+  bool takes_steps = false;    // minimize and rerun take none
   double burst;
   GasChambers::Options options;
   GasChambers chambers;
@@ -79,7 +82,8 @@ class FixClothGas : public Fix {
   void follow(Chamber &, const GasChambers::Volume &, Phase);
   void check_volume(const Chamber &, double volume) const;
   void begin(Chamber &, const GasChambers::Volume &) const;
-  bool has_been_moved(const Chamber &, double volume) const;
+  void record_rates();
+  bool has_been_moved(const Chamber &, const GasChambers::Volume &) const;
   void begin_steps(Chamber &, const GasChambers::Volume &) const;
   void let_flow(Chamber &, Phase);
   void set_gas(Chamber &, double) const;

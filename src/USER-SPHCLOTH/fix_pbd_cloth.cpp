@@ -36,7 +36,8 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
     Fix(lmp_, narg, arg), label(fmt::format("fix {} pbd/cloth", id)), options(lmp, label, igroup),
     held(lmp, this, options), mesh(lmp, label), ghosts(lmp, label), constraints(lmp, label, mesh),
     reference(lmp, label, options.reference, constraints), vertices(lmp), lists_of_atoms(lmp),
-    holders(lmp, vertices), substepping(lmp, label, options.solving, constraints, vertices),
+    holders(lmp, vertices),
+    substepping(lmp, label, options.solving, constraints, vertices, velocities),
     scaled(lmp, vertices), holder_force{}, measured(true), last_residual(0.0), last_energy(0.0),
     last_unconverged(0.0)
 {
@@ -59,6 +60,7 @@ FixPBDCloth::FixPBDCloth(LAMMPS *lmp_, int narg, char **arg) :
 
   rest_box = RestBox::of(domain);
   rest_x.create(3, atom->nmax);
+  velocities.create(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -111,7 +113,7 @@ std::vector<FixPBDCloth *> LAMMPS_NS::cloths_before(LAMMPS *lmp, const Fix *fix,
 int FixPBDCloth::setmask()
 {
   return POST_INTEGRATE | PRE_EXCHANGE | MIN_PRE_EXCHANGE | POST_NEIGHBOR | MIN_POST_NEIGHBOR |
-      END_OF_STEP | (options.attachbit ? PRE_REVERSE : 0);
+      END_OF_STEP | POST_RUN | (options.attachbit ? PRE_REVERSE : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -121,6 +123,9 @@ int FixPBDCloth::setmask()
 void FixPBDCloth::init()
 {
   lists_of_atoms.initialized();
+  velocities.begin_run(atom, [this](int i) {
+    if (half_kick.on()) half_kick.forget(i);
+  });
   couplings = {&scaled};
   solved_here = {this};
   scaled.init();
@@ -161,6 +166,7 @@ void FixPBDCloth::setup_post_neighbor()
 
 void FixPBDCloth::pre_exchange()
 {
+  require_inside_box(lmp, label, groupbit);
   if (!ghosts.matters()) return;
   vertices.halo.forward_positions(ClothConstraints::ALL, vertices.p.data());
   constraints.check_lengths(vertices);
@@ -221,9 +227,11 @@ void FixPBDCloth::begin_step(int substeps)
   if (!(update->dt > 0.0))
     error->all(FLERR, "{}: the time step is {}: it must be above 0: give 'timestep DT'", label,
                update->dt);
+  velocities.begin_step();
   held.move_pins(vertices.halo);
   substepping.begin_step(update->dt, substeps, present, holders);
-  if (scaled.on()) scaled.scale_forces(update->dt, substepping.part_with_forces());
+  if (scaled.on())
+    scaled.scale_forces(update->dt, [this](int s) { return substepping.part_with_forces(s); });
   if (half_kick.on()) half_kick.apply(vertices, substeps, update->dt, force->ftm2v, atom);
   load();
   if (holders.wanted()) holders.begin_step();
@@ -299,6 +307,7 @@ void FixPBDCloth::store()
   for (int s = 0; s < vertices.halo.n_owned(); s++) {
     const int i = vertices.halo.atom_of(s);
     const Vertex &p = vertices.p[s], &v = vertices.v[s];
+    velocities.note_step(i);
     if (!held.is_attached(i)) {
       external += Vec3(atom->f[i][0], atom->f[i][1], atom->f[i][2]);
       for (const SolverCoupling *coupling : present) {
@@ -382,7 +391,8 @@ void FixPBDCloth::measure()
 
 ParticleColumns *FixPBDCloth::kept(int n)
 {
-  ParticleColumns *const all[] = {&rest_x, &holders.columns, &half_kick.impulse};
+  ParticleColumns *const all[] = {&rest_x, &velocities.fingerprints, &holders.columns,
+                                  &half_kick.impulse};
   return all[n]->empty() ? nullptr : all[n];
 }
 
@@ -401,6 +411,7 @@ void FixPBDCloth::copy_arrays(int i, int j, int)
 void FixPBDCloth::set_arrays(int i)
 {
   for (int d = 0; d < 3; d++) rest_x[d][i] = std::numeric_limits<double>::quiet_NaN();
+  velocities.forget(i);
   if (holders.wanted()) holders.columns.clear(i);
   if (half_kick.on()) half_kick.forget(i);
 }
@@ -429,6 +440,7 @@ int FixPBDCloth::unpack_exchange(int i, double *buf)
 int FixPBDCloth::pack_restart(int i, double *buf)
 {
   buf[0] = 1 + pack_exchange(i, buf + 1);
+  velocities.pack_restart(atom, i, buf + 1 + rest_x.count());
   return static_cast<int>(buf[0]);
 }
 
@@ -436,15 +448,16 @@ int FixPBDCloth::pack_restart(int i, double *buf)
 
 void FixPBDCloth::unpack_restart(int i, int nth)
 {
-  constexpr int HOLDERS = HolderForces::N_COLUMNS;
+  constexpr int ALWAYS = 4, HOLDERS = HolderForces::N_COLUMNS;
   const double *record = atom->extra[i];
   for (int k = 0; k < nth; k++) record += static_cast<int>(*record);
   const int size = static_cast<int>(*record) - 1;
-  const bool has_holders = size >= 3 + HOLDERS;
-  const bool has_half_kick = size - (has_holders ? HOLDERS : 0) > 3;
+  const bool has_holders = size >= ALWAYS + HOLDERS;
+  const bool has_half_kick = size - (has_holders ? HOLDERS : 0) > ALWAYS;
   const double *from = record + 1;
   rest_x.unpack(i, from);
-  from += 3;
+  velocities.fingerprints.unpack(i, from + rest_x.count());
+  from += ALWAYS;
   if (holders.wanted() && has_holders) holders.columns.unpack(i, from);
   if (has_holders) from += HOLDERS;
   if (half_kick.on() && has_half_kick)
@@ -476,7 +489,7 @@ void FixPBDCloth::restart(char *buf)
 
 double FixPBDCloth::memory_usage()
 {
-  return rest_x.bytes() + holders.columns.bytes() + half_kick.impulse.bytes() +
-      constraints.distance.bytes() + constraints.bending.bytes() + vertices.bytes() +
-      scaled.bytes();
+  return rest_x.bytes() + velocities.fingerprints.bytes() + holders.columns.bytes() +
+      half_kick.impulse.bytes() + constraints.distance.bytes() + constraints.bending.bytes() +
+      vertices.bytes() + scaled.bytes();
 }

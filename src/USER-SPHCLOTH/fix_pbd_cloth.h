@@ -25,8 +25,10 @@ FixStyle(pbd/cloth,FixPBDCloth);
 #include "cloth/substepping.h"
 #include "contact/contact_mesh.h"
 #include "fluid/scaled_vertices.h"
+#include "lammps_util/box_faces.h"
 #include "lammps_util/ghost_reach.h"
 #include "lammps_util/list_guard.h"
+#include "lammps_util/replaced_velocities.h"
 #include "lammps_util/timed_dumps.h"
 #include "stepping/limited_vertices.h"
 
@@ -41,6 +43,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ~FixPBDCloth() override;
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override { require_inside_box(lmp, label, groupbit); }
   void setup_post_neighbor() override;
   void pre_exchange() override;
   void min_pre_exchange() override
@@ -53,6 +56,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void post_integrate() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
+  void post_run() override { velocities.end_run(atom); }
   void end_of_step() override { renew_computes_for_timed_dumps(lmp); }
   double compute_vector(int) override;
 
@@ -66,7 +70,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   int size_restart(int) override { return maxsize_restart(); }
   int maxsize_restart() override
   {
-    return 1 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
+    return 2 + rest_x.count() + holders.columns.count() + half_kick.impulse.count();
   }
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -140,6 +144,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   ClothVertices vertices;
   ListGuard lists_of_atoms;
   HolderForces holders;
+  ReplacedVelocities velocities;
   HalfKickCorrection half_kick;    // of the solver substeps
   Substepping substepping;
   ScaledVertices scaled;    // of those beside fluid
@@ -157,7 +162,7 @@ class FixPBDCloth : public Fix, public ContactMesh, public LimitedVertices {
   void load();
   void store();
   void measure();
-  static constexpr int N_KEPT = 3;
+  static constexpr int N_KEPT = 4;
   ParticleColumns *kept(int n);
 };
 

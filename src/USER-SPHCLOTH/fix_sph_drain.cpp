@@ -13,6 +13,7 @@
 #include "group.h"
 #include "lammps_util/arg_reader.h"
 #include "lammps_util/atom_tools.h"
+#include "lammps_util/box_faces.h"
 #include "lammps_util/rank_error.h"
 #include "lammps_util/restart_record.h"
 #include "modify.h"
@@ -82,7 +83,7 @@ void FixSPHDrain::check_group()
         label, group->names[igroup]);
 }
 
-// out of the box where it is not periodic, or inside the region
+// out of the box through a fixed face, or inside the region
 
 bool FixSPHDrain::leaves(int i) const
 {
@@ -92,16 +93,7 @@ bool FixSPHDrain::leaves(int i) const
                "{}: particle {} is at {} {} {}: it does not leave, the run has failed; look at the "
                "forces on it, or take a smaller time step",
                label, atom->tag[i], x[0], x[1], x[2]);
-  double lamda[3];
-  const double *position = x, *lo = domain->boxlo, *hi = domain->boxhi;
-  if (domain->triclinic) {
-    domain->x2lamda(atom->x[i], lamda);
-    position = lamda;
-    lo = domain->boxlo_lamda;
-    hi = domain->boxhi_lamda;
-  }
-  for (int d = 0; d < 3; d++)
-    if (!domain->periodicity[d] && (position[d] < lo[d] || position[d] >= hi[d])) return true;
+  if (face_left(domain, x) >= 0) return true;
   return region && region->match(x[0], x[1], x[2]);
 }
 

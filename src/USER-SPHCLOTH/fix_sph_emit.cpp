@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "core/util/bytes.h"
 #include "domain.h"
 #include "error.h"
 #include "fluid/fluid_state.h"
@@ -304,3 +305,5 @@ void FixSPHEmit::restart(char *buf)
   // the layer that comes next is due when it was, also if those behind it have another interval
   start += static_cast<double>(layers) * (record.layer_time - layer_time);
 }
+
+double FixSPHEmit::memory_usage() { return sphcloth::bytes_of(ids, pattern); }

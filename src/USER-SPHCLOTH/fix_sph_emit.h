@@ -32,6 +32,7 @@ class FixSPHEmit : public Fix {
   void post_run() override;
   double compute_scalar() override { return static_cast<double>(emitted); }
   double compute_vector(int) override;
+  double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 

@@ -28,7 +28,7 @@ BOOST_AUTO_TEST_CASE(time_to_cross_a_gap)
   BOOST_CHECK(std::isinf(time_to_cross(2.0, -4.0, 0.0)));
   BOOST_CHECK_SMALL(time_to_cross(8.0, 0.0, 4.0) - 2.0, 1e-16);
   for (const double rate : {4.0, 0.0, -4.0})
-    BOOST_CHECK(time_to_cross(2.0, rate) == time_to_cross(2.0, rate, 0.0));
+    BOOST_CHECK(time_at_rate(2.0, rate) == time_to_cross(2.0, rate, 0.0));
   for (const double rate : {3.0, -3.0}) {
     const double t = time_to_cross(2.0, rate, 5.0);
     BOOST_CHECK_SMALL(rate * t + 2.5 * t * t - 2.0, 1e-14);

@@ -116,6 +116,28 @@ def test_early_flow_under_a_sliding_plate_is_that_of_a_half_space() -> None:
     np.testing.assert_allclose(flow.velocity(y, t), stokes, atol=1e-7)
 
 
+@pytest.mark.parametrize("time", [1e-6, 1e-5, 1e-4, 1e-2, 0.0999, 0.1, 1.0])
+def test_flows_between_plates_are_their_series_with_all_terms(time: float) -> None:
+    """Times in gap^2 / nu; after 4000 terms nothing is left at the first of them."""
+    y, n = np.linspace(0, 1, 41), np.arange(1, 4001)[:, np.newaxis]
+    decay = np.sin(n * np.pi * y) * np.exp(-((n * np.pi) ** 2) * time)
+    couette = y + np.sum(2 / (n * np.pi) * (-1.0) ** n * decay, axis=0)
+    poiseuille = y * (1 - y) / 2 - np.sum((4 / (n * np.pi) ** 3 * decay)[::2], axis=0)
+    gap, nu = 1e-3, 1e-6
+    flow, driven = CouetteStart(gap, nu, 1.5), PoiseuilleStart(gap, nu, 0.7)
+    t = time * gap**2 / nu
+    np.testing.assert_allclose(flow.velocity(gap * y, t), 1.5 * couette, atol=1e-12)
+    exact = 0.7 * gap**2 / nu * poiseuille
+    np.testing.assert_allclose(driven.velocity(gap * y, t), exact, atol=1e-12 * driven.fastest)
+
+
+def test_flows_between_plates_start_at_rest() -> None:
+    y = np.linspace(0, 1e-3, 21)
+    sliding = CouetteStart(1e-3, 1e-6, 1.5).velocity(y, 0.0)
+    np.testing.assert_array_equal(sliding, np.append(np.zeros(20), 1.5))
+    np.testing.assert_array_equal(PoiseuilleStart(1e-3, 1e-6, 0.7).velocity(y, 0.0), 0.0)
+
+
 @pytest.mark.parametrize("flow", [CouetteStart(2.0, 0.3, 1.5), PoiseuilleStart(2.0, 0.3, 0.7)])
 def test_flows_between_plates_obey_the_equation_of_motion(
     flow: CouetteStart | PoiseuilleStart,

@@ -225,8 +225,54 @@ def test_held_volume_and_front() -> None:
 
 def test_rigid_edges_store_nothing() -> None:
     frame = make_frame(0, [], SHEET)
-    with pytest.raises(UserError, match="compliance 0"):
+    with pytest.raises(UserError, match="compliance = 0: it must be above 0"):
         metrics.elastic_energy(MESH, frame, frame, 0.0)
+
+
+@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf, "a", None])
+def test_masses_that_are_none_are_refused(bad: object) -> None:
+    frame = _moving(make_frame(0, [[0, 0, 1], [0, 0, 2]], np.empty((0, 3))), np.ones((2, 3)))
+    sums = [metrics.kinetic_energy, metrics.momentum, metrics.angular_momentum]
+    for total in (*sums, lambda f, m: metrics.potential_energy(f, m, (0, 0, -1))):
+        for mass in (bad, [1.0, bad]):
+            with pytest.raises(UserError, match=r"mass = .*: it must be finite and not negative"):
+                total(frame, mass)
+    with pytest.raises(UserError, match=r"mass of type 1 = .*: it must be finite"):
+        metrics.masses(frame, {1: bad})
+    if isinstance(bad, float):
+        weighed = replace(frame, columns=frame.columns | {"mass": np.array([1.0, bad])})
+        with pytest.raises(UserError, match=r"mass = .*: it must be finite"):
+            metrics.masses(weighed)
+    assert metrics.kinetic_energy(frame, [0.0, 2.0]) == 3.0
+
+
+@pytest.mark.parametrize("bad", [9.81, [0, 0], [0, 0, 0, 0], [0, 0, np.nan], "abc"])
+def test_what_is_no_vector_is_refused(bad: object) -> None:
+    frame = make_frame(0, [[0, 0, 1], [0, 0, 2]], np.empty((0, 3)))
+    fall = [_moving(replace(frame, time=time), np.ones((2, 3))) for time in (0.0, 1.0)]
+    for name, total in (
+        ("gravity", lambda: metrics.potential_energy(frame, 1.0, bad)),
+        ("gravity", lambda: metrics.outer_force(fall, 1.0, bad)),
+        ("about", lambda: metrics.angular_momentum(fall[0], 1.0, bad)),
+    ):
+        with pytest.raises(UserError, match=f"{name} .*three components such as"):
+            total()
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, [1.0, 2.0], "a"])
+def test_volumes_densities_and_compliances_are_above_0(bad: object) -> None:
+    frame = make_frame(0, [[0.3, 0.3, 1.0]], SHEET)
+    wet = replace(frame, columns=frame.columns | {"rho": np.full(len(frame), 1000.0)})
+    for name, value in (
+        ("particle_volume", lambda: metrics.held_volume(MESH, frame, bad)),
+        ("rest_density", lambda: metrics.density_deviation(wet, bad)),
+        ("rest_density", lambda: metrics.compressed_share(wet, bad)),
+        ("compliance", lambda: metrics.elastic_energy(MESH, frame, frame, bad)),
+    ):
+        with pytest.raises(UserError, match=f"{name} .*: it must be above 0"):
+            value()
+    with pytest.raises(UserError, match="above = nan"):
+        metrics.compressed_share(wet, 1000.0, above=np.nan)
 
 
 def _moving(frame: Frame, velocities: np.ndarray) -> Frame:

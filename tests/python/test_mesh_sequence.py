@@ -171,8 +171,10 @@ def test_strain_is_that_of_the_edges(scene: Path, tmp_path: Path) -> None:
     values[:, 2:5] *= 1.1
     grown = "\n".join(" ".join(f"{value:.15g}" for value in row) for row in values)
     dump = tmp_path / "grown.lammpstrj"
+    step, header = header.split("\n", 1)
     first, second = (
-        f"ITEM: TIMESTEP\n{header}zu vx vy vz\n{text}\n" for text in (rows.strip(), grown)
+        f"ITEM: TIMESTEP\n{number}\n{header}zu vx vy vz\n{text}\n"
+        for number, text in ((int(step), rows.strip()), (int(step) + 1, grown))
     )
     dump.write_text((first + second).replace("pp pp", "ff ff"))
     mesh = ClothMesh.read(scene / "balls.data")

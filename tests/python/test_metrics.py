@@ -212,6 +212,16 @@ def test_a_sheet_that_closes_through_the_box_has_no_hole_there() -> None:
     assert metrics.crossings(ring, closed).count < 40
 
 
+def test_frames_in_no_order_are_no_paths() -> None:
+    frames = path([0.3, 0.3, 0.2], [0.3, 0.3, 0.1], [0.3, 0.3, -0.1])
+    assert metrics.crossings(MESH, frames).count == 1
+    for wrong in (frames[::-1], [frames[0], frames[2], frames[1]]):
+        with pytest.raises(UserError, match=r"crossings: a frame of step 1 follows one of step 2"):
+            metrics.crossings(MESH, wrong)
+    with pytest.raises(UserError, match="outer_force: a frame of step 1 follows one of step 2"):
+        metrics.outer_force(frames[:0:-1], 1.0, (0, 0, 0))
+
+
 def test_one_frame_is_too_few() -> None:
     with pytest.raises(UserError, match="only one"):
         metrics.crossings(MESH, path([0, 0, 0]))

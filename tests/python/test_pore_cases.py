@@ -84,6 +84,9 @@ def mesh() -> ClothMesh:
 
 def test_triangles_are_chosen_by_their_type() -> None:
     assert mesh().of_kinds([2]).triangles.tolist() == [[0, 1, 2]]
+    for wrong in ("2", ["2"], [2.5], [0]):
+        with pytest.raises(UserError, match=r"angle type .*: types are whole numbers from 1"):
+            mesh().of_kinds(wrong)
     assert mesh().without_kinds([2]).triangles.tolist() == [[0, 2, 3]]
     assert mesh().without_kinds([]).triangles.tolist() == mesh().triangles.tolist()
     with pytest.raises(UserError, match="types of the triangles are not known"):

@@ -94,6 +94,72 @@ def test_parameters_are_finite(name: str, bad: float) -> None:
             solution(*given[:place], wrong, *given[place + 1 :])
 
 
+def solution(name: str) -> object:
+    """Return a solution with possible parameters."""
+    return getattr(references, name)(*GOOD[name])
+
+
+# solution, method, its arguments behind the places, the first and the last place
+PLACES = [
+    ("CouetteStart", "velocity", (0.1,), 0.0, 1e-3),
+    ("PoiseuilleStart", "velocity", (0.1,), 0.0, 1e-3),
+    ("TaitColumn", "pressure", (), 0.0, 1.0),
+    ("TaitColumn", "level", (), 0.0, 1.0),
+    ("Lintearia", "shape", (), -0.5, 0.5),
+    ("HeavyLintearia", "shape", (), -0.5, 0.5),
+    ("HeavyLintearia", "pull", (), -0.5, 0.5),
+    ("HeavyElastica", "shape", (), 0.0, 1.0),
+    ("PressurizedMembrane", "deflection", (), 0.0, 1.0),
+    ("PressurizedNet", "deflection", (), 0.0, 1.0),
+]
+# solution, method, its arguments before the times
+TIMES = [
+    ("CouetteStart", "velocity", (1e-4,)),
+    ("PoiseuilleStart", "velocity", (1e-4,)),
+    ("FallingSheet", "velocity", ()),
+    ("FallingSheet", "fall", ()),
+    ("DrainingColumn", "levels", ()),
+    ("WindPendulum", "swing", (1.0,)),
+    ("LinkedPendulum", "positions", ()),
+    ("BreathingShell", "volumes", ()),
+]
+
+
+@pytest.mark.parametrize(("name", "method", "after", "first", "last"), PLACES)
+def test_places_beyond_a_solution_are_refused(
+    name: str, method: str, after: tuple, first: float, last: float
+) -> None:
+    value, size = getattr(solution(name), method), last - first
+    ends = np.array([first, last])
+    at_ends = value(ends, *after)
+    # positions in a dump are rounded
+    rounded = value(ends + size * np.array([-1e-6, 1e-6]), *after)
+    np.testing.assert_array_equal(rounded, at_ends)
+    for wrong in (first - 0.01 * size, last + 0.01 * size, math.nan, "here"):
+        with pytest.raises(
+            UserError, match=rf"{name}: \w+ = {wrong}: it must be from {first:g} to"
+        ):
+            value([wrong] if isinstance(wrong, float) else wrong, *after)
+
+
+@pytest.mark.parametrize(("name", "method", "before"), TIMES)
+@pytest.mark.parametrize("wrong", [-1.0, math.nan])
+def test_times_before_the_start_are_refused(
+    name: str, method: str, before: tuple, wrong: float
+) -> None:
+    value = getattr(solution(name), method)
+    is_flow = name in ("CouetteStart", "PoiseuilleStart")
+    assert np.all(np.isfinite(value(*before, 0.5 if is_flow else np.array([0.5]))))
+    with pytest.raises(UserError, match=f"{name}: time = {wrong:g}: it must be from 0, the start"):
+        value(*before, wrong if is_flow else np.array([wrong]))
+
+
+def test_levels_of_a_draining_column_need_no_order() -> None:
+    column = solution("DrainingColumn")
+    times = np.array([0.0, 0.1, 0.3])
+    np.testing.assert_allclose(column.levels(times[::-1]), column.levels(times)[::-1], rtol=1e-12)
+
+
 def test_limits_of_parameters_have_their_scene() -> None:
     weightless = references.TaitColumn(2.0, 1e3, 0.0, 31.3, 7.0)
     assert weightless.settlement == 0

@@ -137,11 +137,13 @@ def test_a_density_that_is_off_in_any_frame_is_found(bad: float, place: int) -> 
         testing.assert_density_within(frames, 1000.0, 0.01, kind)
 
 
-def test_no_frame_has_nothing_that_holds() -> None:
+def test_nothing_holds_of_no_frame_and_of_no_value() -> None:
     with pytest.raises(AssertionError, match="there is no frame"):
         testing.assert_density_within([], 1000.0, 0.01)
     with pytest.raises(AssertionError, match="there is no frame"):
         testing.assert_momentum_kept([], 1.0, 0.01)
+    with pytest.raises(AssertionError, match="u: there is no value"):
+        testing.assert_close_to_reference([], [], 0.1, "u")
 
 
 def test_momentum_that_is_not_a_number_is_not_kept() -> None:

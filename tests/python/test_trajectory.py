@@ -41,6 +41,24 @@ def test_atoms_come_sorted_by_id_with_all_their_columns(write_dump: WriteDump) -
     assert frame.select(2).ids.tolist() == [1]
 
 
+@pytest.mark.parametrize("several", [list, tuple, set, frozenset, np.array])
+def test_one_type_or_several_are_selected(write_dump: WriteDump, several: type) -> None:
+    frame = Trajectory(write_dump(dump_frame(5, MANY, COLUMNS)))[0]
+    for one in (1, np.int64(1), np.int32(1), 1.0, several([1])):
+        assert frame.select(one).ids.tolist() == [7, 8, 9]
+    assert frame.select(several([1, 2])).ids.tolist() == [1, 7, 8, 9]
+    for absent in (77, several([])):
+        assert len(frame.select(absent)) == 0
+
+
+@pytest.mark.parametrize("wrong", ["1", "water", 1.5, 0, -1, np.nan, np.inf, True, None, ["1"]])
+def test_what_is_no_type_selects_nothing(write_dump: WriteDump, wrong: object) -> None:
+    frame = Trajectory(write_dump(dump_frame(5, MANY, COLUMNS)))[0]
+    for types in (wrong, [1, wrong]):
+        with pytest.raises(UserError, match=r"select: type .*: types are whole numbers from 1"):
+            frame.select(types)
+
+
 def test_columns_are_those_that_mdanalysis_reads(write_dump: WriteDump) -> None:
     columns = f"{COLUMNS} fx fy fz mass"
     dump = write_dump(dump_frame(5, [[*row, 7, 8, 9, 0.25] for row in MANY], columns))
@@ -87,6 +105,27 @@ def test_a_last_frame_that_is_cut_off_is_left_out(write_dump: WriteDump, kept: i
     with pytest.warns(UserWarning, match="frame at line 12 is cut off"):
         trajectory = Trajectory(dump)
     assert trajectory.steps.tolist() == [0]
+
+
+def test_frames_that_repeat_a_step_are_left_out(write_dump: WriteDump) -> None:
+    """A run that goes on in the same file dumps the step again at which the one before ended."""
+    frames = [(0, FEW), (10, FEW), (10, MANY), (20, MANY), (20, FEW), (20, FEW)]
+    dump = write_dump("".join(dump_frame(step, rows, COLUMNS) for step, rows in frames))
+    with pytest.warns(UserWarning, match="that repeat the step before them are left out: 3 of 6"):
+        trajectory = Trajectory(dump)
+    assert trajectory.steps.tolist() == [0, 10, 20]
+    assert trajectory.counts.tolist() == [2, 2, 4]
+    assert [len(frame) for frame in trajectory] == [2, 2, 4]
+
+
+@pytest.mark.parametrize(("steps", "line"), [((20, 10, 0), 12), ((0, 20, 10), 23)])
+def test_steps_that_go_back_name_file_and_frames(
+    write_dump: WriteDump, steps: tuple[int, ...], line: int
+) -> None:
+    dump = write_dump("".join(dump_frame(step, FEW, COLUMNS) for step in steps))
+    message = rf"run\.lammpstrj, line {line}: a frame of step 10 follows one of step 20: give each"
+    with pytest.raises(UserError, match=message):
+        Trajectory(dump)
 
 
 def test_garbage_between_frames_names_file_and_line(write_dump: WriteDump) -> None:

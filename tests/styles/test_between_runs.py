@@ -3,7 +3,7 @@ change what moves, other steps and water that wakes."""
 
 import numpy as np
 import pytest
-from harness import by_id, instance
+from harness import by_id, instance, state
 from scenes import (
     FLUID,
     MAKE_FALL,
@@ -46,10 +46,6 @@ def falling(scheme, limits="", extra="", walls="zlo 0"):
     script = script.replace("fix walls all wall/sph zlo 0", f"fix walls all wall/sph {walls}")
     lmp.commands_string(f"{extra}{script}thermo_style custom step time\nrun 30")
     return lmp
-
-
-def state(lmp):
-    return np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
 
 
 def end(scheme, between, limits="", run="run 30"):

@@ -302,19 +302,34 @@ def test_chambers_that_cannot_be_told_apart_are_an_error(balloon):
         with_other_ids(balloon, both[1], both[0], "reset_atoms id")
 
 
-@pytest.mark.parametrize("move", ["fix move all nve", "fix move all pbd/cloth"])
-def test_where_vertices_are_moved_between_runs_the_gas_knows_no_speed_of_before(balloon, move):
+MOVES = pytest.mark.parametrize("move", ["fix move all nve", "fix move all pbd/cloth"])
+CHANGES = ["displace_atoms all ramp {} -1e-3 1e-3", "velocity all ramp v{} -3 3"]
+
+
+@MOVES
+@pytest.mark.parametrize("what", CHANGES)
+def test_where_vertices_are_changed_between_runs_the_gas_knows_no_speed_of_before(
+    balloon, move, what
+):
     """As behind minimize, where there have been no steps."""
     ends = []
     for between in ("", "minimize 0 0 0 0\n"):
         lmp = balloon(move=move, dt=1e-4)
-        larger = "".join(
-            f"displace_atoms all ramp {d} -0.001 0.001 {d} -0.1 0.1 units box\n" for d in "xyz"
-        )
-        lmp.commands_string(f"run 3\n{larger}{between}run 1")
+        change = "".join(f"{what.format(d)} {d} -0.1 0.1 units box\n" for d in "xyz")
+        lmp.commands_string(f"run 3\n{change}{between}run 1")
         ends.append(by_id(lmp, "v"))
     assert np.abs(ends[1]).max() > 1
     np.testing.assert_allclose(*ends, rtol=0, atol=1e-9 * np.abs(ends[1]).max())
+
+
+@MOVES
+def test_where_nothing_is_changed_between_runs_the_gas_goes_on(balloon, move):
+    ends = []
+    for runs in ("run 6", "run 3\nrun 0\nrun 3"):
+        lmp = balloon(move=move, dt=1e-4, v=icosphere(1, 50 * RADIUS)[0])
+        lmp.commands_string(runs)
+        ends.append(by_id(lmp, "v"))
+    np.testing.assert_allclose(*ends, rtol=0, atol=1e-11)
 
 
 def test_a_hole_is_named_and_can_be_closed_by_a_lid(balloon, capfd):

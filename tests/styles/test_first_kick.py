@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from cloth_scenes import cloth, styles
 from harness import by_id, instance
-from scenes import FLUID, box, header, neighbor, sph_tait
+from scenes import FLUID, box, gravity, header, neighbor, sph_tait
 
 DT, G = 1e-3, 9.81
 SCHEMES = ["constant", "global", "individual", "block"]
@@ -131,3 +132,38 @@ def test_the_error_of_a_collision_falls_with_the_square_of_the_step(scheme):
 
     coarse, middle, fine = (apart(dt) for dt in (2e-4, 1e-4, 5e-5))
     assert (coarse - middle) / (middle - fine) == pytest.approx(4.0, rel=0.2)
+
+
+# a free sheet whose edges do nothing, on its way up for 20 steps, and how its next run begins
+ON_ITS_WAY = {
+    "run": "run 20",
+    "restart file": "run 20\nwrite_restart half",
+    "restart file from within a run": "restart 20 half\nrun 21",
+    "minimization": "run 20\nminimize 0 0 1 1",
+}
+
+
+@pytest.mark.parametrize("solver", ["", "iterations 5", "solver gs", "solver jacobi"])
+@pytest.mark.parametrize("way", ON_ITS_WAY)
+@pytest.mark.parametrize("weight", [True, False])
+def test_a_vertex_that_gets_a_velocity_between_two_runs_is_on_its_parabola(
+    solver, way, weight, tmp_path, monkeypatch
+):
+    """Nothing is taken back of what forces gave ahead to the velocity of before."""
+    monkeypatch.chdir(tmp_path)
+    lmp = cloth("velocity cloth set 0.1 0 2 units box\n", k=0, fix=solver)
+    lmp.commands_string(f"group one id 1\n{ON_ITS_WAY[way]}")
+    for file in tmp_path.glob("half*"):
+        lmp.commands_string(
+            f"clear\ncomm_modify vel yes\nread_restart {file.name}\n{styles(k=0)}{gravity()}"
+            f"fix sheet cloth pbd/cloth {solver}\ntimestep {DT}\n"
+        )
+    if not weight:
+        lmp.command("unfix gravity")
+    top = heights(lmp)
+    lmp.commands_string("velocity one set NULL NULL 3 units box\nrun 10")
+    found, g, t = heights(lmp) - top, G if weight else 0, 10 * DT
+    assert found[0] == pytest.approx(3 * t - g * t**2 / 2, abs=1e-12)
+    # weight goes down from the last step to the next one
+    speed = 2 - G * (20 * DT if weight else 19.5 * DT)
+    np.testing.assert_allclose(found[1:], speed * t - g * t**2 / 2, rtol=0, atol=1e-12)

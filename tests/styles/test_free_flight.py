@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from harness import by_id, instance, last_frame, run, write
+from harness import instance, last_frame, run, state, write
 from scenes import FLUID, box, filled, final_dump, gravity, header, jitter, lattice, neighbor
 from scenes import sph_tait as usual_sph_tait
 from step_scenes import dt_and_limit
@@ -146,7 +146,7 @@ def test_equal_and_unequal_steps_in_turn_go_on_to_the_last_bit(tmp_path, monkeyp
         whole.commands_string(block_of_water(shaken=True) + styles)
         for k in range(40):
             whole.command("run 4 post no")
-            kept.append(np.hstack([by_id(whole, "x"), by_id(whole, "v")]))
+            kept.append(state(whole))
             active.append(whole.extract_fix("step", 0, 1, 1))
             whole.command(f"write_restart {k}.restart")
     turns = [k for k in range(37) if (active[k] < 1.0) != (active[k + 1] < 1.0)]
@@ -156,5 +156,6 @@ def test_equal_and_unequal_steps_in_turn_go_on_to_the_last_bit(tmp_path, monkeyp
             again.commands_string(f"comm_modify vel yes\nread_restart {k}.restart\n{styles}")
             for ahead in (1, 2):
                 again.command("run 4 post no")
-                state = np.hstack([by_id(again, "x"), by_id(again, "v")])
-                np.testing.assert_array_equal(state, kept[k + ahead], err_msg=f"{k}, {ahead}")
+                np.testing.assert_array_equal(
+                    state(again), kept[k + ahead], err_msg=f"{k}, {ahead}"
+                )

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance, last_frame, run, write
+from harness import instance, last_frame, run, state, write
 from scenes import (
     cloth_box,
     cloth_styles,
@@ -35,7 +35,7 @@ def test_a_run_goes_on_with_them_after_a_restart(ranks, tmp_path):
         lmp.commands_string(f"run 19\nwrite_restart {tmp_path}/half")
         before = lmp.extract_fix("step", 0, 1, 2)
         lmp.command("run 60")
-        whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
+        whole = state(lmp)
         assert lmp.extract_fix("step", 0, 1, 2) - before < 0.9 * 60 * 448
     run(write(tmp_path, f"read_restart half\n{fixes}{BLOCK}{GO_ON}"), ranks=ranks)
     apart = last_frame(tmp_path / "end.txt")[:, 1:] - whole

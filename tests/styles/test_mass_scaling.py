@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from harness import by_id, instance, last_frame, run, write
+from harness import by_id, instance, last_frame, run, state, write
 from scenes import (
     cloth_box,
     cloth_styles,
@@ -229,7 +229,7 @@ def goes_on_alike(script, again, length, tmp_path, *, steps=20):
     with instance() as lmp:
         lmp.commands_string(script)
         lmp.commands_string(f"run {steps}\nwrite_restart {tmp_path}/half\nrun 20")
-        whole = np.hstack([by_id(lmp, "x"), by_id(lmp, "v")])
+        whole = state(lmp)
     for ranks in (1, 2, 4):
         folder = tmp_path / str(ranks)
         folder.mkdir()

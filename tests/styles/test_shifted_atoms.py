@@ -40,8 +40,9 @@ def grains(contact="", pin="", forces=""):
     )
 
 
-def water(density, contact="", more=""):
-    """A block of water with a sheet across it."""
+def water(density, contact="", more="", plate=False):
+    """A block of water with a sheet across it, and perhaps a plate far below."""
+    below = "center 0 0 -0.3 size 0.8 0.4 spacing 0.05 group plate"
     return (
         header("p p p", MIXED)
         + cloth_box("-0.5 0.5 -0.5 0.5 -0.5 0.5")
@@ -49,16 +50,20 @@ def water(density, contact="", more=""):
         + lattice(0.05)
         + filled("w", "-0.1 0.1 -0.1 0.1 -0.2 0.2")
         + "create_cloth 2 2 size 0.4 0.4 spacing 0.05 group cloth\ngroup water type 1\n"
+        + (f"create_cloth 2 1.0 {below}\n" if plate else "")
         + "set type * sph/rho 1000\n"
         + sph_tait("1 1 fluid 1000 c0 20 alpha 0.1", "2 2 none", options=f"density {density}")
         + stiffness("1.0", "0.0")
         + no_other_bonds()
         + neighbor(0.05, 0.25)
-        + "timestep 1e-3\nfix step water sph/integrate constant\nfix sheet cloth pbd/cloth\n"
+        + "timestep 1e-3\nfix step water sph/integrate constant\n"
+        + ("fix plate plate nve\n" if plate else "")
+        + "fix sheet cloth pbd/cloth\n"
         + f"fix contact water cloth/contact 0.02 {contact}\n{more}"
     )
 
 
+PORES = "fix pores water cloth/pores 1 darcy 5000\n"
 PRESSED = "fix press grains addforce 0 0 -0.1\n"
 SCENES = {
     "friction": grains(forces=PRESSED),
@@ -66,7 +71,8 @@ SCENES = {
     "friction beside an obstacle": grains("obstacle plate", "", PRESSED),
     "bounce": grains("restitution 0.5", "", "fix press grains addforce 0 0 -1\n"),
     "air": grains() + "fix air cloth cloth/air density 1.2 wind 0 0 5\n",
-    "pores": water("summation", "", "fix pores water cloth/pores 1 darcy 5000\n"),
+    "pores": water("summation", "", PORES),
+    "pores beside an obstacle": water("summation", "obstacle plate", PORES, plate=True),
     "density by continuity": water("continuity", "wall yes", "fix press water addforce 0 0 -5\n"),
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.arguments import POSITIVE, numbers
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.trajectory import Frame
@@ -40,11 +41,17 @@ def elastic_energy(mesh: ClothMesh, frame: Frame, rest: Frame, compliance: Array
         compliance: A of ``bond_coeff``, distance over force; one for all, or shape (E,).
 
     Raises:
-        UserError: a compliance that is not above 0: rigid edges store nothing.
+        UserError: a compliance that is not above 0, since rigid edges store nothing, or not one for
+            each edge.
     """
-    compliance = np.asarray(compliance, dtype=np.float64)
-    if not np.all(compliance > 0):
-        raise UserError(f"elastic_energy: compliance {np.min(compliance):g}: it must be above 0")
+    remedy = f"it must be above 0, one for all or one for each of the {len(mesh.edges)} edges"
+    compliance = numbers(
+        "elastic_energy: compliance",
+        compliance,
+        remedy,
+        low=POSITIVE,
+        shapes={(), (len(mesh.edges),)},
+    )
     longer = mesh.edge_lengths(frame) - mesh.edge_lengths(rest)
     return float(np.sum(longer**2 / (2 * compliance)))
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.arguments import numbers
 from sphcloth.errors import UserError
-from sphcloth.trajectory import Frame
+from sphcloth.trajectory import Frame, successive
 
 Array = NDArray[np.float64]
 NO_GRAVITY = (0.0, 0.0, 0.0)
@@ -23,10 +23,11 @@ def masses(frame: Frame, by_type: Mapping[int, float] | None = None) -> Array:
         by_type: atom type -> mass, as :func:`sphcloth.mesh.read_masses` reads it from a data file.
 
     Raises:
-        UserError: the dump has no column ``mass``, and a type has no mass.
+        UserError: the dump has no column ``mass``, and a type has no mass; or a mass that is
+            negative or not finite.
     """
     if "mass" in frame.columns:
-        return frame.columns["mass"]
+        return _mass("mass", frame.columns["mass"])
     types, number = np.unique(frame.types, return_inverse=True)
     absent = [int(kind) for kind in types if kind not in (by_type or {})]
     if absent:
@@ -34,14 +35,14 @@ def masses(frame: Frame, by_type: Mapping[int, float] | None = None) -> Array:
             f"no mass of type {absent[0]}: add 'mass' to 'dump custom', or give by_type, "
             "such as read_masses(DATA)"
         )
-    return np.array([by_type[kind] for kind in types], dtype=np.float64)[number]
+    return np.array([_mass(f"mass of type {kind}", by_type[kind], {()}) for kind in types])[number]
 
 
 def masses_of(frame: Frame, mass: float | Mapping[int, float]) -> Array:
     """Return the mass of each atom, shape (N,): the column ``mass`` if there is one, or as given.
 
     Raises:
-        UserError: a type without a mass.
+        UserError: a type without a mass, or a mass that is negative or not finite.
     """
     if isinstance(mass, Mapping) or "mass" in frame.columns:
         return masses(frame, mass if isinstance(mass, Mapping) else None)
@@ -49,7 +50,11 @@ def masses_of(frame: Frame, mass: float | Mapping[int, float]) -> Array:
 
 
 def kinetic_energy(frame: Frame, mass: ArrayLike) -> float:
-    """Return sum m v^2 / 2; masses of shape (N,), or one for all."""
+    """Return sum m v^2 / 2; masses of shape (N,), or one for all.
+
+    Raises:
+        UserError: a mass that is negative or not finite, as in all sums over masses.
+    """
     return float(0.5 * np.sum(_weights(frame, mass) * np.sum(frame.velocities**2, axis=1)))
 
 
@@ -60,8 +65,11 @@ def potential_energy(frame: Frame, mass: ArrayLike, gravity: Sequence[float]) ->
         frame: positions are those of the dump: unwrapped only where nothing crossed a boundary.
         mass: shape (N,), or one for all.
         gravity: acceleration, three components, such as (0, 0, -9.81).
+
+    Raises:
+        UserError: other than three components, or masses as for the kinetic energy.
     """
-    fallen = frame.positions @ np.asarray(gravity, dtype=np.float64)
+    fallen = frame.positions @ _vector("gravity", gravity)
     return -float(np.sum(_weights(frame, mass) * fallen))
 
 
@@ -72,7 +80,7 @@ def momentum(frame: Frame, mass: ArrayLike) -> Array:
 
 def angular_momentum(frame: Frame, mass: ArrayLike, about: Sequence[float] = (0, 0, 0)) -> Array:
     """Return sum m (x - about) x v, shape (3,); masses of shape (N,), or one for all."""
-    arms = frame.positions - np.asarray(about, dtype=np.float64)
+    arms = frame.positions - _vector("about", about)
     return _weights(frame, mass) @ np.cross(arms, frame.velocities)
 
 
@@ -91,10 +99,11 @@ def outer_force(
         gravity: acceleration, three components.
 
     Raises:
-        UserError: no times, atoms that come or go, or fewer than two frames.
+        UserError: no times, steps that go back, atoms that come or go, fewer than two frames, or
+            masses or gravity as for the potential energy.
     """
-    forces = []
-    for before, after in itertools.pairwise(frames):
+    gravity, forces = _vector("gravity", gravity), []
+    for before, after in successive(frames, "outer_force"):
         if not np.array_equal(before.ids, after.ids):
             raise UserError(
                 f"outer_force: atoms came or went between steps {before.step} and {after.step}"
@@ -103,7 +112,7 @@ def outer_force(
             raise UserError("outer_force: frames need times: Trajectory(DUMP, LOG)")
         each = masses_of(after, mass)
         change = momentum(after, each) - momentum(before, each)
-        weight = np.sum(each) * np.asarray(gravity, dtype=np.float64)
+        weight = np.sum(each) * gravity
         forces.append(change / (after.time - before.time) - weight)
     if not forces:
         raise UserError("outer_force: forces are found between frames: there is only one")
@@ -111,8 +120,17 @@ def outer_force(
 
 
 def _weights(frame: Frame, mass: ArrayLike) -> Array:
-    """Return one mass for each atom; UserError if there are more or fewer."""
-    mass = np.asarray(mass, dtype=np.float64)
+    """Return one mass for each atom; UserError if there are more or fewer, or one is none."""
+    mass = _mass("mass", mass)
     if mass.shape not in ((), (len(frame),)):
         raise UserError(f"{mass.size} masses for {len(frame)} atoms: give one for each, or one")
     return np.broadcast_to(mass, len(frame))
+
+
+def _mass(what: str, mass: ArrayLike, shapes: Collection[tuple[int, ...]] | None = None) -> Array:
+    """Return masses as float64, of which some may be 0; UserError if they are none."""
+    return numbers(what, mass, "it must be finite and not negative", low=0.0, shapes=shapes)
+
+
+def _vector(what: str, values: Sequence[float]) -> Array:
+    return numbers(what, values, "three components such as (0, 0, -9.81)", shapes={(3,)})

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
-from sphcloth.trajectory import Frame
+from sphcloth.trajectory import Frame, successive
 
 # particles whose paths are compared with the sheet at a time: bounds the memory
 _BLOCK = 20_000
@@ -68,15 +68,16 @@ def crossings(
 
     Args:
         mesh: of the sheet.
-        trajectory: frames; each is taken once, so they may be read on the way.
+        trajectory: frames in the order of their steps; each is taken once, so they may be read on
+            the way.
         fluid_type: atom type of the fluid, or several.
 
     Raises:
-        UserError: there is one frame, or a position that is not finite.
+        UserError: there is one frame, steps go back, or a position is not finite.
     """
     found = [
         _crossings_between(mesh, before, after, fluid_type)
-        for before, after in itertools.pairwise(trajectory)
+        for before, after in successive(trajectory, "crossings")
     ]
     if not found:
         raise UserError("crossings are counted between frames: the dump has only one")

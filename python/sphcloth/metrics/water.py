@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from sphcloth.arguments import POSITIVE, numbers
 from sphcloth.errors import UserError
 from sphcloth.mesh import ClothMesh
 from sphcloth.metrics.passages import above_sheet
@@ -19,9 +20,10 @@ def density_deviation(frame: Frame, rest_density: float, fluid_type: int = 1) ->
     out.
 
     Raises:
-        UserError: the dump has no column ``rho``.
+        UserError: the dump has no column ``rho``, or a density at rest that is not above 0.
     """
     density = frame.select(fluid_type).vectors("rho")[:, 0]
+    rest_density = _positive("rest_density", rest_density)
     return float(np.max(np.abs(density / rest_density - 1), initial=0.0))
 
 
@@ -34,11 +36,13 @@ def compressed_share(
     there is no water.
 
     Raises:
-        UserError: the dump has no column ``rho``.
+        UserError: the dump has no column ``rho``, or a density at rest that is not above 0.
     """
     density = frame.select(fluid_type).vectors("rho")[:, 0]
+    rest_density = _positive("rest_density", rest_density)
     if not len(density):
         return float("nan")
+    above = float(numbers("above", above, "it must be one number", shapes={()}))
     return float(np.mean(density > (1 + above) * rest_density))
 
 
@@ -82,5 +86,13 @@ def held_volume(
         particle_volume: of one particle at rest, mass over rest density
             (:attr:`sphcloth.roles.Roles.volume`).
         fluid_type: atom type of the water.
+
+    Raises:
+        UserError: a volume that is not above 0.
     """
+    particle_volume = _positive("particle_volume", particle_volume)
     return particle_volume * int(np.count_nonzero(above_sheet(mesh, frame, fluid_type)))
+
+
+def _positive(what: str, value: float) -> float:
+    return float(numbers(what, value, "it must be above 0", low=POSITIVE, shapes={()}))

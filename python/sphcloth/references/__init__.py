@@ -6,8 +6,8 @@ They use NumPy and SciPy and nothing of the simulation, so they can judge a run 
     exact = CouetteStart(gap=1e-3, nu=1e-6, lid=1e-5).velocity(frame.positions[:, 1], frame.time)
 
 Units are those in the docstrings, SI, or any other consistent set. Formulas and sources stand at
-the head of each module. Parameters for which there is no such scene raise
-:class:`~sphcloth.errors.UserError`.
+the head of each module. Parameters for which there is no such scene, and places and times for which
+there is no value, raise :class:`~sphcloth.errors.UserError`.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_ivp
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, since_start
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,12 @@ class BreathingShell:
         return 2 * math.pi / math.sqrt(omega_sq)
 
     def volumes(self, times: ArrayLike) -> NDArray[np.float64]:
-        """Return the volume at some times, m^3."""
-        at = np.atleast_1d(np.asarray(times, dtype=float))
+        """Return the volume at some times, ascending from 0, m^3.
+
+        Raises:
+            UserError: a time before the start.
+        """
+        at = np.atleast_1d(since_start(self, times))
         solved = solve_ivp(
             self._rate,
             (0, float(at[-1])),

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, within
 
 # Gamma grows by this factor from solution to solution, each of which starts the next
 GROWTH = 2.0
@@ -51,8 +51,13 @@ class HeavyElastica:
         return float(self.shape(1.0)[0])
 
     def shape(self, s: float | NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return x and z (upwards) at some distances along the sheet, in L, shape (2, ...)."""
-        _, _, x, drop = self._solution(np.asarray(s, dtype=np.float64))
+        """Return x and z (upwards) at some distances along the sheet, in L, shape (2, ...).
+
+        Raises:
+            UserError: a distance that is not from 0 to 1.
+        """
+        along = within(self, "s", s, 0.0, 1.0, "from the clamp to the free edge")
+        _, _, x, drop = self._solution(along)
         return np.stack([x, -drop])
 
     @cached_property

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import OdeSolution, solve_ivp
 from scipy.linalg import solve_banded
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, since_start
 
 Array = NDArray[np.float64]
 
@@ -54,7 +54,11 @@ class LinkedPendulum:
         return cls([length / links] * links, [1.0 / links] * links, [angle] * links, gravity)
 
     def positions(self, times: ArrayLike) -> Array:
-        """Return x and z (upwards) of the masses at some times, shape (times, N, 2)."""
+        """Return x and z (upwards) of the masses at some times, shape (times, N, 2).
+
+        Raises:
+            UserError: a time before the start.
+        """
         angles, _ = self._state(times)
         return self._places(angles)
 
@@ -104,7 +108,7 @@ class LinkedPendulum:
 
     def _state(self, times: ArrayLike) -> tuple[Array, Array]:
         """Return angles and their rates at some times, each of shape (..., N)."""
-        times = np.asarray(times, dtype=np.float64)
+        times = since_start(self, times)
         state = np.moveaxis(self._motion(float(np.max(times)))(times), 0, -1)
         angles, rates = np.split(state, 2, axis=-1)
         return angles, rates

@@ -1,11 +1,14 @@
-"""What a reference solution asks of its parameters."""
+"""What a reference solution asks of its parameters, and of the places and times of its values."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import fields
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from sphcloth.arguments import numbers
 from sphcloth.errors import UserError
 
 
@@ -30,6 +33,38 @@ def check(solution: object, name: str, allowed: bool, remedy: str) -> None:
     """Raise UserError with name, value and remedy unless the value is allowed."""
     if not allowed:
         _refuse(solution, name, remedy)
+
+
+def within(
+    solution: object, name: str, values: ArrayLike, low: float, high: float, remedy: str
+) -> NDArray[np.float64]:
+    """Return places as float64; UserError unless they lie where the solution is defined.
+
+    Args:
+        solution: the reference.
+        name: of the places, for the message.
+        values: the places.
+        low: the first one.
+        high: the last one.
+        remedy: what they are.
+    """
+    what = f"{type(solution).__name__}: {name}"
+    remedy = f"it must be from {low:g} to {high:g}, {remedy}"
+    return numbers(what, values, remedy, low=low, high=high)
+
+
+def since_start(
+    solution: object, times: ArrayLike, shapes: Collection[tuple[int, ...]] | None = None
+) -> NDArray[np.float64]:
+    """Return times as float64; UserError for one before the start, 0, or one that is not finite.
+
+    Args:
+        solution: the reference.
+        times: the times.
+        shapes: those that are allowed; None for any.
+    """
+    remedy = "it must be from 0, the start, on; frames have times by Trajectory(DUMP, LOG)"
+    return numbers(f"{type(solution).__name__}: time", times, remedy, low=0.0, shapes=shapes)
 
 
 def _refuse(solution: object, name: str, remedy: str) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from sphcloth.references.checks import check, check_positive
+from sphcloth.references.checks import check, check_positive, since_start
 
 # share of the height at which the integration ends: an empty column has no velocity
 EMPTY = 1e-3
@@ -61,8 +61,12 @@ class DrainingColumn:
         return float(2 * weight / (self.darcy + root))
 
     def levels(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the heights at some times, ascending from 0, m; 0 where it is empty."""
-        least = EMPTY * self.height
+        """Return the heights at some times, m; 0 where it is empty.
+
+        Raises:
+            UserError: a time before the start.
+        """
+        times, least = since_start(self, times), EMPTY * self.height
 
         def rates(_: float, state: NDArray) -> list[float]:
             h, u = max(state[0], least), state[1]
@@ -75,7 +79,7 @@ class DrainingColumn:
         is_empty.terminal = True
         run = solve_ivp(
             rates,
-            (0.0, max(times[-1], 1e-12)),
+            (0.0, max(float(np.max(times)), 1e-12)),
             [self.height, 0.0],
             method="LSODA",
             events=is_empty,

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 from scipy.optimize import brentq
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, within
 
 START = 1e-4  # radius, of the membrane's, where the integration begins
 
@@ -117,9 +117,14 @@ class PressurizedMembrane:
         return float(2 * np.pi * self.radius**3 * np.trapezoid(r * w, r))
 
     def deflection(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Return the deflection at some radii, m."""
+        """Return the deflection at some radii, m.
+
+        Raises:
+            UserError: a radius beyond the rim.
+        """
         known, _, w = self._solution
-        return self.radius * np.interp(np.asarray(r) / self.radius, known, w)
+        r = within(self, "r", r, 0.0, self.radius, "the rim")
+        return self.radius * np.interp(r / self.radius, known, w)
 
 
 ANGLES = (np.arange(24) + 0.5) * np.pi / 48
@@ -179,9 +184,14 @@ class PressurizedNet:
         return float(self.radius * self._profile[2, 0])
 
     def deflection(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Return the height over the rim at some radii, those of the bulged net, m."""
+        """Return the height over the rim at some radii, those of the bulged net, m.
+
+        Raises:
+            UserError: a radius beyond the rim.
+        """
         _, known, z = self._profile
-        return self.radius * np.interp(np.asarray(r) / self.radius, known, z)
+        r = within(self, "r", r, 0.0, self.radius, "the rim")
+        return self.radius * np.interp(r / self.radius, known, z)
 
 
 def _tensions(along: float, around: float) -> tuple[float, float]:

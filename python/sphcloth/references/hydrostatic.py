@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sphcloth.references.checks import check, check_positive
+from sphcloth.references.checks import check, check_positive, within
 
 
 @dataclass(frozen=True)
@@ -42,17 +42,29 @@ class TaitColumn:
         check(self, "gamma", self.gamma > 1, "it must be above 1")
 
     def pressure(self, depth: ArrayLike) -> NDArray[np.float64]:
-        """Return the pressure in Pa of what started at a depth in m."""
-        return self.rho0 * self.gravity * np.asarray(depth, dtype=np.float64)
+        """Return the pressure in Pa of what started at a depth in m.
+
+        Raises:
+            UserError: a depth outside of the column.
+        """
+        return self.rho0 * self.gravity * self._inside(depth)
 
     def level(self, depth: ArrayLike) -> NDArray[np.float64]:
-        """Return the height above the base in m at which it comes to rest."""
-        return self._thickness(self.height) - self._thickness(depth)
+        """Return the height above the base in m at which it comes to rest.
+
+        Raises:
+            UserError: a depth outside of the column.
+        """
+        return self._thickness(self.height) - self._thickness(self._inside(depth))
 
     @property
     def settlement(self) -> float:
         """How far the surface sinks, m."""
         return float(self.height - self.level(0.0))
+
+    def _inside(self, depth: ArrayLike) -> NDArray[np.float64]:
+        remedy = "below the surface, which is at 0, and above the base"
+        return within(self, "depth", depth, 0.0, self.height, remedy)
 
     def _thickness(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Return the thickness at rest of what lay above a depth: the integral of rho0 / rho."""

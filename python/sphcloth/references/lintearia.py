@@ -25,7 +25,7 @@ from scipy.optimize import brentq, root
 from scipy.special import ellipe, ellipeinc, ellipj, ellipk
 
 from sphcloth.errors import UserError
-from sphcloth.references.checks import check, check_finite, check_positive
+from sphcloth.references.checks import check, check_finite, check_positive, within
 
 # angles at the water line among which the root is looked for
 _ANGLES = np.linspace(1e-4, math.pi - 1e-4, 2000)
@@ -110,8 +110,12 @@ class Lintearia:
         return self.rho0 * self.gravity * self.area / 2
 
     def shape(self, arc: ArrayLike) -> NDArray[np.float64]:
-        """Return x and z, shape (N, 2), at lengths along the sheet; 0 is the bottom, z = 0."""
-        arc = np.asarray(arc, dtype=np.float64)
+        """Return x and z, shape (N, 2), at lengths along the sheet; 0 is the bottom, z = 0.
+
+        Raises:
+            UserError: a length beyond the pins.
+        """
+        arc = _between_pins(self, arc, self.length)
         wet = np.minimum(np.abs(arc), self.wet)
         dry = np.abs(arc) - wet
         _, cosine, _, amplitude = ellipj(wet / self.scale, self.modulus**2)
@@ -171,17 +175,25 @@ class HeavyLintearia:
         return self.light.lift + self.areal * self.light.gravity * self.light.length / 2
 
     def shape(self, arc: ArrayLike) -> NDArray[np.float64]:
-        """Return x and z, shape (N, 2), at lengths along the sheet; 0 is the bottom, z = 0."""
+        """Return x and z, shape (N, 2), at lengths along the sheet; 0 is the bottom, z = 0.
+
+        Raises:
+            UserError: a length beyond the pins.
+        """
         x, z = self._state(arc)[:2]
         return np.stack([np.sign(arc) * x, z], axis=-1)
 
     def pull(self, arc: ArrayLike) -> NDArray[np.float64]:
-        """Return the tension per width at lengths along the sheet, N/m."""
+        """Return the tension per width at lengths along the sheet, N/m.
+
+        Raises:
+            UserError: a length beyond the pins.
+        """
         return np.hypot(*self._state(arc)[2:4])
 
     def _state(self, arc: ArrayLike) -> NDArray[np.float64]:
         """Return x, z, horizontal and vertical pull, and the area so far, at lengths from 0."""
-        return self._solution[1](np.abs(np.asarray(arc, dtype=np.float64)))
+        return self._solution[1](np.abs(_between_pins(self, arc, self.light.length)))
 
     @cached_property
     def _solution(self) -> tuple[float, Callable[[ArrayLike], NDArray[np.float64]]]:
@@ -221,3 +233,8 @@ class HeavyLintearia:
             max_step=step,
             dense_output=True,
         ).sol
+
+
+def _between_pins(sheet: object, arc: ArrayLike, length: float) -> NDArray[np.float64]:
+    """Return lengths along a sheet from its middle as float64; UserError beyond the pins."""
+    return within(sheet, "arc", arc, -length / 2, length / 2, "from pin to pin; 0 is the middle")

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, since_start
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,19 @@ class FallingSheet:
         return math.sqrt(2 * self.areal * self.gravity / (self.density * self.normal))
 
     def velocity(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the velocity of the fall, m/s."""
-        return self.terminal * np.tanh(self.gravity * np.asarray(times) / self.terminal)
+        """Return the velocity of the fall, m/s.
+
+        Raises:
+            UserError: a time before the start.
+        """
+        return self.terminal * np.tanh(self.gravity * since_start(self, times) / self.terminal)
 
     def fall(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return how far the sheet has fallen, m."""
-        x = self.gravity * np.asarray(times) / self.terminal
+        """Return how far the sheet has fallen, m.
+
+        Raises:
+            UserError: a time before the start.
+        """
+        x = self.gravity * since_start(self, times) / self.terminal
         # ln(cosh(x)) without overflow
         return self.terminal**2 / self.gravity * (x + np.log1p(np.exp(-2 * x)) - math.log(2))

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from sphcloth.references.checks import check_positive
+from sphcloth.references.checks import check_positive, since_start
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,11 @@ class WindPendulum:
         Args:
             length: of the plate, m.
             times: ascending from 0, s.
+
+        Raises:
+            UserError: a time before the start.
         """
+        times = since_start(self, times)
         per_mass = 0.5 * self.density * self.normal / self.areal / length
 
         def rate(_: float, state: NDArray[np.float64]) -> list[float]:

@@ -389,6 +389,15 @@ void GasChambers::add_lids(const std::vector<Frame> &at, double *volumes)
   }
 }
 
+std::vector<double> GasChambers::rates() const
+{
+  std::vector<double> mine(count(), 0.0), all(mine.size());
+  for (std::size_t s = 0; s < slots.size(); s++)
+    mine[slots[s].chamber] += gradient[s].dot(Vec3(atom->v[slots[s].atom]));
+  MPI_Allreduce(mine.data(), all.data(), count(), MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
 void GasChambers::push(const std::vector<double> &by_chamber) const
 {
   for (std::size_t s = 0; s < slots.size(); s++)

@@ -61,6 +61,8 @@ class GasChambers : protected Pointers {
   };
   // collective
   std::vector<Volume> measure(const std::vector<Frame> &);
+  // those of where vertices were then, by the velocities that they have now
+  std::vector<double> rates() const;
   // forces on the vertices, after measure(), each the gradient of a volume times this
   void push(const std::vector<double> &by_chamber) const;
   double bytes() const;

@@ -94,11 +94,19 @@ void Substepping::begin_step(double dt, int substeps, const std::vector<SolverCo
   damping_groups = SubstepGroups(substeps, options.damping * dt, MAX_DAMPING);
 }
 
-// from velocities at the time of the positions to those of half a substep later
+// With direction start velocities are those of half a substep ago; those that are given are of the
+// time of the positions.
 
-double Substepping::first_kick() const { return options.from_start && !started ? 0.5 : 1.0; }
+double Substepping::first_kick(int slot) const
+{
+  const bool given = !velocities.has_taken_steps(vertices.halo.atom_of(slot));
+  return options.from_start && given ? 0.5 : 1.0;
+}
 
-double Substepping::part_with_forces() const { return 1.0 - (1.0 - first_kick()) / n_substeps; }
+double Substepping::part_with_forces(int slot) const
+{
+  return 1.0 - (1.0 - first_kick(slot)) / n_substeps;
+}
 
 // of rigid edges, on all ranks
 
@@ -179,7 +187,7 @@ void Substepping::begin_substep(int n)
   // before the forces: weight is not damped
   if (const int together = damping_groups.done_in(n); options.damping > 0.0 && together)
     damp(together);
-  apply_forces((n == 0 ? first_kick() : 1.0) * dt * force->ftm2v);
+  apply_forces(dt * force->ftm2v, n == 0);
   predict(n == n_substeps - 1);
   std::fill(constraints.distance.lambda.begin(), constraints.distance.lambda.end(), 0.0);
   hinges_for = hinge_groups.done_in(n);
@@ -200,10 +208,11 @@ void Substepping::end_substep()
   set_velocities();
 }
 
-void Substepping::apply_forces(double dtf)
+void Substepping::apply_forces(double dtf, bool first)
 {
   for (int s = 0; s < vertices.halo.n_owned(); s++) {
-    const double *f = atom->f[vertices.halo.atom_of(s)], by = dtf * vertices.inverse_mass[s];
+    const double kick = (first ? first_kick(s) : 1.0) * dtf;
+    const double *f = atom->f[vertices.halo.atom_of(s)], by = kick * vertices.inverse_mass[s];
     vertices.v[s].x += by * f[0];
     vertices.v[s].y += by * f[1];
     vertices.v[s].z += by * f[2];

@@ -14,6 +14,7 @@
 #include "core/pbd/constraint_errors.h"
 #include "core/pbd/substep_groups.h"
 #include "core/pbd/substep_length.h"
+#include "lammps_util/replaced_velocities.h"
 #include "pointers.h"
 
 #include <string>
@@ -45,9 +46,10 @@ class Substepping : protected Pointers {
 
   // owner: the fix, for warnings
   Substepping(LAMMPS *lmp_, std::string owner_, const Options &options_,
-              ClothConstraints &constraints_, ClothVertices &vertices_) :
+              ClothConstraints &constraints_, ClothVertices &vertices_,
+              const ReplacedVelocities &velocities_) :
       Pointers(lmp_), owner(std::move(owner_)), options(options_), constraints(constraints_),
-      vertices(vertices_)
+      vertices(vertices_), velocities(velocities_)
   {
   }
 
@@ -65,8 +67,8 @@ class Substepping : protected Pointers {
   // summed where they are wanted
   void begin_step(double dt, int substeps, const std::vector<SolverCoupling *> &, HolderForces &);
   int substeps() const { return n_substeps; }
-  // for which forces act in the step that has begun, over its length
-  double part_with_forces() const;
+  // for which forces act on a vertex in the step that has begun, over its length
+  double part_with_forces(int slot) const;
   const std::vector<SolverCoupling *> &present() const { return *couplings; }
   double substep_dt() const { return step_dt / n_substeps; }
 
@@ -99,6 +101,7 @@ class Substepping : protected Pointers {
   const Options &options;
   ClothConstraints &constraints;
   ClothVertices &vertices;
+  const ReplacedVelocities &velocities;
   const std::vector<SolverCoupling *> *couplings = nullptr;    // of this step
   HolderForces *holders = nullptr;
   double step_dt = 0.0;
@@ -111,15 +114,15 @@ class Substepping : protected Pointers {
   int hinges_for = 1;    // so many substeps are hinges projected in this one; 0: not at all
   bool warned = false;
   int steps_missed = 0;    // in which contact missed much, since it last missed little
-  bool started = false;    // velocities are those of half a step ago, see direction start
+  bool started = false;    // `length` follows from steps
 
   double inv_dt_sq(double substeps = 1.0) const;
   void begin_substep(int n);
   void sweep();
   bool is_done();
   void end_substep();
-  double first_kick() const;
-  void apply_forces(double dt);
+  double first_kick(int slot) const;
+  void apply_forces(double dtf, bool first);
   void predict(bool last);
   void set_velocities();
   void damp(int substeps);

@@ -150,7 +150,7 @@ void ContactGuarantee::push_apart()
     mesh.end[s] += mesh.w[s] * masses.impulse[s];
     const int i = mesh.atom_of(s);
     for (int d = 0; d < 3; d++) atom->x[i][d] = mesh.end[s][d];
-    if (mesh.is_particle(s)) mesh.moved.push_back(i);
+    if (mesh.is_particle(s)) mesh.step_start.moved.push_back(i);
   }
   mesh.halo.forward_positions(0, mesh.end.data());
 }

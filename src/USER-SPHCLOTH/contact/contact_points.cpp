@@ -39,7 +39,7 @@ void ContactPoints::push(const std::vector<Vec3> &impulse)
     if (impulse[slot].isZero(0.0)) return;
     point.displacement += mesh.w_solver[slot] * impulse[slot];
     mesh.end[slot] = point.from + point.displacement;
-    point.touched = true;
+    point.touched = point.moved = true;
   });
 }
 
@@ -55,14 +55,15 @@ void ContactPoints::push_velocities(const std::vector<Vec3> &impulse)
   for_all([&](Point &point, int slot) { point.velocity += mesh.w_solver[slot] * impulse[slot]; });
 }
 
-// Pores may have moved a particle, too: then both add what they do.
+// Pores may have moved a particle, too: then both add what they do.  One that was pushed and leaves
+// with its velocity of before has moved: its position keeps the push.
 
 void ContactPoints::end_step(Atom *atom)
 {
   const bool adds = mesh.has_pores();
   for_all([&](const Point &point, int slot) {
     const int i = mesh.atom_of(slot);
-    if (point.velocity != point.velocity_before) mesh.moved.push_back(i);
+    if (point.moved) mesh.step_start.moved.push_back(i);
     for (int d = 0; d < 3; d++) {
       atom->v[i][d] += point.velocity[d] - point.velocity_before[d];
       atom->x[i][d] = adds ? atom->x[i][d] + (mesh.end[slot][d] - point.ahead[d])

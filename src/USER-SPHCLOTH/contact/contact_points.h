@@ -43,6 +43,7 @@ class ContactPoints {
     Vec3 ahead;    // where it would go
     double path = 0.0;
     bool touched = false;    // in this substep
+    bool moved = false;    // in this step
   };
 
   MovingTriangles &mesh;

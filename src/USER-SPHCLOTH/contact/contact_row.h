@@ -33,6 +33,7 @@ struct alignas(64) ContactRow {
   sphcloth::PairKind kind;
   Meeting meeting;
   bool active = false;    // in this substep
+  bool in_corner = false;    // of a particle on two faces
 
   ContactRow(const ContactPair &pair, const std::array<double, 4> &weight_, const Vec3 &normal_,
              double gap_) :
@@ -90,17 +91,27 @@ class SplitMasses {
   // 0 if nothing can move; a row that was not counted counts itself
   double of(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
-    double inverse = 0.0;
+    const double inverse = split(row, 0, row.share, shares, inverse_mass);
+    return inverse > 0.0 ? row.share / inverse : 0.0;
+  }
+  // without the first member, inverse
+  double inverse_of_others(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
+    return row.share > 0.0 ? split(row, 1, row.share, shares, inverse_mass) / row.share : 0.0;
+  }
+
+  // with other rows, of what can move
+  bool are_shared(const ContactRow &row, const std::vector<double> &inverse_mass) const
+  {
     for (int k = 0; k < 4; k++) {
       const int s = row.slots[k];
-      const double weight = std::fabs(row.weight[k]);
-      inverse += inverse_mass[s] * weight * std::max(row.share * weight, shares[s][0]);
+      if (inverse_mass[s] > 0.0 && shares[s][0] > row.share * std::fabs(row.weight[k])) return true;
     }
-    return inverse > 0.0 ? row.share / inverse : 0.0;
+    return false;
   }
 
   // The same by load, so that a row that hardly pushes hardly counts: what rows push more in a
-  // substep is added.  Sharing is collective.
+  // substep is added, also behind sharing, which sums what all ranks have so far.  Collective.
   void clear_loads() { clear(loads); }
   void add_load(const ContactRow &row, double load)
   {
@@ -108,15 +119,21 @@ class SplitMasses {
   }
   void share_loads(VertexHalo &halo)
   {
-    halo.reverse_add(0, loads.data());
-    halo.forward(0, loads.data());
+    of_all_ranks = loads;
+    halo.reverse_add(0, of_all_ranks.data());
+    halo.forward(0, of_all_ranks.data());
   }
   double by_load(const ContactRow &row, const std::vector<double> &inverse_mass) const
   {
-    double inverse = 0.0;
-    for (int k = 0; k < 4; k++)
-      inverse += inverse_mass[row.slots[k]] * std::fabs(row.weight[k]) * loads[row.slots[k]][0];
-    return inverse > 0.0 ? row.normal_correction / inverse : 0.0;
+    const double load = row.normal_correction,
+                 inverse = split(row, 0, load, of_all_ranks, inverse_mass);
+    return inverse > 0.0 ? load / inverse : 0.0;
+  }
+  double inverse_of_others_by_load(const ContactRow &row,
+                                   const std::vector<double> &inverse_mass) const
+  {
+    const double load = row.normal_correction;
+    return load > 0.0 ? split(row, 1, load, of_all_ranks, inverse_mass) / load : 0.0;
   }
 
   void clear_impulses() { clear(impulse); }
@@ -125,10 +142,23 @@ class SplitMasses {
     for (int k = 0; k < 4; k++) impulse[row.slots[k]] += row.weight[k] * by;
   }
 
-  double bytes() const { return sphcloth::bytes_of(impulse, shares, loads); }
+  double bytes() const { return sphcloth::bytes_of(impulse, shares, loads, of_all_ranks); }
 
  private:
-  std::vector<Vec3> shares, loads;    // by slot, in [0]
+  std::vector<Vec3> shares, loads, of_all_ranks;    // by slot, in [0]; the last of loads
+
+  // inverse masses from the member `first` on, each times what all rows have of it
+  static double split(const ContactRow &row, int first, double part,
+                      const std::vector<Vec3> &of_all, const std::vector<double> &inverse_mass)
+  {
+    double inverse = 0.0;
+    for (int k = first; k < 4; k++) {
+      const int s = row.slots[k];
+      const double weight = std::fabs(row.weight[k]);
+      inverse += inverse_mass[s] * weight * std::max(part * weight, of_all[s][0]);
+    }
+    return inverse;
+  }
 
   // as one block of numbers: in every pass, of all slots
   void clear(std::vector<Vec3> &of) const

@@ -9,7 +9,6 @@
 #include "contact/contact_rows.h"
 
 #include "atom.h"
-#include "core/contact/contact_impulse.h"
 #include "core/util/bytes.h"
 #include "force.h"
 
@@ -35,19 +34,17 @@ static constexpr double ROUND_OFF = 1e-6;
 // the most of them where it is all of it.
 static constexpr double MISSING = 0.1;
 static constexpr int MAX_PASSES = 40;
+static constexpr double NONE = -1.0;
 
 // Rows share the mass of a vertex, so that one pass over many at a vertex leaves a part of each gap
 // missing, which heavy particles then get back behind the solver, as compression.
 static constexpr int PASSES_OF_PARTICLES = 3;
-static constexpr double NONE = -1.0;
 
 // By which, of the thickness, the two sides of a row may move past one another before their closest
 // points are found anew; until then its distance is along its normal.  At an edge or a vertex that
 // turns, and rows that lean too far do not push.  And of the distance to contact.
 static constexpr double MAX_SLIDE = 0.1, MAX_SLIDE_LEANING = 0.01, MAX_SLIDE_ASIDE = 0.05,
                         MAX_SLIDE_APART = 0.5;
-
-void ContactRows::rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
 bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, double dt)
 {
@@ -73,10 +70,11 @@ bool ContactRows::begin_step(const Vertex *step_start, const Vertex *step_end, d
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all == NONE) return false;
   passes = all < MISSING ? 1 : static_cast<int>(MAX_PASSES * std::min(all, 1.0));
-  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
   too_near = all > 0.0;
   points.begin_step(dt);
   start_rows();
+  passes_of_active = of_particles.none() ? passes : std::max(passes, PASSES_OF_PARTICLES);
+  find_corners();
   path = 0.0;
   std::fill(received.begin(), received.end(), Vec3::Zero());
   return true;
@@ -172,14 +170,6 @@ double ContactRows::max_slide(const ContactRow &row) const
                   MAX_SLIDE_APART * (row.distance - row.gap));
 }
 
-// How far both sides may move before the row may push, or its closest points are found anew.
-
-double ContactRows::asleep(const ContactRow &row, double distance, double slid) const
-{
-  const double room = max_slide(row) - slid;
-  return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
-}
-
 void ContactRows::begin_substep(const Vertex *vertices, const Vertex *v, double dt)
 {
   const WallTimer clock(mesh.counts.seconds);
@@ -207,9 +197,10 @@ void ContactRows::project(Vertex *displacement)
     masses.clear_impulses();
     wake(pass >= passes);
     for_ahead(awake, [this](int k) {
-      project_normal(k);
-      if (rows[k].active && rules_of(rows[k]).friction > 0.0) project_friction(k);
+      if (!rows[k].in_corner) project_normal(k);
     });
+    for (const Corner &which : corners) project_corner(which);
+    if (pass == passes_of_active - 1 && rules.max_friction() > 0.0) project_friction();
     push_positions(displacement);
     if (pass < passes_of_active - 1) load_ghosts(Vec3::Zero());
     points.push(masses.impulse);
@@ -232,16 +223,6 @@ void ContactRows::push_positions(Vertex *displacement)
     max_sq = std::max(max_sq, way.squaredNorm());
   }
   path += std::sqrt(max_sq);
-}
-
-void ContactRows::push_velocities(Vertex *v)
-{
-  mesh.halo.reverse_add(0, masses.impulse.data());
-  for (int s = 0; s < mesh.halo.n_owned(); s++) {
-    if (masses.impulse[s].isZero(0.0)) continue;
-    add(v[s], mesh.w_solver[s] * masses.impulse[s]);
-    received[s] += masses.impulse[s];
-  }
 }
 
 // What all vertices have moved together, in about this direction before, does not count.
@@ -279,10 +260,10 @@ void ContactRows::load_ghosts(const Vec3 &aside)
 // on what wakes it.  One that pushes has those of this substep: with older ones it would feed the
 // vibration of vertices that are light beside what they bear.
 
-void ContactRows::project_normal(int k)
+bool ContactRows::measure(int k, Vec3 &vector)
 {
   ContactRow &row = rows[k];
-  Vec3 vector = row.relative(mesh.end);
+  vector = row.relative(mesh.end);
   double slid = (vector - row.distance * row.normal).norm();
   const bool starts = !row.active && slid > 0.0 && row.pushes(vector.dot(row.normal));
   if (slid > max_slide(row) || starts) {
@@ -290,25 +271,9 @@ void ContactRows::project_normal(int k)
     slid = 0.0;
   }
   const double distance = vector.dot(row.normal);
-  if (!row.pushes(distance)) {
-    awake_from[k] = path_of(k) + asleep(row, distance, slid);
-    return;
-  }
-  if (!row.active) {
-    if (rules_of(row).restitution > 0.0)
-      details[k].speed_before = row.relative(velocity).dot(row.normal);
-    row.active = true;
-    active.push_back(k);
-  }
-  if (row.meeting == Meeting::PARTICLE) {
-    mesh.counts.contacts++;
-    mesh.counts.deepest = std::max(mesh.counts.deepest, row.gap - distance);
-  } else
-    mesh.counts.cloth_contacts++;
-  const double step = std::max((row.gap - distance) * row.mass, -row.normal_correction);
-  row.normal_correction += step;
-  masses.apply(row, step * row.normal);
-  masses.add_load(row, step);
+  if (row.pushes(distance)) return true;
+  awake_from[k] = path_of(k) + asleep(row, distance, slid);
+  return false;
 }
 
 // They turn little: where their direction turns round inside both, one side has passed the other.
@@ -361,13 +326,6 @@ double ContactRows::share(int k, const ClosestPoints &at) const
       share_of_leaning(leaning_beside(members[1], at.vector, {p, q}));
 }
 
-// of a point into other triangles
-
-double ContactRows::leaning_of(int k, const ClosestPoints &at) const
-{
-  return mesh.leaning_into_others(details[k].members[1], at, LEANS_AWAY, rows[k].slots[0]);
-}
-
 // into a triangle at an edge whose third vertex is none of the other side
 
 double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
@@ -386,55 +344,18 @@ double ContactRows::leaning_beside(int e, const Vec3 &from_nearest,
   return largest > 0.0 ? largest / from_nearest.norm() : 0.0;
 }
 
-// Coulomb friction against the sliding of this substep
+// Coulomb friction against the sliding of this substep.  The rows that push have all of the mass:
+// what they leave of the sliding is never removed.
 
-void ContactRows::project_friction(int k)
+ContactRows::Vec3 ContactRows::rub(int k, const Vec3 &slipped)
 {
   const ContactRow &row = rows[k];
+  if (rules_of(row).friction == 0.0) return Vec3::Zero();
   Vec3 &correction = details[k].friction_correction;
-  Vec3 slip = row.relative(mesh.end) - row.relative(from);
-  slip -= slip.dot(row.normal) * row.normal;
-  const Vec3 target =
-      clamp_length(correction - row.mass * slip, rules_of(row).friction * row.normal_correction);
-  masses.apply(row, target - correction);
-  correction = target;
-}
-
-void ContactRows::end_substep(Vertex *v, double dt)
-{
-  const WallTimer clock(mesh.counts.seconds);
-  points.end_substep(dt);
-  masses.share_loads(mesh.halo);
-  load_velocities(v);
-  masses.clear_impulses();
-  for_ahead(active, [&](int k) { solve_velocity(k, dt); });
-  push_velocities(v);
-  points.push_velocities(masses.impulse);
-}
-
-void ContactRows::solve_velocity(int k, double dt)
-{
-  ContactRow &row = rows[k];
-  const ContactRules &of_row = rules_of(row);
-  if (row.normal_correction > 0.0) {
-    ContactMotion motion{row.relative(velocity), row.normal, 0.0,
-                         masses.by_load(row, mesh.w_solver)};
-    ExchangedImpulse so_far{row.normal_correction / dt};
-    if (row.meeting == Meeting::PARTICLE) mesh.counts.passed_on += so_far.normal;
-    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
-    if (of_row.friction > 0.0) so_far.friction = details[k].friction_correction / dt;
-    masses.apply(row, contact_impulse(motion, so_far, of_row.restitution, of_row.friction));
-  }
-  row.active = false;
-  row.normal_correction = 0.0;
-  if (of_row.friction > 0.0) details[k].friction_correction.setZero();
-}
-
-void ContactRows::load_velocities(const Vertex *v)
-{
-  points.store_velocities(velocity);
-  for (int s = 0; s < mesh.halo.n_owned(); s++) velocity[s] = vector_of(v[s]) + mesh.drift[s];
-  mesh.halo.forward_velocities(0, velocity.data());
+  const Vec3 sliding = slipped - slipped.dot(row.normal) * row.normal, before = correction;
+  correction = clamp_length(before - masses.by_load(row, mesh.w_solver) * sliding,
+                            rules_of(row).friction * row.normal_correction);
+  return correction - before;
 }
 
 void ContactRows::end_step()
@@ -496,5 +417,5 @@ double ContactRows::memory_usage() const
 {
   return masses.bytes() + points.bytes() +
       bytes_of(rows, slot_of_particle, details, awake_from, awake, active, from, ghosts_before,
-               velocity, received);
+               velocity, received, corners, corner.rows);
 }

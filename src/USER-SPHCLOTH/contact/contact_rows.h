@@ -9,6 +9,7 @@
 #include "cloth/solver_coupling.h"
 #include "contact/candidate_pairs.h"
 #include "contact/cloth_candidates.h"
+#include "contact/contact_corner.h"
 #include "contact/contact_points.h"
 #include "contact/contact_row.h"
 #include "core/util/simd.h"
@@ -29,7 +30,8 @@ class ContactRows : public SolverCoupling, protected Pointers {
   {
   }
 
-  void rebuild();    // after each list build
+  // after each list build
+  void rebuild() { received.assign(mesh.halo.n_owned(), Vec3::Zero()); }
 
   bool begin_step(const sphcloth::Vertex *start, const sphcloth::Vertex *end, double dt) override;
   void begin_substep(const sphcloth::Vertex *start, const sphcloth::Vertex *v, double dt) override;
@@ -64,6 +66,11 @@ class ContactRows : public SolverCoupling, protected Pointers {
   std::vector<Vec3> from, velocity;    // vertices at the start of the substep
   std::vector<Vec3> ghosts_before;
   std::vector<Vec3> received;    // by owned vertices in this step, mass times velocity
+  struct Corner {    // rows of a particle on two faces
+    int begin, end;
+  };
+  std::vector<Corner> corners;    // in this step
+  ContactCorner corner;    // of those, the one that is solved
   const sphcloth::Vertex *substep_start = nullptr;
   int passes = 1, passes_of_active = 1;    // of a projection, in this step
   bool too_near = false;    // is some cloth to cloth, on any rank?
@@ -95,20 +102,25 @@ class ContactRows : public SolverCoupling, protected Pointers {
   void add_row(const ContactPair &, const sphcloth::ClosestPoints &at_start, double gap);
   void start_rows();
   double max_slide(const ContactRow &) const;
-  double asleep(const ContactRow &, double distance, double slid) const;
+  // how far both sides may move before the row may push, or its closest points are found anew
+  double asleep(const ContactRow &row, double distance, double slid) const
+  {
+    const double room = max_slide(row) - slid;
+    return row.share > 0.0 ? std::min(room, distance - row.gap) : room;
+  }
   // Those of obstacles are on their way already.
   void find_drift(double dt)
   {
     mesh.step_start.note_origins(dt);
     mesh.find_drift(dt);
     for (int s = 0; s < mesh.halo.n_owned(); s++)
-      if (edges.is_obstacle(s)) mesh.drift[s].setZero();
+      if (edges.is_obstacle(s)) mesh.forget_drift(s);
   }
   static Vec3 vector_of(const sphcloth::Vertex &p) { return {p.x, p.y, p.z}; }
   // of an owned vertex, where the solver has it so long before the end of the step
   Vec3 before(int slot, const sphcloth::Vertex &in_solver, double until_end) const
   {
-    return vector_of(in_solver) - until_end * mesh.drift[slot];
+    return vector_of(in_solver) - until_end * mesh.drift_of(slot);
   }
   Vec3 end_of(int slot, const sphcloth::Vertex *displacement) const
   {
@@ -128,15 +140,93 @@ class ContactRows : public SolverCoupling, protected Pointers {
       visit(some[n]);
     }
   }
-  void project_normal(int row);
-  void project_friction(int row);
+  bool measure(int row, Vec3 &vector);    // from the second side to the first; does it push?
+  void activate(int k)
+  {
+    ContactRow &row = rows[k];
+    if (rules_of(row).restitution > 0.0)
+      details[k].speed_before = row.relative(velocity).dot(row.normal);
+    row.active = true;
+    active.push_back(k);
+  }
+  // the impulse, mass times length
+  double push(ContactRow &row, double mass, double distance)
+  {
+    const double step = std::max((row.gap - distance) * mass, -row.normal_correction);
+    row.normal_correction += step;
+    masses.add_load(row, step);
+    return step;
+  }
+  void count(const ContactRow &row, double distance)
+  {
+    if (row.meeting == Meeting::PARTICLE) {
+      mesh.counts.contacts++;
+      mesh.counts.deepest = std::max(mesh.counts.deepest, row.gap - distance);
+    } else
+      mesh.counts.cloth_contacts++;
+  }
+  void project_normal(int k)
+  {
+    Vec3 vector;
+    if (!measure(k, vector)) return;
+    ContactRow &row = rows[k];
+    const double distance = vector.dot(row.normal);
+    if (!row.active) activate(k);
+    count(row, distance);
+    masses.apply(row, push(row, row.mass, distance) * row.normal);
+  }
+  // in this substep
+  Vec3 slip(const ContactRow &row) const { return row.relative(mesh.end) - row.relative(from); }
+  Vec3 rub(int row, const Vec3 &slipped);
+  void find_corners();
+  void project_corner(const Corner &);
+  void project_friction(const Corner &);
+  // against what is left of sliding when all push
+  void project_friction()
+  {
+    masses.share_loads(mesh.halo);
+    for_ahead(active, [this](int k) {
+      if (!rows[k].in_corner) masses.apply(rows[k], rub(k, slip(rows[k])));
+    });
+    for (const Corner &which : corners) project_friction(which);
+  }
+  void solve_velocities(const Corner &);
   Vec3 find_closest_points(int row);
   Vec3 normal_of(const ContactRow &, const sphcloth::ClosestPoints &) const;
   double share(int row, const sphcloth::ClosestPoints &) const;
-  double leaning_of(int row, const sphcloth::ClosestPoints &) const;
+  // of a point into other triangles
+  double leaning_of(int k, const sphcloth::ClosestPoints &at) const
+  {
+    return mesh.leaning_into_others(details[k].members[1], at, sphcloth::LEANS_AWAY,
+                                    rows[k].slots[0]);
+  }
   double leaning_beside(int edge, const Vec3 &from_nearest,
                         const std::array<int, 2> &other_side) const;
-  void solve_velocity(int row, double dt);
+  // in this substep, by the projection
+  sphcloth::ExchangedImpulse exchanged_by(int k) const
+  {
+    sphcloth::ExchangedImpulse so_far{rows[k].normal_correction / substep_dt};
+    if (rules_of(rows[k]).friction > 0.0)
+      so_far.friction = details[k].friction_correction / substep_dt;
+    return so_far;
+  }
+  Vec3 velocity_impulse(int k, const Vec3 &relative, sphcloth::ExchangedImpulse &so_far) const
+  {
+    const ContactRow &row = rows[k];
+    const ContactRules &of_row = rules_of(row);
+    sphcloth::ContactMotion motion{relative, row.normal, 0.0, masses.by_load(row, mesh.w_solver)};
+    if (of_row.restitution > 0.0) motion.speed_before = details[k].speed_before;
+    return sphcloth::contact_impulse(motion, so_far, of_row.restitution, of_row.friction);
+  }
+  void release(int k)
+  {
+    ContactRow &row = rows[k];
+    if (row.meeting == Meeting::PARTICLE && row.normal_correction > 0.0)
+      mesh.counts.passed_on += row.normal_correction / substep_dt;
+    row.active = false;
+    row.normal_correction = 0.0;
+    if (rules_of(row).friction > 0.0) details[k].friction_correction.setZero();
+  }
   void push_held() const;
   void recover_gaps();
   void find_missing_gaps();

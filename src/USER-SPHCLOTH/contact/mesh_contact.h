@@ -25,7 +25,6 @@ class MeshContact : protected Pointers {
   MeshContact(const MeshContact &) = delete;    // phases refer to one another
   MeshContact &operator=(const MeshContact &) = delete;
 
-  MovingTriangles &mesh() { return triangles; }
   ContactRows &rows() { return contact_rows; }
   const MeshEdges &edges() const { return mesh_edges; }
 

@@ -62,12 +62,14 @@ void MovingTriangles::load_positions()
 
 void MovingTriangles::find_drift(double dt)
 {
+  any_drift = false;
   for (int s = 0; s < halo.n_owned(); s++) {
     const int i = halo.atom_of(s);
     const Sweep sweep = sweep_of(i);
     Vec3 expected = sweep.start;
     if (w[s] == 0.0) expected += dt * Vec3(atom->v[i]);
     drift[s] = (sweep.end - expected) / dt;
+    any_drift = any_drift || drift[s] != Vec3::Zero();
   }
 }
 
@@ -142,5 +144,5 @@ void MovingTriangles::push_held(int i, const Vec3 &impulse)
 double MovingTriangles::memory_usage() const
 {
   return halo.memory_usage() +
-      bytes_of(first, incident, start, end, w, w_solver, drift, moved, particles, entry);
+      bytes_of(first, incident, start, end, w, w_solver, drift, particles, entry);
 }

@@ -28,10 +28,10 @@ class MovingTriangles : public TriangleSet {
   std::vector<Vec3> start, end;    // of the step so far, by slot, those of particles too
   std::vector<double> w;    // inverse masses by slot, 0 of vertices that are held
   std::vector<double> w_solver;    // the same, but attached vertices take part
-  // Velocity with which something that gives none has moved owned vertices since the last step: in
-  // the steps of their solver they are on that way as particles are.
-  std::vector<Vec3> drift;
-  std::vector<int> moved;    // own particles that contact moved in this step, some repeated
+  // Velocity with which something that gives none has moved an owned vertex since the last step: in
+  // the steps of its solver it is on that way as particles are.
+  Vec3 drift_of(int slot) const { return any_drift ? drift[slot] : Vec3(Vec3::Zero()); }
+  void forget_drift(int slot) { drift[slot].setZero(); }
 
   // after each list build; whole triangles are seen as far as this
   void rebuild(double max_distance);
@@ -106,6 +106,8 @@ class MovingTriangles : public TriangleSet {
 
  private:
   std::vector<int> entry;    // slot of an owned atom, or -1
+  std::vector<Vec3> drift;
+  bool any_drift = false;    // of this rank; most meshes have none, and read none
 
   int slot_of_particle(int i);
 };

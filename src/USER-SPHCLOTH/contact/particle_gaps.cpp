@@ -93,7 +93,7 @@ bool ParticleGaps::put_back(int particle)
         ContactRow(pair, {1.0, -gap.weight[0], -gap.weight[1], -gap.weight[2]}, gap.normal, 0.0),
         gap.max_approach, too_near);
   }
-  if (moved) mesh.moved.push_back(particle);
+  if (moved) mesh.step_start.moved.push_back(particle);
   return hit;
 }
 

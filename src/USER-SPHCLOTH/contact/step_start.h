@@ -35,9 +35,13 @@ class StepStart : protected Pointers {
   // moves them; not again until the next step.
   void note_origins(double dt);
   Vec3 origin_of(int i) const { return origins[i]; }
+  // owned particles that contact or pores moved in this step, some repeated
+  std::vector<int> moved;
 
   void take_positions();    // the next step starts where atoms are
   void rebuild();    // after each list build
+
+  double bytes() const { return sphcloth::bytes_of(origins, moved); }    // beside the columns
 
  private:
   std::vector<Vec3> origins;

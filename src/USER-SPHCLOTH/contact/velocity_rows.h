@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Velocities behind the solver: both sides of what was pushed apart lose their approach.
 // What friction slows has moved with less velocity since the contact began.
+//
+// One pass over rows that share a mass removes a part of each approach, and the rest of it looks to
+// friction like sliding along the other row.  With restitution or friction rows are repeated until
+// each has its speed along the normal, and then with friction: Moreau, Unilateral contact and dry
+// friction in finite freedom dynamics, CISM Courses 302 (1988).
 
 #ifndef SPHCLOTH_CONTACT_VELOCITY_ROWS_H
 #define SPHCLOTH_CONTACT_VELOCITY_ROWS_H
@@ -38,6 +43,10 @@ class VelocityRows : protected Pointers {
   struct Pushed {
     ContactRow row;
     double max_approach, too_near;
+    double mass = 0.0, speed_before = 0.0;    // effective, and along the normal
+    double change = 0.0;    // of that speed that is due
+    double normal = 0.0;    // impulse so far
+    Vec3 friction = Vec3::Zero();    // the same
     Vec3 taken_back = Vec3::Zero();
   };
 
@@ -48,8 +57,14 @@ class VelocityRows : protected Pointers {
   std::vector<Vec3> velocity;    // by slot
 
   void load_velocities();
-  void push(Pushed &);
-  Vec3 slid_too_far(const Pushed &, double mass, double approach, double max_friction) const;
+  void start_rows();
+  void start(Pushed &) const;
+  bool are_repeated() const;
+  void pass_until_done(bool rubs, int max_passes);
+  double pass(bool rubs);
+  double push(Pushed &, bool rubs);
+  void apply_impulses();
+  Vec3 slid_too_far(const Pushed &) const;
   void take_back(const Pushed &);
 };
 

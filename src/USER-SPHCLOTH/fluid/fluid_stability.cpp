@@ -90,7 +90,7 @@ double FluidStability::find_share(int i) const
   const int type = atom->type[i];
   const double gap = materials.gap_to_pressure(type, atom->rho[i]);
   if (gap <= materials.density_rounding(type)) return 1.0;
-  const double ahead = STEPS_AHEAD * update->dt / time_to_cross(gap, atom->drho[i]);
+  const double ahead = STEPS_AHEAD * update->dt / time_at_rate(gap, atom->drho[i]);
   return std::min(1.0, ahead * ahead);
 }
 

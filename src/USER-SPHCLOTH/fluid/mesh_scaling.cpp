@@ -77,32 +77,32 @@ void MeshScaling::carry(double dt, const OfFluid &kick, const Take &take)
   for (std::size_t m = 0; m < n_meshes; m++) meshes[m].of->sum_up(meshes[m].sums, take);
 }
 
-void MeshScaling::give(double dt, double part_of_step, const OfFluid &kick,
-                       const std::function<const Vec3 *(int)> &changed,
+void MeshScaling::give(double dt, const OfFluid &kick,
+                       const std::function<VertexChange(int)> &change,
                        const std::function<void(int, const Vec3 &)> &give)
 {
   clear_sums();
   for (std::size_t m = 0; m < n_meshes; m++) {
     Mesh &mesh = meshes[m];
     VertexHalo &halo = mesh.of->halo();
-    mesh.has_changed.assign(halo.n_slots(), 0.0);
-    for (int s = 0; s < halo.n_owned(); s++)
-      if (const Vec3 *change = changed(halo.atom_of(s))) {
-        mesh.sums[s] = *change;
-        mesh.has_changed[s] = 1.0;
-      }
+    mesh.parts.assign(halo.n_slots(), 0.0);
+    for (int s = 0; s < halo.n_owned(); s++) {
+      const VertexChange of_vertex = change(halo.atom_of(s));
+      mesh.sums[s] = of_vertex.velocity;
+      mesh.parts[s] = of_vertex.part_of_step;
+    }
     halo.forward(0, mesh.sums.data());
-    halo.forward(0, mesh.has_changed);
+    halo.forward(0, mesh.parts);
   }
   for (const Spring &s : springs) {
     const Mesh &mesh = meshes[s.mesh];
     const FluidKick &of_fluid = kick(s.fluid);
     double impulse = 0.0;
     for (int q = 0; q < 3; q++)
-      if (const int v = s.vertices[q]; mesh.has_changed[v] != 0.0)
+      if (const int v = s.vertices[q]; mesh.parts[v] != 0.0)
         impulse += s.weight[q] *
             (s.direction.dot(mesh.sums[v]) -
-             part_of_step * of_fluid.along(s.direction, s.motion[q]));
+             mesh.parts[v] * of_fluid.along(s.direction, s.motion[q]));
     if (impulse == 0.0) continue;
     give(s.fluid, MassScaling::SHARE * dt * dt * s.stiffness * impulse * s.direction);
   }
@@ -111,6 +111,6 @@ void MeshScaling::give(double dt, double part_of_step, const OfFluid &kick,
 double MeshScaling::bytes() const
 {
   double sum = bytes_of(springs);
-  for (const Mesh &mesh : meshes) sum += bytes_of(mesh.sums, mesh.mixed, mesh.has_changed);
+  for (const Mesh &mesh : meshes) sum += bytes_of(mesh.sums, mesh.mixed, mesh.parts);
   return sum;
 }

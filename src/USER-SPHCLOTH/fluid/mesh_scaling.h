@@ -18,6 +18,14 @@
 
 namespace LAMMPS_NS {
 
+// By what the velocity of a vertex changes in a step, and for which part of that the forces act on
+// it; 0: it does not change.
+
+struct VertexChange {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  double part_of_step = 0.0;
+};
+
 class MeshScaling {
  public:
   using Vec3 = Eigen::Vector3d;
@@ -35,10 +43,8 @@ class MeshScaling {
   void sum_stiffness(const std::function<void(int owned_atom, const Mat3 &)> &take);
   // take(owned vertex, sum of a dt^2 d_kj e (e.dv_k + phi_k u_kj)), from kick(k); collective
   void carry(double dt, const OfFluid &kick, const Take &take);
-  // give(k, impulse) to the fluid, where changed(owned vertex) is what changes its velocity, or
-  // null, and kicks act for a part of the step; collective
-  void give(double dt, double part_of_step, const OfFluid &kick,
-            const std::function<const Vec3 *(int)> &changed,
+  // give(k, impulse) to the fluid, from change(owned vertex); collective
+  void give(double dt, const OfFluid &kick, const std::function<VertexChange(int)> &change,
             const std::function<void(int fluid, const Vec3 &impulse)> &give);
 
   double bytes() const;
@@ -54,7 +60,7 @@ class MeshScaling {
   struct Mesh {
     BoundaryMesh *of = nullptr;
     std::vector<Vec3> sums, mixed;    // by slot
-    std::vector<double> has_changed;
+    std::vector<double> parts;    // of the step
   };
   std::vector<Spring> springs;
   std::vector<Mesh> meshes;    // buffers are kept from evaluation to evaluation

@@ -52,8 +52,7 @@ void ScaledMass::find(Fluid &core, const Particles &p, FluidStability &stability
   for (FluidBoundary *boundary : boundaries) boundary->add_springs(meshes, strength);
   meshes.sum_stiffness(
       [this](int i, const Eigen::Matrix3d &stiffness) { stiffnesses[row_of(i)] += stiffness; });
-  changes.resize(stiffnesses.size());
-  is_changed.assign(stiffnesses.size(), 0);
+  changes.assign(stiffnesses.size(), {});
 }
 
 // those that meshes alone press on have rows behind those with pairs
@@ -125,12 +124,11 @@ ScaledMass::Vec3 ScaledMass::carried(int n, double dt) const
   return sum;
 }
 
-void ScaledMass::give(int n, const Vec3 &change, double dt, double part_of_step)
+void ScaledMass::give(int n, const VertexChange &change, double dt)
 {
   changes[n] = change;
-  is_changed[n] = 1;
   if (n >= vertex_pairs.size()) return;
-  give_to_fluid(vertex_pairs, n, dt, change, part_of_step, each_of(kicks),
+  give_to_fluid(vertex_pairs, n, dt, change.velocity, change.part_of_step, each_of(kicks),
                 [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
 }
 
@@ -142,16 +140,13 @@ int ScaledMass::held_in_step(int i, double dt) const
   return held.axes(atom->mask[i], before.data(), atom->f[i]);
 }
 
-void ScaledMass::move_fluid(double dt, double part_of_step)
+void ScaledMass::move_fluid(double dt)
 {
   meshes.give(
-      dt, part_of_step, each_of(kicks),
-      [this](int vertex) -> const Vec3 * {
-        const int n = rows[vertex];
-        return n >= 0 && is_changed[n] ? &changes[n] : nullptr;
-      },
+      dt, each_of(kicks),
+      [this](int vertex) { return rows[vertex] < 0 ? VertexChange() : changes[rows[vertex]]; },
       [this](int fluid, const Vec3 &impulse) { impulses[fluid] += impulse; });
-  std::fill(is_changed.begin(), is_changed.end(), 0);    // each cloth of a step for itself
+  std::fill(changes.begin(), changes.end(), VertexChange());    // each cloth of a step for itself
   if (any_pairs) ghosts.add_from_ghosts(GhostData::IMPULSE);
   for (const int i : beside) {
     if (i < atom->nlocal) {
@@ -206,5 +201,5 @@ double ScaledMass::bytes() const
 {
   return vertex_pairs.bytes() + meshes.bytes() +
       bytes_of(gradients, strength, normals, beside, rows, stiffnesses, carried_by_meshes, changes,
-               is_changed, kicks, impulses);
+               kicks, impulses);
 }

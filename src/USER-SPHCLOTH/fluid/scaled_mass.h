@@ -55,11 +55,10 @@ class ScaledMass : protected Pointers {
   void find_kicks(double dt);
   // what the fluid beside a vertex gives to it then
   Vec3 carried(int n, double dt) const;
-  // The vertex of a row changes its velocity by this, where the forces of the fluid act for a part
-  // of the step: the fluid gets the rest.
-  void give(int n, const Vec3 &change, double dt, double part_of_step);
+  // what the vertex of a row does in a step; the fluid gets the rest
+  void give(int n, const VertexChange &change, double dt);
   // moves the fluid by what it was given; collective
-  void move_fluid(double dt, double part_of_step);
+  void move_fluid(double dt);
 
   static int ghost_size(GhostData);
   int pack(GhostData, int i, double *buf) const;
@@ -83,8 +82,7 @@ class ScaledMass : protected Pointers {
   std::vector<Eigen::Matrix3d> stiffnesses;    // of rows
   MeshScaling meshes;
   std::vector<Vec3> carried_by_meshes;    // of rows, in this step
-  std::vector<Vec3> changes;    // of rows, until the fluid is moved
-  std::vector<char> is_changed;
+  std::vector<VertexChange> changes;    // of rows, until the fluid is moved
   std::vector<sphcloth::FluidKick> kicks;    // of all atoms
   std::vector<Vec3> impulses;
 

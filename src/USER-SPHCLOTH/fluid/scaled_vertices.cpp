@@ -19,10 +19,9 @@ void ScaledVertices::init()
 
 bool ScaledVertices::on() const { return scaled && scaled->on(); }
 
-void ScaledVertices::scale_forces(double dt, double part_of_step)
+void ScaledVertices::scale_forces(double dt, const std::function<double(int)> &part_of_step)
 {
   step_dt = dt;
-  forces_act = part_of_step;
   scaled->find_kicks(dt);
   rows.clear();
   row_of_slot.assign(vertices.halo.n_owned(), -1);
@@ -36,7 +35,8 @@ void ScaledVertices::scale_forces(double dt, double part_of_step)
     auto f = Vec3::Map(atom->f[i]);
     const Vec3 change = mass.scaled(by * f, scaled->carried(n, dt));
     f = change / by;
-    rows.push_back({s, n, mass, part_of_step * change, Vec3::Zero(), Vec3::Zero()});
+    const double part = part_of_step(s);
+    rows.push_back({s, n, mass, part, part * change, Vec3::Zero(), Vec3::Zero()});
   }
 }
 
@@ -63,8 +63,8 @@ void ScaledVertices::project(Vertex *displacement)
 
 void ScaledVertices::move_fluid()
 {
-  for (const Row &row : rows) scaled->give(row.number, row.change, step_dt, forces_act);
-  scaled->move_fluid(step_dt, forces_act);
+  for (const Row &row : rows) scaled->give(row.number, {row.change, row.part_of_step}, step_dt);
+  scaled->move_fluid(step_dt);
 }
 
 double ScaledVertices::bytes() const { return bytes_of(row_of_slot, rows); }

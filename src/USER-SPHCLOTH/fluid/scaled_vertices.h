@@ -11,6 +11,7 @@
 #include "cloth/solver_coupling.h"
 #include "core/sph/mass_scaling.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -31,8 +32,8 @@ class ScaledVertices : public SolverCoupling, protected Pointers {
   bool on() const;
 
   // Makes the forces on vertices those that would move the vertices alone as the scaled ones move.
-  // Forces act for this part of the step.  Collective.
-  void scale_forces(double dt, double part_of_step);
+  // Forces act on them for these parts of the step.  Collective.
+  void scale_forces(double dt, const std::function<double(int slot)> &part_of_step);
 
   bool begin_step(const sphcloth::Vertex *, const sphcloth::Vertex *, double) override
   {
@@ -56,6 +57,7 @@ class ScaledVertices : public SolverCoupling, protected Pointers {
   struct Row {
     int slot, number;    // of the row of ScaledMass
     sphcloth::MassScaling mass;
+    double part_of_step;    // for which forces act
     Vec3 change;    // of the velocity in this step
     Vec3 expected;    // displacement of the substep as far as it is scaled
     Vec3 received;    // impulse in this step, from what constraints did
@@ -65,7 +67,7 @@ class ScaledVertices : public SolverCoupling, protected Pointers {
   ScaledMass *scaled = nullptr;
   std::vector<int> row_of_slot;
   std::vector<Row> rows;
-  double step_dt = 0.0, substep_dt = 0.0, forces_act = 1.0;
+  double step_dt = 0.0, substep_dt = 0.0;
 };
 
 }    // namespace LAMMPS_NS

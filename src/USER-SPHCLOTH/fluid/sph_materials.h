@@ -14,6 +14,7 @@
 #include "core/timestep/free_flight.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -117,12 +118,17 @@ class SPHMaterials : protected Pointers {
   {
     return (options.precision == sphcloth::Precision::DOUBLE ? 1e-9 : 1e-6) * types[i].eos.rho0;
   }
+  // up to which it is in free flight, but for rounding: none where there may be tension
+  double flight_density(int i) const
+  {
+    return options.tension ? -std::numeric_limits<double>::infinity() : types[i].eos.rho0;
+  }
   // Of a fluid of this density, 0 where it is under pressure or may be under tension: how much
   // denser it becomes in free flight before it is.
   double gap_to_pressure(int i, double rho) const
   {
-    const double rest = types[i].eos.rho0, rounding = density_rounding(i);
-    const bool free = !options.tension && sphcloth::flies(rho, rest, rounding);
+    const double rest = flight_density(i), rounding = density_rounding(i);
+    const bool free = sphcloth::flies(rho, rest, rounding);
     return free ? sphcloth::gap_to_pressure(rho, rest, rounding) : 0.0;
   }
   void set_lattice_mass(int i, double mass) { types[i].lattice_mass = mass; }

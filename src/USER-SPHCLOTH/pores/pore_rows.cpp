@@ -60,7 +60,7 @@ void PoreRows::load_displacements(const Vertex *displacement)
   VertexHalo &halo = mesh.set->halo;
   for (int s = 0; s < halo.n_owned(); s++)
     displaced[s] = Vec3(displacement[s].x, displacement[s].y, displacement[s].z) +
-        substep_dt * mesh.set->drift[s];
+        substep_dt * mesh.set->drift_of(s);
   halo.forward_displacements(0, displaced.data(), substep_dt);
 }
 
@@ -128,6 +128,7 @@ void PoreRows::end_step()
   for (std::size_t k = 0; k < rows.size(); k++) {
     const Row &row = rows[k];
     const int i = mesh.pairs[k].particle;
+    if (row.velocity != row.velocity_before) mesh.set->step_start.moved.push_back(i);
     for (int d = 0; d < 3; d++) {
       atom->x[i][d] += row.offset[d];
       atom->v[i][d] += row.velocity[d] - row.velocity_before[d];

@@ -52,19 +52,15 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
 
 void ParticleLimits::take_materials()
 {
-  const double never = -std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++) {
     FluidType &its = types[t];
-    motion.support[t] = its.support = fluid->support(t);
-    motion.rest[t] = never;
-    motion.rounding[t] = 0.0;
+    motion.support[t] = fluid->support(t);
     if (!fluid->is_fluid(t)) continue;
     its.eos = fluid->equation_of_state(t);
     its.sound = its.eos.sound_speed();
     its.at_boundary = std::sqrt(fluid->largest_pressure_factor(t));
     its.viscosity = fluid->viscosity(t);
-    if (fluid->options.tension) continue;
-    motion.rest[t] = its.eos.rho0;
+    motion.rest[t] = fluid->flight_density(t);
     motion.rounding[t] = fluid->density_rounding(t);
   }
 }
@@ -142,14 +138,14 @@ double ParticleLimits::shortest_sound_time() const
 {
   double shortest = std::numeric_limits<double>::infinity();
   for (int t = 1; t <= atom->ntypes; t++)
-    if (fluid->is_fluid(t)) shortest = std::min(shortest, 0.5 * types[t].support / types[t].sound);
+    if (fluid->is_fluid(t)) shortest = std::min(shortest, 0.5 * motion.support[t] / types[t].sound);
   return shortest;
 }
 
 double ParticleLimits::sound_time(int i) const
 {
-  const FluidType &type = types[atom->type[i]];
-  return type.support / type.sound;
+  const int type = atom->type[i];
+  return motion.support[type] / types[type].sound;
 }
 
 double ParticleLimits::acceleration(int i, double by_force) const
@@ -239,9 +235,9 @@ StepLimit ParticleLimits::stable_limit(int i) const
 double ParticleLimits::until_pressed(int i, double density_rate, const StepState &s) const
 {
   const double gap = fluid->gap_to_pressure(atom->type[i], atom->rho[i]);
-  const double alone = time_to_cross(gap, density_rate);
+  const double alone = time_at_rate(gap, density_rate);
   if (!asks_neighbors) return alone;
-  const double smoothing = 0.5 * types[atom->type[i]].support;
+  const double smoothing = 0.5 * motion.support[atom->type[i]];
   const double by_sound = lambda.stability > 0.0
       ? lambda.stability * stable_step(s.of_fluid_sq + s.of_vertices_sq, s.friction)
       : lambda.acoustic * smoothing / s.sound;
@@ -269,7 +265,7 @@ double ParticleLimits::scaled_acceleration(int i, double unscaled) const
   const ScaledMass &scaled = fluid->scaled_mass();
   const int n = scaled.row(i);
   if (n < 0) return unscaled;
-  const double mass = atom_mass(atom, i), support = types[atom->type[i]].support;
+  const double mass = atom_mass(atom, i), support = motion.support[atom->type[i]];
   const Eigen::Vector3d alone = force->ftm2v / mass * Eigen::Vector3d(atom->f[i]);
   double result = unscaled;
   for (int k = 0; k < ROUNDS; k++) {
@@ -288,7 +284,7 @@ StepState ParticleLimits::vertex_state(int i) const
   StepState s{};
   const double mass = atom_mass(atom, i);
   const double *v = atom->v[i];
-  s.support = types[atom->type[i]].support;
+  s.support = motion.support[atom->type[i]];
   s.speed_sq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   s.accel_sq = acceleration_sq(i, atom->f[i]);
   if (options.lambda.stability > 0.0) {

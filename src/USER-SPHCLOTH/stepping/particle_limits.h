@@ -94,7 +94,6 @@ class ParticleLimits : protected Pointers, public VertexMobility {
 
  private:
   struct FluidType {
-    double support = 0.0;    // of boundary types as well
     double viscosity = 0.0, sound = 0.0;
     double at_boundary = 1.0;    // sound there over sound elsewhere
     sphcloth::Tait eos;
@@ -108,7 +107,7 @@ class ParticleLimits : protected Pointers, public VertexMobility {
   FluidState *fluid;
   std::vector<FluidType> types;
   struct {
-    std::vector<double> support, rest, rounding;    // of MotionColumns
+    std::vector<double> support, rest, rounding;    // of MotionColumns; the first of all types
   } motion;
   std::vector<Cloth> cloths;
   bool asks_neighbors = true;

@@ -24,9 +24,9 @@ def box(sides, types=1, shape="block", room=""):
     return f"region box {shape} {sides} units box\ncreate_box {types} box {room}".rstrip() + "\n"
 
 
-def cloth_box(sides, types=2):
+def cloth_box(sides, types=2, shape="block"):
     """An empty box with room for a cloth."""
-    return box(sides, types, room=ROOM)
+    return box(sides, types, shape, ROOM)
 
 
 def lattice(spacing=0.05, dimension=3):

@@ -22,28 +22,31 @@ struct ContactMotion {
   double mass = 1.0;    // effective
 };
 
-// what has been exchanged so far, by the projection of positions
+// what has been exchanged so far, by projections of positions and passes over velocities
 
 struct ExchangedImpulse {
   double normal = 0.0;
   Eigen::Vector3d friction = Eigen::Vector3d::Zero();
 };
 
-// On the first body, in addition to what was exchanged: projected positions may leave a separating
-// velocity behind, or not all of the approach gone.  The bodies separate with the share of the
-// approach that the restitution gives back, and no more; the sum of normal impulses never pulls.
+// On the first body, in addition to what was exchanged, and added to that: projected positions may
+// leave a separating velocity behind, or not all of the approach gone.  The bodies separate with
+// the share of the approach that the restitution gives back, and no more; the sum of normal
+// impulses never pulls.
 
-inline Eigen::Vector3d contact_impulse(const ContactMotion &m, const ExchangedImpulse &so_far,
+inline Eigen::Vector3d contact_impulse(const ContactMotion &m, ExchangedImpulse &so_far,
                                        double restitution, double friction)
 {
   const double speed = m.velocity.dot(m.normal);
   const double target = restitution * std::max(0.0, -m.speed_before);
   const double normal = std::max((target - speed) * m.mass, -so_far.normal);
   Eigen::Vector3d impulse = normal * m.normal;
+  so_far.normal += normal;
   if (friction > 0.0) {
     impulse -= so_far.friction;
-    impulse += clamp_length(so_far.friction - m.mass * (m.velocity - speed * m.normal),
-                            friction * (so_far.normal + normal));
+    so_far.friction = clamp_length(so_far.friction - m.mass * (m.velocity - speed * m.normal),
+                                   friction * so_far.normal);
+    impulse += so_far.friction;
   }
   return impulse;
 }

@@ -179,8 +179,8 @@ inline double JointWalls::lambda() const
 
 inline double JointWalls::share(std::size_t k) const
 {
-  if (!overlap) return joint_share(alone(), k);
-  return 1.0 - common_slope(walls[k].alone.lambda) * (1.0 - open_beside(k, k));
+  const double open = open_beside(k, k);
+  return overlap ? 1.0 - common_slope(walls[k].alone.lambda) * (1.0 - open) : open;
 }
 
 inline double JointWalls::curvature(std::size_t k, std::size_t l) const

@@ -38,7 +38,7 @@ inline double time_to_cross(double gap, double rate, double growth)
 
 // the same of a rate that does not change
 
-SPHCLOTH_INLINE double time_to_cross(double gap, double rate)
+SPHCLOTH_INLINE double time_at_rate(double gap, double rate)
 {
   return rate > 0.0 ? gap / rate : std::numeric_limits<double>::infinity();
 }

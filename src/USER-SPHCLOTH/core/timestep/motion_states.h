@@ -53,7 +53,7 @@ find_motion_states(const MotionColumns &columns, const int *particles, int n, St
     states.support[k] = of.support[t];
     states.rho[k] = rho;
     const double beyond = rate_beyond(gap, rate, of.tolerated * rho);
-    const double until = time_to_cross(gap, rate);
+    const double until = time_at_rate(gap, rate);
     states.drho[k] = free && eases ? beyond : rate;
     states.until_pressed[k] = free ? until : 0.0;
   }

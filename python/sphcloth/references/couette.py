@@ -1,9 +1,7 @@
 """Start-up of plane Couette flow: a plate starts to slide over fluid at rest.
 
-The series solution, as in Morris, Fox and Zhu, J. Comput. Phys. 136 (1997) 214. Its terms decay as
-exp(-n^2 pi^2 nu t / gap^2), which at the start is not at all. There the plates are mirrors of
-Stokes's flow under a single plate (method of images: Carslaw and Jaeger,
-Conduction of Heat in Solids, 1959), with s = 2 sqrt(nu t):
+At the start, with s as in :mod:`sphcloth.references.plates`, it is Stokes's flow under a single
+plate and its images:
 
   u = lid sum_k erfc(((2 k + 1) gap - y) / s) - erfc(((2 k + 1) gap + y) / s),   k = 0, 1, ...
 """
@@ -16,13 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import erfc
 
-from sphcloth.references.checks import check_positive, since_start, within
-
-# of the series, enough from EARLY on
-TERMS = 10
-# time, in gap^2 / nu, up to which images are summed; both sums are exact to rounding there
-EARLY = 0.1
-IMAGES = np.arange(4)
+from sphcloth.references.checks import check_positive
+from sphcloth.references.plates import IMAGES, TERMS, reach, start_up
 
 
 @dataclass(frozen=True)
@@ -62,16 +55,12 @@ class CouetteStart:
         Raises:
             UserError: a height outside of the plates, or a time before the start.
         """
-        y = within(self, "y", y, 0.0, self.gap, "between the plates")
-        along = y[..., np.newaxis] / self.gap
-        time = float(since_start(self, t, {()})) * self.nu / self.gap**2
-        return self.lid * (_early(along, time) if time < EARLY else _late(along, time))
+        return self.lid * start_up(self, y, t, _early, _late)
 
 
 def _early(along: NDArray[np.float64], time: float) -> NDArray[np.float64]:
     """Sum the images; lengths are in gaps, times in gap^2 / nu."""
-    # at the start a distance over 0 is none, or larger than any
-    scale = 2 * np.sqrt(max(time, np.finfo(np.float64).tiny))
+    scale = reach(time)
     odd = 2 * IMAGES + 1
     return np.sum(erfc((odd - along) / scale) - erfc((odd + along) / scale), axis=-1)
 

@@ -1,9 +1,7 @@
 """Start-up of plane Poiseuille flow: a force along the plates starts to drive fluid at rest.
 
-The series solution, as in Morris, Fox and Zhu, J. Comput. Phys. 136 (1997) 214. Its terms decay as
-exp(-n^2 pi^2 nu t / gap^2), which at the start is not at all. There the sum is that of the images
-of the flow over a single plate (method of images: Carslaw and Jaeger, Conduction
-of Heat in Solids, 1959), with s = 2 sqrt(nu t) and the second integral of erfc, i2erfc:
+At the start, with s as in :mod:`sphcloth.references.plates` and the second integral of erfc,
+i2erfc, it is the flow over a single plate and its images:
 
   u = drive t (1 - 4 sum_k (-1)^k (i2erfc((k gap + y) / s) + i2erfc(((k + 1) gap - y) / s)))
 """
@@ -16,13 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import erfc
 
-from sphcloth.references.checks import check_positive, since_start, within
-
-# of the series, enough from EARLY on
-TERMS = 10
-# time, in gap^2 / nu, up to which images are summed; both sums are exact to rounding there
-EARLY = 0.1
-IMAGES = np.arange(4)
+from sphcloth.references.checks import check_positive
+from sphcloth.references.plates import IMAGES, TERMS, reach, start_up
 
 
 @dataclass(frozen=True)
@@ -60,16 +53,12 @@ class PoiseuilleStart:
         Raises:
             UserError: a height outside of the plates, or a time before the start.
         """
-        y = within(self, "y", y, 0.0, self.gap, "between the plates")
-        along = y[..., np.newaxis] / self.gap
-        time = float(since_start(self, t, {()})) * self.nu / self.gap**2
-        return self.fastest * (_early(along, time) if time < EARLY else _late(along, time))
+        return self.fastest * start_up(self, y, t, _early, _late)
 
 
 def _early(along: NDArray[np.float64], time: float) -> NDArray[np.float64]:
     """Sum the images, over the fastest flow; lengths are in gaps, times in gap^2 / nu."""
-    # at the start a distance over 0 is none, or larger than any
-    scale = 2 * np.sqrt(max(time, np.finfo(np.float64).tiny))
+    scale = reach(time)
     lag = _i2erfc((IMAGES + along) / scale) + _i2erfc((IMAGES + 1 - along) / scale)
     return 8 * time * (1 - 4 * np.sum((-1.0) ** IMAGES * lag, axis=-1))
 

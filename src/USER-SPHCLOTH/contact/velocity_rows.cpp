@@ -5,7 +5,6 @@
 
 #include "atom.h"
 #include "contact/pass_changes.h"
-#include "core/contact/contact_impulse.h"
 #include "update.h"
 
 #include <algorithm>
@@ -93,18 +92,11 @@ double VelocityRows::pass(bool rubs)
 
 double VelocityRows::push(Pushed &pushed, bool rubs)
 {
-  const Vec3 relative = pushed.row.relative(velocity), &normal = pushed.row.normal;
-  const double speed = relative.dot(normal), left = pushed.change - (speed - pushed.speed_before),
-               step = std::max(left * pushed.mass, -pushed.normal);
-  pushed.normal += step;
-  Vec3 impulse = step * normal;
-  const double friction = rules.of(pushed.row.meeting).friction;
-  if (rubs && friction > 0.0) {
-    impulse -= pushed.friction;
-    pushed.friction = clamp_length(pushed.friction - pushed.mass * (relative - speed * normal),
-                                   friction * pushed.normal);
-    impulse += pushed.friction;
-  }
+  const ContactMotion motion{pushed.row.relative(velocity), pushed.row.normal, pushed.speed_before,
+                             pushed.mass};
+  const double so_far = motion.velocity.dot(motion.normal) - motion.speed_before,
+               friction = rubs ? rules.of(pushed.row.meeting).friction : 0.0;
+  const Vec3 impulse = impulse_for(pushed.change - so_far, motion, pushed.exchanged, friction);
   masses.apply(pushed.row, impulse);
   return pushed.mass > 0.0 ? impulse.norm() / pushed.mass : 0.0;
 }
@@ -133,7 +125,7 @@ VelocityRows::Vec3 VelocityRows::slid_too_far(const Pushed &pushed) const
   const Vec3 way = row.relative(mesh.end) - row.relative(mesh.start),
              slid = way - way.dot(row.normal) * row.normal;
   return mesh.w[row.slots[0]] * duration *
-      clamp_length(pushed.mass / dt * slid, friction * pushed.normal);
+      clamp_length(pushed.mass / dt * slid, friction * pushed.exchanged.normal);
 }
 
 void VelocityRows::take_back(const Pushed &pushed)

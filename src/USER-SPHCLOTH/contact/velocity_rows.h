@@ -12,6 +12,7 @@
 
 #include "contact/contact_row.h"
 #include "contact/moving_triangles.h"
+#include "core/contact/contact_impulse.h"
 
 #include <limits>
 #include <vector>
@@ -45,8 +46,7 @@ class VelocityRows : protected Pointers {
     double max_approach, too_near;
     double mass = 0.0, speed_before = 0.0;    // effective, and along the normal
     double change = 0.0;    // of that speed that is due
-    double normal = 0.0;    // impulse so far
-    Vec3 friction = Vec3::Zero();    // the same
+    sphcloth::ExchangedImpulse exchanged = {};
     Vec3 taken_back = Vec3::Zero();
   };
 

@@ -30,8 +30,10 @@ void ParticleLimits::init(FluidState *style, SteppingScheme scheme)
   asks_neighbors = scheme != SteppingScheme::GLOBAL;
   interpolates_density = scheme == SteppingScheme::INDIVIDUAL;
   types.assign(atom->ntypes + 1, FluidType());
-  for (auto *of_types : {&motion.support, &motion.rest, &motion.rounding})
+  for (auto *of_types : {&motion.support, &motion.rounding})
     of_types->assign(atom->ntypes + 1, 0.0);
+  // what is no fluid is never in free flight
+  motion.rest.assign(atom->ntypes + 1, -std::numeric_limits<double>::infinity());
   take_materials();
   cloths.clear();
   for (Fix *fix : modify->get_fix_by_style("^pbd/cloth$"))

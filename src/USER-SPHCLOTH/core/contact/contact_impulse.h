@@ -29,26 +29,35 @@ struct ExchangedImpulse {
   Eigen::Vector3d friction = Eigen::Vector3d::Zero();
 };
 
-// On the first body, in addition to what was exchanged, and added to that: projected positions may
-// leave a separating velocity behind, or not all of the approach gone.  The bodies separate with
-// the share of the approach that the restitution gives back, and no more; the sum of normal
-// impulses never pulls.
+// On the first body, in addition to what was exchanged, and added to that: that changes the speed
+// along the normal by what is due, and takes as much of the sliding as Coulomb's law allows.  The
+// sum of normal impulses never pulls.
 
-inline Eigen::Vector3d contact_impulse(const ContactMotion &m, ExchangedImpulse &so_far,
-                                       double restitution, double friction)
+inline Eigen::Vector3d impulse_for(double due, const ContactMotion &m, ExchangedImpulse &so_far,
+                                   double friction)
 {
-  const double speed = m.velocity.dot(m.normal);
-  const double target = restitution * std::max(0.0, -m.speed_before);
-  const double normal = std::max((target - speed) * m.mass, -so_far.normal);
+  const double normal = std::max(due * m.mass, -so_far.normal);
   Eigen::Vector3d impulse = normal * m.normal;
   so_far.normal += normal;
   if (friction > 0.0) {
     impulse -= so_far.friction;
-    so_far.friction = clamp_length(so_far.friction - m.mass * (m.velocity - speed * m.normal),
-                                   friction * so_far.normal);
+    so_far.friction =
+        clamp_length(so_far.friction - m.mass * (m.velocity - m.velocity.dot(m.normal) * m.normal),
+                     friction * so_far.normal);
     impulse += so_far.friction;
   }
   return impulse;
+}
+
+// The same behind projected positions, which may leave a separating velocity, or not all of the
+// approach gone: the bodies separate with the share of the approach that the restitution gives
+// back, and no more.
+
+inline Eigen::Vector3d contact_impulse(const ContactMotion &m, ExchangedImpulse &so_far,
+                                       double restitution, double friction)
+{
+  const double target = restitution * std::max(0.0, -m.speed_before);
+  return impulse_for(target - m.velocity.dot(m.normal), m, so_far, friction);
 }
 
 }    // namespace sphcloth

@@ -105,6 +105,23 @@ BOOST_AUTO_TEST_CASE(a_load_shortens_them_at_once_and_lengthens_them_slowly)
   BOOST_TEST(length.longest() == 0.1 * DT);
 }
 
+// A sheet whose substeps change does not come to rest.
+
+BOOST_AUTO_TEST_CASE(a_load_that_varies_by_little_changes_nothing)
+{
+  SubstepLength length;
+  steps(length, 500, loaded(100.0));
+  steps(length, 20, loaded(95.0));
+  steps(length, 1, loaded(100.0));
+  const double usual = steps(length, 1, loaded(100.0));
+  for (int k = 0; k < 100; k++)
+    BOOST_TEST(steps(length, 1, loaded(k % 2 == 0 ? 95.0 : 100.0)) == usual);
+  BOOST_TEST(steps(length, 100, loaded(70.0)) < 0.9 * usual);
+  steps(length, 100, loaded(100.0));
+  BOOST_TEST(steps(length, 2, loaded(110.0)) > usual);
+  BOOST_TEST(steps(length, 300, free_edge()) == 10);
+}
+
 // By 1 % in a step.  Springs bear it, and no more is allowed than the 3 % that a step takes back.
 
 BOOST_AUTO_TEST_CASE(a_load_that_grows_slowly_is_borne)
@@ -134,7 +151,7 @@ BOOST_AUTO_TEST_CASE(an_impact_raises_the_allowed_strain_to_what_the_substeps_ha
   BOOST_TEST(hardness(0.95 * strain / length.yield()) == 0.95 * before,
              boost::test_tools::tolerance(0.02));
   const double raised = length.yield();
-  BOOST_TEST(raised > 5.0);
+  BOOST_TEST(raised > 4.5);    // before, substeps were up to a tenth harder than needed
   // what has not been stretched changes nothing, and it returns in time, not in steps
   steps(length, 1, free_edge());
   const double after_one = length.yield();
@@ -182,7 +199,10 @@ BOOST_AUTO_TEST_CASE(what_is_held_apart_yields_until_it_is_soft)
   const double yield = length.yield();
   BOOST_TEST(3.0 / yield < 1.0 / 3.0);
   BOOST_TEST(3.0 / yield > 0.3);
-  BOOST_TEST(steps(length, 200, held(3.0)) == 12);
+  // that of a third of what is allowed, or a tenth harder
+  const double its = hardness(3.0 / yield), substeps = steps(length, 200, held(3.0));
+  BOOST_TEST(substeps >= std::ceil(needed(its) - 0.1));
+  BOOST_TEST(substeps <= std::ceil(needed(its / 1.1) - 0.1));
   BOOST_TEST(length.yield() == yield);
   // an impact raises what is allowed further, but not for good
   steps(length, 1, held(30.0));

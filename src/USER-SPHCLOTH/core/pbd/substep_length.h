@@ -20,10 +20,9 @@ class SubstepLength {
   double substeps(double dt, int usual)
   {
     constexpr double SPARED = 0.1;    // of a substep, which a little load would need
-    constexpr double RELAXES = 1.03;    // in a step: a sheet is the calmer the less substeps vary
     state.longest = std::max(state.longest, dt / usual);
     of_longest_step = dt / (usual * state.longest);
-    state.hardness = std::min(state.hardest, state.hardness * RELAXES);
+    follow_load();
     refine_for_contact();
     const double substep = state.longest * std::sqrt(with_margin(state.hardness)) / state.refined;
     return std::ceil(dt / substep - SPARED);
@@ -102,6 +101,16 @@ class SubstepLength {
   // Substeps that are only just short enough let the hardest edges ring, and what comes later in a
   // sweep stretches an edge by as much as its law does.
   static double with_margin(double hardness) { return 0.5 * hardness * (1.0 + hardness); }
+
+  // A change of the substeps shakes a sheet, and what it shakes asks for the next change: substeps
+  // are shorter at once where the load asks for it, and longer, slowly, only if it leaves them room.
+  void follow_load()
+  {
+    constexpr double ROOM = 1.1, RELAXES = 1.03;    // the second one in a step
+    const double enough = std::min(1.0, ROOM * state.hardness);
+    if (state.hardest >= enough || state.hardest < state.hardness)
+      state.hardness = std::min(state.hardest, RELAXES * state.hardness);
+  }
 
   // Where substeps were too long for the load, edges were only as hard as these and have given way
   // farther than springs would.  More is allowed, so that springs at this strain are as hard as the

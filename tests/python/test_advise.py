@@ -445,7 +445,7 @@ def test_a_finished_run_tells_the_same_from_its_log() -> None:
     meant = {"f_contact[1]": "contacts", "f_step[3]": "updates", "f_sheet[4]": "strain"}
     for value, name in meant.items():
         assert run.last(value) == run.last(f"v_{name}") is not None
-    by_limit = {"velocity": 17, "force": 16, "acoustic": 31, "max": 196}
+    by_limit = {"velocity": 18, "force": 11, "acoustic": 46, "max": 182, "output": 1}
     assert run.commands.steps_by_limit == by_limit
     found = {each.topic: each.line for each in unused(run)}
     assert found == {

@@ -102,8 +102,8 @@ class SubstepLength {
   // sweep stretches an edge by as much as its law does.
   static double with_margin(double hardness) { return 0.5 * hardness * (1.0 + hardness); }
 
-  // A change of the substeps shakes a sheet, and what it shakes asks for the next change: substeps
-  // are shorter at once where the load asks for it, and longer, slowly, only if it leaves them room.
+  // A change of the substeps shakes a sheet, and what it shakes asks for the next change: they are
+  // shorter at once where the load asks for it, and longer, slowly, only if it leaves them room.
   void follow_load()
   {
     constexpr double ROOM = 1.1, RELAXES = 1.03;    // the second one in a step

@@ -62,6 +62,16 @@ void FixClothPores::init()
   find_meshes();
 }
 
+// Several fixes may guard a mesh, each with an obstacle of its own.
+
+bool FixClothPores::is_known(const ClothTopology &mesh) const
+{
+  return std::any_of(meshes.begin(), meshes.end(), [&](const auto &known) {
+    const ClothTopology &of = known->pores.set->mesh->topology();
+    return of.ids == mesh.ids && of.triangles.vertices == mesh.triangles.vertices;
+  });
+}
+
 void FixClothPores::find_meshes()
 {
   double widest = 0.0;
@@ -76,6 +86,7 @@ void FixClothPores::find_meshes()
     any_contact = true;
     for (MovingTriangles *set :
          contact->let_through(fluid.first_type, fluid.last_type, groupbit, widest)) {
+      if (is_known(set->mesh->topology())) continue;
       meshes.push_back(std::make_unique<Mesh>(Mesh{PoreMesh(lmp, set, fluid), nullptr}));
       auto *cloth = dynamic_cast<FixPBDCloth *>(set->mesh);
       if (!cloth) continue;

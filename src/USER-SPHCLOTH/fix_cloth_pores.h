@@ -75,6 +75,7 @@ class FixClothPores : public Fix {
   double last_dt = 0.0;
 
   void check_integrators();
+  bool is_known(const ClothTopology &mesh) const;
   void find_meshes();
   void count_passages();
 };

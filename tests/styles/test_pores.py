@@ -132,6 +132,20 @@ def test_any_mesh_and_scheme_has_that_flux(mesh, scheme):
     assert found == pytest.approx(exact(8000, 0, length), rel=0.01)
 
 
+@pytest.mark.parametrize("others", ["water", "nothing"])
+@pytest.mark.parametrize("mesh", ["plate", "pinned"])
+def test_a_mesh_that_two_fixes_guard_has_its_pores_once(mesh, others):
+    """Also where the second one guards it from nothing that is there."""
+    script, length = channel("darcy 8000", mesh=mesh, speed=0.3)
+    obstacle = " obstacle mesh" if mesh == "plate" else ""
+    second = f"group nothing empty\nfix second {others} cloth/contact 0.01{obstacle} sides no\n"
+    for place in ("fix contact", "fix pores"):
+        with instance() as lmp:
+            lmp.commands_string(script.replace(place, second + place, 1))
+            lmp.command("thermo_style custom step f_pores[*]")
+            assert flux(lmp) == pytest.approx(exact(8000, 0, length), rel=0.01)
+
+
 @pytest.mark.parametrize("solver", ["gs iterations 20", "jacobi iterations 100", "substeps"])
 @pytest.mark.parametrize("areal", [5.0, 50.0])
 def test_nor_do_solver_and_mass_matter(solver, areal):

@@ -155,7 +155,7 @@ def test_a_sheet_that_hangs_carries_its_water(step):
     with hanging(step) as lmp:
         weight = 9.81 * lmp.numpy.extract_atom("mass")[by_id(lmp, "type")].sum()
         pulls = []
-        for k in range(40):
+        for k in range(120):  # two periods in which it swings with its water
             lmp.command(f"fix step fluid sph/integrate {step} until {1.002 + 0.002 * k}")
             lmp.command("run 100 post no")
             pulls.append(lmp.extract_fix("sheet", 0, 1, 2))
